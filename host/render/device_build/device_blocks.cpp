@@ -4,6 +4,9 @@ namespace clarity {
 namespace {
 
 constexpr unsigned kSizes = 8;  // RT_BLOCK_SIZES: that a launch adds
+// One group makes all sizes above so many blocks. Several would be done with the first eight sizes sooner, but a launch more takes
+// longer than the group needs.
+constexpr uint64_t kForOneGroup = 2048;
 
 }  // namespace
 
@@ -36,14 +39,18 @@ void DeviceBlocks::run_above(uint64_t count, const cl::Buffer& result, const Who
             blocks = (blocks + 1) / 2;
         }
     };
-    for (rise(); blocks > 1; rise()) {
+    rise();
+    while (blocks > 1) {
         larger_.setArg(0, static_cast<cl_uint>(begin));
         larger_.setArg(1, static_cast<cl_uint>(blocks));
         larger_.setArg(2, result);
         larger_.setArg(3, whole.block);
         larger_.setArg(4, whole.at);
         larger_.setArg(5, whole.bounds);
-        kernels_.launch(larger_, (blocks + kTile - 1) / kTile);
+        const bool one_group = blocks <= kForOneGroup;
+        kernels_.launch(larger_, one_group ? 1 : (blocks + kTile - 1) / kTile);
+        if (one_group) break;
+        rise();
     }
 }
 

@@ -15,9 +15,19 @@ typedef struct lbvh_node {
 /* The number of leading bits that the keys of i and j have in common; equal keys are told apart by i and j. */
 RT_INLINE int lbvh_common(const global ulong *keys, uint count, ulong key, uint i, int j)
 {
-    if (j < 0 || j >= (int)count) return -1;
-    const ulong differ = key ^ keys[j];
-    return differ ? (int)clz(differ) : 64 + (int)clz(i ^ (uint)j);
+    const ulong differ = key ^ keys[clamp(j, 0, (int)count - 1)]; /* no branch: several of them wait for memory together */
+    const int common = differ ? (int)clz(differ) : 64 + (int)clz(i ^ (uint)j);
+    return j < 0 || j >= (int)count ? -1 : common;
+}
+/* Of the places i + (from + k) * d, k = 0 .. first + second: the greatest k that is a sum of `first`, `second` or none whose keys have
+ * more than `least` leading bits in common with that of i. It is two steps of a binary search: their three keys are fetched together, as
+ * the nodes near the root wait for each in turn. */
+RT_INLINE int lbvh_two_steps(const global ulong *keys, uint count, ulong key, uint i, int d, int from, int first, int second, int least)
+{
+    const int low = lbvh_common(keys, count, key, i, (int)i + (from + second) * d),
+              middle = lbvh_common(keys, count, key, i, (int)i + (from + first) * d),
+              high = lbvh_common(keys, count, key, i, (int)i + (from + first + second) * d);
+    return middle > least ? first + (high > least ? second : 0) : low > least ? second : 0;
 }
 
 /* All inner nodes. Node i has a range of places that begins or ends at place i (Karras 2012, figure 4). */
@@ -30,15 +40,15 @@ RT_BUILD_KERNEL lbvh_nodes(const global ulong *keys, const global rt_block *bloc
         const int up = lbvh_common(keys, count, key, i, (int)i + 1), down = lbvh_common(keys, count, key, i, (int)i - 1);
         const int d = up > down ? 1 : -1, least = min(up, down);
         int most = 2;
-        while (lbvh_common(keys, count, key, i, (int)i + most * d) > least) most *= 2;
+        while (lbvh_common(keys, count, key, i, (int)i + most * d) > least) most *= 4;
         int length = 0;
-        for (int step = most / 2; step > 0; step /= 2)
-            if (lbvh_common(keys, count, key, i, (int)i + (length + step) * d) > least) length += step;
+        for (int step = most / 2; step > 0; step /= 4) length += lbvh_two_steps(keys, count, key, i, d, length, step, step / 2, least);
         const int other = (int)i + length * d, common = lbvh_common(keys, count, key, i, other);
         int split = 0;
         for (int step = length; step > 1;) {
-            step = (step + 1) / 2;
-            if (lbvh_common(keys, count, key, i, (int)i + (split + step) * d) > common) split += step;
+            const int first = (step + 1) / 2, second = first > 1 ? (first + 1) / 2 : 0;
+            split += lbvh_two_steps(keys, count, key, i, d, split, first, second, common);
+            step = second;
         }
         const uint middle = (uint)((int)i + split * d + min(d, 0));
         const uint first = min(i, (uint)other), last = max(i, (uint)other);
