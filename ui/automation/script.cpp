@@ -307,6 +307,11 @@ std::string Script::state_text(ScriptedWindow& window) const {
                           {"why", update.why},
                           {"ms", update.ms},
                           {"building", update.building}};
+        for (const TreeUpdate& tree : update.trees)
+            json["update"]["trees"].push_back({{"name", tree.name},
+                                               {"what", tree.what},
+                                               {"primitives", tree.primitives},
+                                               {"cost_ratio", tree.cost_ratios.back()}});
     }
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();

@@ -140,6 +140,24 @@ void ray_rows(const Session& session, const std::vector<const PictureSide*>& sid
     if (full) row_text("Stacks full", overflowed.text, "rays whose traversal stack was full", colors::kAmber);
 }
 
+// What was done to the tree of a mesh for this pose, and what its rays cost in the last ones.
+void tree_row(const TreeUpdate& tree, float most) {
+    const std::string name = tree.mesh == RT_NONE ? "World"
+                             : tree.name.empty()  ? "Mesh " + std::to_string(tree.mesh)
+                                                  : tree.name;
+    const std::vector<float> costs(tree.cost_ratios.begin(), tree.cost_ratios.end());
+    char now[48];
+    std::snprintf(now, sizeof now, "%s  %.2f", tree.what.c_str(), static_cast<double>(costs.back()));
+    ImGui::PushID(static_cast<int>(tree.mesh));
+    row_label(name.c_str(), "a tree of " + count_text(static_cast<double>(tree.primitives)) +
+                                (tree.mesh == RT_NONE ? " instances and triangles" : " triangles") +
+                                "; what was done to it for this pose, and the expected cost of its rays (SAH) in the last "
+                                "poses, against that after its build");
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    ImGui::PlotLines("##tree", costs.data(), static_cast<int>(costs.size()), 0, now, 0, most, {0, 20 * ui_scale()});
+    ImGui::PopID();
+}
+
 // How the structure came to the pose that is shown, and what rays cost in the last poses.
 void pose_rows(const PoseUpdate& update) {
     if (!update.followed) return;
@@ -153,6 +171,7 @@ void pose_rows(const PoseUpdate& update) {
     ImGui::SetNextItemWidth(-FLT_MIN);
     const float most = std::max(1.5f, *std::max_element(costs.begin(), costs.end()));
     ImGui::PlotLines("##costs", costs.data(), static_cast<int>(costs.size()), 0, now, 0, most, {0, 42 * ui_scale()});
+    for (const TreeUpdate& tree : update.trees) tree_row(tree, most);
 }
 
 void structure_rows(const ReadySide& side, const ImportedScene& loaded) {

@@ -4,8 +4,8 @@ namespace clarity {
 namespace {
 
 constexpr unsigned kSizes = 8;  // RT_BLOCK_SIZES: that a launch adds
-// One group makes all sizes above so many blocks. Several would be done with the first eight sizes sooner, but a launch more takes
-// longer than the group needs.
+// One group makes all sizes above so many blocks. Several would be done with the first eight sizes sooner, but a launch more
+// takes longer than the group needs.
 constexpr uint64_t kForOneGroup = 2048;
 
 }  // namespace

@@ -248,12 +248,22 @@ const DeviceStructure& DeviceMotion::with_tree_of(rt_u32 group) const {
 double DeviceMotion::worst_cost_ratio() {
     double worst = 1;
     if (costs_known_() && !is_complete(costs_known_)) return last_ratio_;
+    ratios_.resize(costs_.size(), 1);
     for (size_t g = 0; g < costs_.size(); ++g) {
         if (is_fresh_[g]) built_costs_[g] = costs_[g];
         is_fresh_[g] = 0;
-        if (built_costs_[g] > 0 && std::isfinite(costs_[g])) worst = std::max(worst, double(costs_[g]) / built_costs_[g]);
+        if (built_costs_[g] > 0 && std::isfinite(costs_[g])) ratios_[g] = double(costs_[g]) / built_costs_[g];
+        worst = std::max(worst, ratios_[g]);
     }
     return last_ratio_ = worst;
+}
+
+// The groups that the last move has changed.
+std::vector<MovedGroup> DeviceMotion::moved_groups() const {
+    std::vector<MovedGroup> groups;
+    for (rt_u32 g = 0; g < version_.size(); ++g)
+        if (version_[g] == moves_) groups.push_back({g, groups_->primitives(g), g < ratios_.size() ? ratios_[g] : 1.0});
+    return groups;
 }
 
 MovedOnDevice DeviceMotion::move(const Pose& pose, Update update) {
@@ -309,6 +319,7 @@ void DeviceMotion::finish_move(Update update, MovedOnDevice& moved) {
     device_->queue().enqueueMarkerWithWaitList(nullptr, &moved.end);
     device_->queue().flush();
     moved.on_device = structure.on_device();
+    moved.groups = moved_groups();
 }
 
 void DeviceMotion::touch(rt_u32 mesh) {

@@ -21,6 +21,7 @@
 #include "base/aligned_bytes.hpp"
 #include "render/moving/device_deformer.hpp"
 #include "render/moving/device_structure.hpp"
+#include "render/moving/moved_group.hpp"
 #include "render/moving/moved_instances.hpp"
 #include "scene/motion/pose.hpp"
 
@@ -32,9 +33,10 @@ struct MovedOnDevice {
     // The greatest expected cost of a ray in any group, by that after the build; as far as the device has told it: of one of
     // the last moves.
     double worst_cost_ratio = 1;
-    uint64_t refitted = 0;  // primitives
-    double ms = 0;          // time of the call; the device goes on after it
-    cl::Event begin, end;   // of the device's work
+    std::vector<MovedGroup> groups;  // those that moved
+    uint64_t refitted = 0;           // primitives
+    double ms = 0;                   // time of the call; the device goes on after it
+    cl::Event begin, end;            // of the device's work
 };
 
 // Used from one thread at a time, which may differ from that of frames.
@@ -84,6 +86,7 @@ class DeviceMotion {
     void finish_move(Update update, MovedOnDevice& moved);
     const DeviceStructure& with_tree_of(rt_u32 group) const;
     double worst_cost_ratio();
+    std::vector<MovedGroup> moved_groups() const;
 
     const std::shared_ptr<Device> device_;
     const std::shared_ptr<const Scene> scene_;
@@ -112,6 +115,7 @@ class DeviceMotion {
     std::deque<std::unique_ptr<DeviceStructure>> structures_;  // the newest last
     // Of the groups: costs_ is written by the device until costs_known_. A build makes built_costs_ of the next ones.
     std::vector<float> costs_, built_costs_;
+    std::vector<double> ratios_;     // the last ones known
     std::vector<uint8_t> is_fresh_;  // of each group: costs_ is that after its build
     cl::Event costs_known_;
     double last_ratio_ = 1;

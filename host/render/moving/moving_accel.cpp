@@ -268,8 +268,8 @@ void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Prog
     for (size_t g = 0; g < changed.size(); ++g) {
         if (!changed[g]) continue;
         buffer.version[g] = version_[g];
-        result.groups.push_back(
-            {static_cast<rt_u32>(g), primitives_of_group_[g], cost_[g], started_ ? built_cost_[g] : cost_[g]});
+        const bool known = started_ && built_cost_[g] > 0;
+        result.groups.push_back({static_cast<rt_u32>(g), primitives_of_group_[g], known ? cost_[g] / built_cost_[g] : 1.0});
     }
     result.refitted += expected;
 }

@@ -19,6 +19,7 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
+#include "render/moving/moved_group.hpp"
 #include "render/moving/moved_instances.hpp"
 #include "render/moving/moved_leaves.hpp"
 #include "scene/motion/pose.hpp"
@@ -29,13 +30,7 @@ namespace clarity {
 struct MovedAccel {
     std::shared_ptr<const AccelData> accel;  // nullptr: a full build is needed
     std::string why;                         // why a build is needed: "instance `door` is hidden"; empty: it is not
-    // Of each group that moved. Group 0 is the world, with its instances; the others are one mesh each.
-    struct Group {
-        rt_u32 group = 0;
-        uint64_t primitives = 0;
-        double cost = 0, built_cost = 0;  // expected cost (SAH) of a ray now, and in the pose of the build; 0: not known
-    };
-    std::vector<Group> groups;
+    std::vector<MovedGroup> groups;          // those that were refitted
     // The greatest cost / built_cost of any group, also of those that did not move; 1: as good as after the build.
     double worst_cost_ratio = 1;
     uint64_t refitted = 0;  // primitives

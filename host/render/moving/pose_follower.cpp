@@ -1,16 +1,23 @@
 #include "render/moving/pose_follower.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace clarity {
 namespace {
 
 constexpr size_t kKeptCosts = 120;  // poses
+constexpr size_t kShownTrees = 64;
 
 std::string cost_text(double ratio) {
     char text[64];
     std::snprintf(text, sizeof text, "rays cost %.2f times what they cost after the last build", ratio);
     return text;
+}
+
+void note_cost(std::deque<float>& costs, double ratio) {
+    costs.push_back(static_cast<float>(ratio));
+    if (costs.size() > kKeptCosts) costs.pop_front();
 }
 
 }  // namespace
@@ -78,13 +85,14 @@ MovedStructure PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<
     update_.primitives = builds ? 0 : moved.refitted;
     if (builds) {
         policy_.built(moved.ms - refit_ms_);
-        note_cost(1);
+        note_cost(update_.cost_ratios, 1);
     } else {
         refit_ms_ = moved.ms;
         policy_.refitted(moved.worst_cost_ratio, trace_ms);
         update_.why = cost_text(moved.worst_cost_ratio);
-        note_cost(moved.worst_cost_ratio);
+        note_cost(update_.cost_ratios, moved.worst_cost_ratio);
     }
+    note_trees(moved, *posed, builds);
     posed_ = posed;
     now_ = std::move(moved);
     return now_;
@@ -96,12 +104,17 @@ void PoseFollower::built(const PosedFrom& from, std::shared_ptr<const Scene> pos
         policy_ = {};
         refit_ms_ = 0;
         update_.cost_ratios.clear();
+        update_.trees.clear();
     }
     const double ms = accel->build_ms + accel->pack_ms;
     policy_.built(ms - refit_ms_);
     update_.ms = ms;
     update_.primitives = 0;
-    note_cost(1);
+    note_cost(update_.cost_ratios, 1);
+    for (TreeUpdate& tree : update_.trees) {
+        tree.what = "built";
+        note_cost(tree.cost_ratios, 1);
+    }
     from_ = from;
     deformed_ = deforming_meshes(pose);
     posed_ = std::move(posed);
@@ -110,9 +123,30 @@ void PoseFollower::built(const PosedFrom& from, std::shared_ptr<const Scene> pos
     mover_ = std::move(mover);
 }
 
-void PoseFollower::note_cost(double ratio) {
-    update_.cost_ratios.push_back(static_cast<float>(ratio));
-    if (update_.cost_ratios.size() > kKeptCosts) update_.cost_ratios.pop_front();
+void PoseFollower::note_trees(const MovedStructure& moved, const Scene& scene, bool built) {
+    const std::vector<rt_u32>& group_of_mesh = moved.accel->scene.group_of_mesh;
+    std::vector<TreeUpdate>& trees = update_.trees;
+    for (TreeUpdate& tree : trees) tree.what = "still";
+    for (const MovedGroup& group : moved.groups) {
+        const auto is_known = [&](const TreeUpdate& tree) {
+            return tree.mesh == RT_NONE ? group.group == 0
+                                        : tree.mesh < group_of_mesh.size() && group_of_mesh[tree.mesh] == group.group;
+        };
+        auto tree = std::find_if(trees.begin(), trees.end(), is_known);
+        if (tree == trees.end()) {
+            if (trees.size() == kShownTrees) continue;
+            TreeUpdate added;
+            if (group.group > 0) {
+                const auto mesh = std::find(group_of_mesh.begin(), group_of_mesh.end(), group.group) - group_of_mesh.begin();
+                added.mesh = static_cast<rt_u32>(mesh);
+                if (added.mesh < scene.meshes.size()) added.name = scene.meshes[added.mesh].name;
+            }
+            tree = trees.insert(trees.end(), std::move(added));
+        }
+        tree->primitives = group.primitives;
+        tree->what = built ? "built" : "refitted";
+        note_cost(tree->cost_ratios, built ? 1.0 : group.cost_ratio);
+    }
 }
 
 }  // namespace clarity

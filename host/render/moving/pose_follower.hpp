@@ -19,6 +19,15 @@
 
 namespace clarity {
 
+// A tree that follows poses: that of a mesh, or of the world.
+struct TreeUpdate {
+    rt_u32 mesh = RT_NONE;          // of the scene; RT_NONE: the world
+    std::string name;               // the mesh's
+    uint64_t primitives = 0;        // of the tree
+    std::string what;               // "refitted", "built", "still"
+    std::deque<float> cost_ratios;  // as in PoseUpdate
+};
+
 // How a structure came to its pose.
 struct PoseUpdate {
     bool followed = false;  // false: the scene is at rest, or nothing was done for a pose
@@ -28,6 +37,7 @@ struct PoseUpdate {
     double ms = 0;
     uint64_t primitives = 0;        // that were refitted
     std::deque<float> cost_ratios;  // of the last poses, the newest last; 1: as good as after its build
+    std::vector<TreeUpdate> trees;  // those that have moved, the first 64 of them
 };
 
 // What the poses belong to: poses of another scene or clip need a build.
@@ -83,7 +93,7 @@ class PoseFollower {
  private:
     std::string why_not(const PosedFrom& from, const Pose& pose) const;
     std::string why_build(Way way) const;
-    void note_cost(double ratio);
+    void note_trees(const MovedStructure& moved, const Scene& scene, bool built);
 
     PosedFrom from_;
     std::unique_ptr<PoseMover> mover_;

@@ -16,7 +16,8 @@ class HostMover : public PoseMover {
     const std::string& cannot() const override { return moving_.cannot(); }
     MovedStructure move(const Pose& pose, bool, Progress& progress) override {
         MovedAccel moved = moving_.move(pose, progress);
-        return {std::move(moved.accel), {}, std::move(moved.why), moved.worst_cost_ratio, moved.refitted, moved.ms};
+        return {std::move(moved.accel), {},      std::move(moved.why), moved.worst_cost_ratio, std::move(moved.groups),
+                moved.refitted,         moved.ms};
     }
 
  private:
@@ -52,6 +53,7 @@ class DeviceMover : public PoseMover {
             moved.on_devices.emplace_back(motions_[i].first, parts[i].on_device);
             moved.worst_cost_ratio = std::max(moved.worst_cost_ratio, parts[i].worst_cost_ratio);
             moved.refitted = parts[i].refitted;
+            if (i == 0) moved.groups = std::move(parts[i].groups);
             moved.ms = std::max(moved.ms, span_ms(parts[i].begin, parts[i].end, parts[i].ms));
         }
         return moved;

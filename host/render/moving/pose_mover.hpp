@@ -9,6 +9,7 @@
 #include "device/device.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/frame/device_scene.hpp"
+#include "render/moving/moved_group.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 
@@ -20,8 +21,9 @@ struct MovedStructure {
     // Its buffers, where they are on devices already.
     std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> on_devices;
     std::string why;
-    double worst_cost_ratio = 1;  // expected cost of a ray by that after the build, of the group that has suffered most
-    uint64_t refitted = 0;        // primitives
+    double worst_cost_ratio = 1;       // expected cost of a ray by that after the build, of the group that has suffered most
+    std::vector<MovedGroup> groups{};  // those that moved
+    uint64_t refitted = 0;             // primitives
     double ms = 0;
     // Devices moved it: `accel` is the structure as it was built, whose nodes and leaves are out of date.
     bool by_devices = false;

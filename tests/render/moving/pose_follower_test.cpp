@@ -70,6 +70,30 @@ TEST_F(Follower, BuildsTheFirstPoseAndRefitsTheNext) {
     EXPECT_EQ(follower_.structure()->scene.bounds.max, fresh.max) << "the structure is in the pose";
 }
 
+// Two meshes, placed by themselves, of which one deforms.
+TEST_F(Follower, SaysWhatWasDoneToEachTree) {
+    Scene scene = *rest_;
+    scene.meshes[0].name = "body";
+    Instance again = scene.instances[0];
+    again.world_from_object[3] = 5;
+    scene.instances.push_back(again);  // placed twice: a tree of its own
+    rest_ = shared_scene(std::move(scene));
+    EXPECT_FALSE(show(leaning(0)));
+    EXPECT_TRUE(follower_.update().trees.empty());
+    EXPECT_TRUE(show(leaning(0.5f)));
+    ASSERT_EQ(follower_.update().trees.size(), 2u) << "the mesh, and the instances";
+    const auto& trees = follower_.update().trees;
+    const auto body = std::find_if(trees.begin(), trees.end(), [](const TreeUpdate& t) { return t.name == "body"; });
+    ASSERT_NE(body, trees.end());
+    EXPECT_EQ(body->what, "refitted");
+    EXPECT_EQ(body->primitives, rest_->triangles.size() / 3);
+    EXPECT_GT(body->cost_ratios.back(), 0.5f);
+    EXPECT_EQ(body->cost_ratios.back(), follower_.update().cost_ratios.back()) << "the worst of all";
+    EXPECT_FALSE(show(leaning(0.6f), Way::build));
+    EXPECT_EQ(body->what, "built");
+    EXPECT_EQ(body->cost_ratios.back(), 1);
+}
+
 TEST_F(Follower, ObeysTheSetting) {
     show(leaning(0));
     EXPECT_FALSE(show(leaning(0.1f), way_of("build")));
