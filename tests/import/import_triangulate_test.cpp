@@ -167,11 +167,13 @@ TEST(Triangulate, far_from_the_origin_a_square_is_still_a_fan) {
     EXPECT_EQ(out, (std::vector<rt_u32>{0, 1, 2, 0, 2, 3}));
 }
 
-// Fewer in builds whose every access is checked.
+// Fewer in builds whose every access is checked, and more time: the tangle is given up after as many steps.
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
 constexpr int kHuge = 100000;
+constexpr double kMostSeconds = 60;
 #else
 constexpr int kHuge = 3000;
+constexpr double kMostSeconds = 300;
 #endif
 TEST(Triangulate, huge_faces_take_seconds_at_most) {
     const auto start = std::chrono::steady_clock::now();
@@ -192,7 +194,7 @@ TEST(Triangulate, huge_faces_take_seconds_at_most) {
     const Points arrow = {{0, 0}, {2, 1}, {0, 2}, {1, 1}, {0.5, 0.9}};
     EXPECT_EQ(triangles_of(arrow, triangulator), triangles_of(arrow)) << "later faces do not pay for it";
     EXPECT_EQ(triangulator.given_up(), 1u);
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 60);
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kMostSeconds);
 }
 
 }  // namespace
