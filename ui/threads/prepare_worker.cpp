@@ -274,7 +274,7 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
     const PoseFollower::Way way = way_of(settings.poses);
     const bool builds_beside = follower.wants_build_beside(from, pose, way);
     if (follower.needs_vertices() || builds_beside) shown_.add_vertices();
-    if (builds_beside) follower.build_beside(from, scene, pose, side.preparer->build_later(scene, settings));
+    if (builds_beside) follower.build_beside(from, scene, pose, side.preparer->builder(settings));
     MovedStructure moved = follower.refit(from, scene, pose, way, frame_ms, progress);
     if (moved.accel && moved.on_devices.empty() && side.built)
         moved.on_devices = side.built->moved_buffers(pose, moved.accel, progress);
@@ -284,6 +284,8 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
         side.built = prepared;
         follower.built(from, scene, pose, prepared->first()->accel, mover_for(side, settings, scene));
     }
+    if (settings.poses == "clip" && follower.wants_choice(from))
+        follower.choose_beside(from, shown_.rest(), side.preparer->builder(settings));
     ReadySide ready = lend(side.devices, prepared);
     ready.pose_update = follower.update();
     ready.is_moved = prepared->first()->is_moved;
@@ -293,7 +295,7 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
 
 // Goes over to a structure that was built beside the last poses.
 void PrepareWorker::take_build(SideState& side, const PosedFrom& from, const Settings& settings, StageProgress& progress) {
-    const PoseFollower::Built built = side.follower.take_build(from);
+    const BuiltPose built = side.follower.take_build(from);
     if (!built.accel) return;
     MovedStructure structure;
     structure.accel = built.accel;

@@ -1,7 +1,9 @@
 // accel_build.hpp -- runs the builder of a structure over a scene, and checks and packs what it returns.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,5 +60,8 @@ rt_device device_for_builders(const DeviceInfo& info, unsigned lanes);
 // range, a slot allocated twice, or an exception. A stranger's builder runs in a worker process: see BuildTarget::place.
 AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
                       const BuildTarget& target = {});
+
+// Builds the structure of a scene, on any thread.
+using AccelBuilder = std::function<std::shared_ptr<const AccelData>(const Scene&, Progress&)>;
 
 }  // namespace clarity

@@ -165,12 +165,11 @@ std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Sce
     return build_or_last(scene, resolved, progress);
 }
 
-std::function<std::shared_ptr<const AccelData>(Progress&)> Preparer::build_later(std::shared_ptr<const Scene> scene,
-                                                                                 const Settings& settings) const {
-    return [&plugins = plugins_, info = info_, scene = std::move(scene), settings](Progress& progress) {
+AccelBuilder Preparer::builder(const Settings& settings) const {
+    return [&plugins = plugins_, info = info_, settings](const Scene& scene, Progress& progress) {
         Settings resolved = settings;
         resolve_accel(plugins, kind_of({info}), resolved);
-        return build_new(plugins, info, *scene, resolved, progress);
+        return build_new(plugins, info, scene, resolved, progress);
     };
 }
 

@@ -42,8 +42,7 @@ class Preparer {
                                            Progress& progress);
     // The same as a function that may be called on any thread beside everything else. It uses the plugins, and nothing of this
     // object.
-    std::function<std::shared_ptr<const AccelData>(Progress&)> build_later(std::shared_ptr<const Scene> scene,
-                                                                           const Settings& settings) const;
+    AccelBuilder builder(const Settings& settings) const;
     // Whether the caller should close the device and open it again. PoCL keeps at least 0.15 MB for each program that it has
     // compiled, and frees it only with the last context of the process. Editing kernels compiles hundreds of programs.
     bool needs_reopen() const;

@@ -7,13 +7,22 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
+#include "scene/motion/pose.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
+
+// A structure, and the scene and the pose that it was built for.
+struct BuiltPose {
+    std::shared_ptr<const Scene> scene;
+    Pose pose;
+    std::shared_ptr<const AccelData> accel;
+};
 
 class BackgroundBuild {
  public:
     // Called on the other thread. May throw.
-    using Build = std::function<std::shared_ptr<const AccelData>(Progress&)>;
+    using Build = std::function<BuiltPose(Progress&)>;
     explicit BackgroundBuild(Build build);
     // Cancels the build and waits for its end.
     ~BackgroundBuild();
@@ -22,12 +31,12 @@ class BackgroundBuild {
 
     bool done() const { return done_; }
     // The result, once, or what the build threw. Waits for it.
-    std::shared_ptr<const AccelData> take() { return result_.get(); }
+    BuiltPose take() { return result_.get(); }
 
  private:
     Progress progress_;
     std::atomic<bool> done_{false};
-    std::future<std::shared_ptr<const AccelData>> result_;  // last member: its thread uses the others
+    std::future<BuiltPose> result_;  // last member: its thread uses the others
 };
 
 }  // namespace clarity

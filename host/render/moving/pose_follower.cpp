@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "render/moving/first_tree.hpp"
+
 namespace clarity {
 namespace {
 
@@ -50,16 +52,28 @@ bool PoseFollower::wants_build_beside(const PosedFrom& from, const Pose& pose, W
 }
 
 void PoseFollower::build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
-                                BackgroundBuild::Build build) {
-    beside_.reset(new Beside{from, std::move(scene), pose, BackgroundBuild(std::move(build))});
+                                AccelBuilder build) {
+    beside_.reset(new Beside{from, BackgroundBuild([=](Progress& progress) -> BuiltPose {
+                                 return {scene, pose, build(*scene, progress)};
+                             })});
 }
 
-PoseFollower::Built PoseFollower::take_build(const PosedFrom& from) {
+bool PoseFollower::wants_choice(const PosedFrom& from) const {
+    return !from.at_rest && mover_ && from == from_ && !beside_ && !(from == chosen_for_) && mover_->cannot().empty() &&
+           !mover_->can_build();
+}
+
+void PoseFollower::choose_beside(const PosedFrom& from, std::shared_ptr<const Scene> rest, AccelBuilder build) {
+    chosen_for_ = from;
+    beside_.reset(new Beside{
+        from, BackgroundBuild([=](Progress& progress) { return choose_first_tree(*rest, from.clip, build, progress); })});
+}
+
+BuiltPose PoseFollower::take_build(const PosedFrom& from) {
     if (beside_ && !(beside_->from == from)) beside_.reset();
     if (!beside_ || !beside_->build.done()) return {};
     const std::unique_ptr<Beside> done = std::move(beside_);
-    std::shared_ptr<const AccelData> accel = done->build.take();
-    return {std::move(done->scene), std::move(done->pose), std::move(accel)};
+    return done->build.take();
 }
 
 MovedStructure PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose, Way way,

@@ -68,15 +68,13 @@ class PoseFollower {
     // build_beside(); the structure is refitted meanwhile. A build that is done is taken, prepared, and passed to built().
     bool wants_build_beside(const PosedFrom& from, const Pose& pose, Way way) const;
     // scene: with all vertices of the pose.
-    void build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
-                      BackgroundBuild::Build build);
-    struct Built {
-        std::shared_ptr<const Scene> scene;
-        Pose pose;
-        std::shared_ptr<const AccelData> accel;  // nullptr: no build is done, or it is of another scene or clip
-    };
-    // Throws what the build threw.
-    Built take_build(const PosedFrom& from);
+    void build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose, AccelBuilder build);
+    // Whether the tree of a clip should be chosen now among those of several poses; once for each clip. choose_beside() does
+    // that as build_beside(). rest: the scene at rest.
+    bool wants_choice(const PosedFrom& from) const;
+    void choose_beside(const PosedFrom& from, std::shared_ptr<const Scene> rest, AccelBuilder build);
+    // Without `accel`: no build is done, or it is of another scene or clip. Throws what the build threw.
+    BuiltPose take_build(const PosedFrom& from);
 
     // Forgets everything: the scene is at rest, or other settings ask for another structure.
     void reset() { *this = PoseFollower(); }
@@ -102,11 +100,10 @@ class PoseFollower {
     MovedStructure now_;  // of posed_
     struct Beside {
         PosedFrom from;
-        std::shared_ptr<const Scene> scene;
-        Pose pose;
         BackgroundBuild build;
     };
     std::unique_ptr<Beside> beside_;  // nullptr: no build runs
+    PosedFrom chosen_for_;            // the clip whose tree was chosen last
     RefitPolicy policy_;
     double refit_ms_ = 0;
     PoseUpdate update_;

@@ -131,10 +131,10 @@ Preparer& MultiPreparer::roomiest() const {
     return *preparers_[size_t(most - infos_.begin())];
 }
 
-BackgroundBuild::Build MultiPreparer::build_later(std::shared_ptr<const Scene> scene, const Settings& asked) const {
+AccelBuilder MultiPreparer::builder(const Settings& asked) const {
     Settings settings = asked;
     resolve_accel(plugins_, kind_of(infos_), settings);
-    return roomiest().build_later(std::move(scene), settings);
+    return roomiest().builder(settings);
 }
 
 bool MultiPreparer::asks_for(const AccelData& accel, const Settings& asked) const {

@@ -47,8 +47,8 @@ class MultiPreparer {
     // or cannot. scene: what was prepared. rest: the same scene at rest.
     std::unique_ptr<PoseMover> mover(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Scene>& rest,
                                      const MultiPrepared& prepared) const;
-    // As Preparer::build_later(), for the device with the most memory.
-    BackgroundBuild::Build build_later(std::shared_ptr<const Scene> scene, const Settings& settings) const;
+    // As Preparer::builder(), for the device with the most memory.
+    AccelBuilder builder(const Settings& settings) const;
     // As Preparer::asks_for().
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     bool needs_reopen() const;

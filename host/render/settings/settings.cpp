@@ -137,9 +137,11 @@ const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
         choice("poses", "Each pose",
                "how the structure follows a scene that plays in the window; refit: its boxes are fitted to what moved; build: "
-               "it is built anew; auto: refitted until slower rays have cost as much as a build. Frames of `render` are "
-               "always built; the samples of a picture with motion blur are refitted, unless this is build",
-               {"auto", "refit", "build"}, Effect::rebuild, &Settings::poses),
+               "it is built anew; auto: refitted until slower rays have cost as much as a build; clip: as auto, and when a "
+               "clip begins, "
+               "trees are built for five of its poses, and that is taken whose rays cost least in all of them. Frames of "
+               "`render` are always built; the samples of a picture with motion blur are refitted, unless this is build",
+               {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
         choice("tracer", "Tracer",
                "iterative: a work-item traces all generations of its packet; wavefront: rays that split continue in queues in "
                "the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",

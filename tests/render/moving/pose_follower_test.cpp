@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "render/moving/moving_accel.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 
@@ -144,9 +145,9 @@ TEST_F(Follower, BuildsBesideRefits) {
     const auto scene = std::make_shared<const Scene>(posed(*rest_, last));
     std::promise<void> may_end;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
-    follower_.build_beside(from, scene, last, [&](Progress& progress) {
+    follower_.build_beside(from, scene, last, [&](const Scene& of, Progress& progress) {
         may_end.get_future().wait();
-        return std::make_shared<const AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress));
+        return std::make_shared<const AccelData>(build_accel(of, plugin, default_parameters(plugin), progress));
     });
     EXPECT_FALSE(follower_.wants_build_beside(from, last, Way::automatic)) << "one at a time";
     for (int i = 0; i < 3; ++i) {
@@ -157,7 +158,7 @@ TEST_F(Follower, BuildsBesideRefits) {
     const float before = follower_.update().cost_ratios.back();
     EXPECT_GT(before, 2);
     may_end.set_value();
-    PoseFollower::Built built;
+    BuiltPose built;
     while (!built.accel) built = follower_.take_build(from);
     EXPECT_EQ(built.scene, scene);
     follower_.built(from, built.scene, built.pose, built.accel, make_host_mover(built.scene, built.accel));
@@ -167,9 +168,59 @@ TEST_F(Follower, BuildsBesideRefits) {
     EXPECT_EQ(follower_.structure()->scene.bounds.max, posed(*rest_, mixed(0.4f)).bounds().max);
 }
 
+// A clip of vertex frames: its mesh is mixed up at first, and in order from a tenth of the clip on. The first tree suits the
+// first pose only.
+TEST_F(Follower, ChoosesTheTreeOfAClipAmongSeveralPoses) {
+    Scene scene = *rest_;
+    Motion& motion = scene.motion;
+    motion.frames = {{0, 0, 0, 3, 0}};
+    for (const double time_s : {0.0, 0.1, 1.0}) motion.frame_times.push_back(time_s);
+    for (const Pose& pose : {mixed(0), leaning(0), leaning(1)})
+        for (const float value : pose.meshes[0].positions) motion.frame_positions.push_back(value);
+    motion.clips.push_back({"walk", 0, 0, 1, 0, 1, 24});
+    motion.layers.push_back({RT_LAYER_REPLACES, 0, 1});
+    rest_ = shared_scene(std::move(scene));
+    const PosedFrom from{rest_, "walk"};
+    EXPECT_FALSE(show(evaluate(*rest_, "walk", 0)));
+    EXPECT_TRUE(show(evaluate(*rest_, "walk", 0.8)));
+    ASSERT_TRUE(follower_.wants_choice(from));
+    EXPECT_FALSE(follower_.wants_choice({rest_, "run"})) << "nothing is shown of it";
+    const double first = follower_.structure()->stat("sah_cost");
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
+    int builds = 0;
+    follower_.choose_beside(from, rest_, [&](const Scene& of, Progress& progress) {
+        ++builds;
+        return std::make_shared<const AccelData>(build_accel(of, plugin, default_parameters(plugin), progress));
+    });
+    EXPECT_FALSE(follower_.wants_choice(from)) << "once";
+    BuiltPose built;
+    while (!built.accel) built = follower_.take_build(from);
+    EXPECT_EQ(builds, 5);
+    follower_.built(from, built.scene, built.pose, built.accel, make_host_mover(built.scene, built.accel));
+    EXPECT_TRUE(show(evaluate(*rest_, "walk", 0.8)));
+    EXPECT_LT(follower_.structure()->stat("sah_cost"), 0.5 * first);
+    EXPECT_FALSE(follower_.wants_choice(from));
+    // It is the best of the five.
+    const auto cost_of = [&](double time_s) {
+        const Pose at = evaluate(*rest_, "walk", time_s);
+        const auto there = std::make_shared<const Scene>(posed(*rest_, at));
+        MovingAccel moving(
+            there, std::make_shared<const AccelData>(build_accel(*there, plugin, default_parameters(plugin), progress_)));
+        double sum = 0;
+        for (const double t : {0.1, 0.3, 0.5, 0.7, 0.9})
+            sum += moving.move(evaluate(*rest_, "walk", t), progress_).accel->stat("sah_cost");
+        return sum;
+    };
+    MovingAccel chosen(built.scene, built.accel);
+    double sum = 0;
+    for (const double t : {0.1, 0.3, 0.5, 0.7, 0.9})
+        sum += chosen.move(evaluate(*rest_, "walk", t), progress_).accel->stat("sah_cost");
+    for (const double t : {0.1, 0.5, 0.9}) EXPECT_LE(sum, cost_of(t) * (1 + 1e-6)) << t;
+}
+
 TEST_F(Follower, ABuildBesideEndsWithTheFollower) {
     const PosedFrom from{rest_, "walk"};
-    const auto until_cancelled = [](Progress& progress) -> std::shared_ptr<const AccelData> {
+    const auto until_cancelled = [](const Scene&, Progress& progress) -> std::shared_ptr<const AccelData> {
         while (!progress.cancelled()) std::this_thread::yield();
         throw Cancelled();
     };
@@ -178,8 +229,9 @@ TEST_F(Follower, ABuildBesideEndsWithTheFollower) {
     follower_.reset();
     follower_.build_beside(from, rest_, leaning(0), until_cancelled);
     EXPECT_EQ(follower_.take_build({rest_, "run"}).accel, nullptr) << "another clip plays";
-    follower_.build_beside(from, rest_, leaning(0),
-                           [](Progress&) -> std::shared_ptr<const AccelData> { throw Error(Exit::failed, "no memory"); });
+    follower_.build_beside(from, rest_, leaning(0), [](const Scene&, Progress&) -> std::shared_ptr<const AccelData> {
+        throw Error(Exit::failed, "no memory");
+    });
     const auto throws = [&] {
         while (!follower_.take_build(from).accel) std::this_thread::yield();
     };
