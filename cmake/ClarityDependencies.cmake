@@ -1,6 +1,5 @@
 # Finds the libraries that Clarity uses, each through its imported target. The libraries in the first part are required. If one of
 # the others is missing, the part of Clarity that needs it is left out, and the report at the end of the configuration says so.
-set(CLARITY_LEFT_OUT "")
 function(clarity_left_out what why)
   set(CLARITY_LEFT_OUT "${CLARITY_LEFT_OUT};${what}: ${why}" CACHE INTERNAL "")
 endfunction()

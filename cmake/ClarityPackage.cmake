@@ -26,7 +26,8 @@ target_link_options(clarity PRIVATE -Wl,--disable-new-dtags)
 set(CPACK_GENERATOR DEB TGZ)
 set(CPACK_PACKAGE_NAME clarity)
 set(CPACK_PACKAGE_VENDOR Clarity)
-set(CPACK_PACKAGE_CONTACT "Clarity <clarity@localhost>")
+# Debian wants an address. The project has none for mail; the domain `invalid` says so (RFC 2606).
+set(CPACK_PACKAGE_CONTACT "Clarity maintainers <maintainers@clarity.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray-tracing workbench on OpenCL")
 set(CPACK_PACKAGE_DESCRIPTION "Clarity renders scenes by ray tracing on GPUs, or on CPUs through PoCL. Its window shows what structures and
 settings cost while it traces. The package has the program, its importers and structures, the SDK for more of

@@ -3,7 +3,9 @@
 #include <xxhash.h>
 
 #include <cstdio>
+#include <fstream>
 #include <new>
+#include <vector>
 
 namespace clarity {
 
@@ -38,6 +40,18 @@ std::string digest_of(const std::string& content) {
     Digest digest;
     digest.add_bytes(content.data(), content.size());
     return digest.hex();
+}
+
+std::string digest_of_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return {};
+    Digest digest;
+    std::vector<char> piece(size_t(1) << 20);
+    do {
+        file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        digest.add_bytes(piece.data(), size_t(file.gcount()));
+    } while (file);
+    return file.bad() ? std::string() : digest.hex();
 }
 
 }  // namespace clarity

@@ -39,5 +39,7 @@ class Digest {
 
 // The digest of a whole content.
 std::string digest_of(const std::string& content);
+// The same of a file, which is read piece by piece; empty if it cannot be read.
+std::string digest_of_file(const std::string& path);
 
 }  // namespace clarity

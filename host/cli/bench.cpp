@@ -43,7 +43,8 @@ BenchRequest make_request(const BenchCommand& command) {
     }
     request.settings.insert(request.settings.end(), command.settings.begin(), command.settings.end());
     for (const auto& [key, value] : request.settings) {
-        const bool whole = request.suites == std::vector<std::string>{"devices"};
+        const bool whole =
+            request.suites == std::vector<std::string>{"devices"} || request.suites == std::vector<std::string>{"mpi"};
         if (key == "spp" && value != "1" && !whole)
             throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed; leave it out");
         if (key == "aov" && value != "color")
@@ -52,6 +53,8 @@ BenchRequest make_request(const BenchCommand& command) {
     request.only = command.only;
     request.breakdown = command.breakdown;
     request.max_triangles = command.max_triangles;
+    if (!command.ranks.empty()) request.ranks = command.ranks;
+    if (!command.mpirun.empty()) request.mpirun = command.mpirun;
     request.time_limit_s = command.time_limit_s;
     request.baselines = !command.no_baselines;
     return request;
@@ -125,8 +128,9 @@ void write(const BenchCommand& command, const BenchReport& report, RowsFile* row
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && !request.breakdown && command.join_files.empty())
-        throw Error(Exit::usage,
-                    "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, moving, quick) or a scene file");
+        throw Error(
+            Exit::usage,
+            "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, mpi, moving, quick) or a scene file");
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {

@@ -224,7 +224,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("what", bench.what,
                    "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
                    "triangles), cpu (side by side with the best of each peer), devices (one picture by one, two, ... of "
-                   "--device), moving (refits and rebuilds while all vertices move), quick (a minute); or scene files, with a "
+                   "--device), mpi (one picture by 1, 2, 4 processes that mpirun starts), moving (refits and rebuilds while "
+                   "all vertices move), quick (a minute); or scene files, with a "
                    "suite: instead of its own")
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
@@ -259,6 +260,14 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suites scale and large"))
         ->type_name("N")
         ->capture_default_str();
+    app.add_option("--ranks", bench.ranks, "Of suite mpi: how many processes share a picture, one number a row; default: 1,2,4")
+        ->type_name("N[,N...]")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1u, 4096u));
+    single(app.add_option("--mpirun", bench.mpirun,
+                          "Of suite mpi: what starts them, with its options; default: mpirun --bind-to none --oversubscribe"))
+        ->type_name("COMMAND");
     app.add_option("--search-path", bench.import.search_paths,
                    "A folder which the scene may read files from, besides its own; may be repeated")
         ->type_name("DIR")

@@ -107,6 +107,8 @@ struct BenchCommand {
     std::vector<std::string> only;
     bool breakdown = false;
     uint64_t max_triangles = 10'000'000;
+    std::vector<unsigned> ranks;  // of suite mpi; empty: the suite's own
+    std::string mpirun;           // the same
     import::ImportOptions import;
     std::string text;  // the command line as typed
 };

@@ -88,6 +88,29 @@ TEST_F(Frames, TheDigestIsThatOfThePicture) {
     EXPECT_NE(digest({}), plain);
 }
 
+// While the shutter is open, files 4 to 12 of a sequence are seen.
+TEST_F(Frames, DigestHoldsEveryFileThatASampleShows) {
+    const auto write = [&](int number, float x) {
+        scratch_.write("walk_" + std::to_string(number) + ".obj",
+                       "v " + std::to_string(x) + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    };
+    for (int number = 1; number <= 16; ++number) write(number, float(number) / 16);
+    scratch_.write("moving.scene", "camera main eye 0 0 9\nload \"walk_#.obj\"\n");
+    const auto digest = [&] {
+        EXPECT_EQ(render("s_#.pfm", {"--frames", "1", "--shutter", "1", "--spp", "8"}).exit_code, 0);
+        return record("s_1.json")["digest"].get<std::string>();
+    };
+    const std::string plain = digest();
+    write(15, 0);
+    EXPECT_EQ(digest(), plain) << "the picture does not show this file";
+    for (const int number : {4, 6, 10, 12}) {
+        write(number, -1);
+        EXPECT_NE(digest(), plain) << number;
+        write(number, float(number) / 16);
+    }
+    EXPECT_EQ(digest(), plain);
+}
+
 TEST_F(Frames, AShareIsEveryNth) {
     ASSERT_EQ(render("a_##.png", {"--frames", "1-9/2"}).exit_code, 0);
     ASSERT_EQ(render("b_##.png", {"--frames", "1-9/2", "--frames-of", "2/3"}).exit_code, 0);

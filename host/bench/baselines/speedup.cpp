@@ -14,7 +14,7 @@ bool measured(const BenchRecord& record) {
 // True if whole pictures were timed: their speed is computed from wall time.
 bool is_picture(const BenchRecord& record) {
     const std::string& m = record.measure;
-    return m == "frame" || m == "whitted" || m == "picture" || m == "moving";
+    return m == "frame" || m == "whitted" || m == "picture" || m == "ranks" || m == "moving";
 }
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -73,6 +73,11 @@ std::string ratio_text(double ratio, double spread, const char* same) {
     char text[16];
     std::snprintf(text, sizeof text, "%.2f", ratio);
     return text;
+}
+
+void compare_with_first(std::vector<BenchRecord>& rows) {
+    for (size_t i = 1; i < rows.size(); ++i)
+        if (measured(rows[i]) && measured(rows[0])) rows[i].speedup = speedup(rows[i], rows[0]);
 }
 
 void compare_with_baselines(std::vector<BenchRecord>& rows) {

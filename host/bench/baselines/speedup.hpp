@@ -35,6 +35,9 @@ std::string ratio_text(double ratio, double spread, const char* same);
 // with the fastest row of any baseline.
 void compare_with_baselines(std::vector<BenchRecord>& rows);
 
+// Sets `speedup` of all rows but the first, which they are compared with.
+void compare_with_first(std::vector<BenchRecord>& rows);
+
 // Speed-up of one structure on one device over the scenes of a suite.
 struct SpeedupMean {
     std::string suite, variant, device_id, measure;

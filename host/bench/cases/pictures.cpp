@@ -81,16 +81,6 @@ void check_picture(Team& team, const FloatImage& truth, const FloatImage& pictur
     team.row.why = why;
 }
 
-// Compares each row with the row of one device.
-void compare_with_one(std::vector<BenchRecord>& rows) {
-    const BenchRecord* one = nullptr;  // the first row
-    for (BenchRecord& row : rows) {
-        if (!one) one = &row;
-        if (&row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;
-        row.speedup = speedup(row, *one);
-    }
-}
-
 }  // namespace
 
 std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
@@ -152,7 +142,7 @@ std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry
         }
         std::vector<BenchRecord> own;
         for (const auto& team : teams) own.push_back(std::move(team->row));
-        compare_with_one(own);
+        compare_with_first(own);
         rows.insert(rows.end(), own.begin(), own.end());
     }
     return rows;

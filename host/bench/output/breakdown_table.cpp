@@ -25,7 +25,7 @@ double sum_of(const Parts& parts) {
 std::string breakdown_table(const BenchReport& report) {
     const BenchRecord* some = nullptr;
     for (const BenchRecord& r : report.records)
-        if (!some && r.status == RowStatus::ok && !r.parts_ms.empty()) some = &r;
+        if (!some && r.status == RowStatus::ok && r.measure == "breakdown" && !r.parts_ms.empty()) some = &r;
     if (!some) return {};
     std::vector<std::string> head = {"scene", "structure", "frame ms"};
     for (const auto& [name, ms] : some->parts_ms) head.push_back(name);
@@ -34,7 +34,7 @@ std::string breakdown_table(const BenchReport& report) {
     for (const auto& [name, ms] : some->within_ms) within_head.push_back(name);
     TextTable table(head, 2), within(within_head, 2);
     for (const BenchRecord& r : report.records) {
-        if (r.status != RowStatus::ok || r.parts_ms.size() != some->parts_ms.size()) continue;
+        if (r.status != RowStatus::ok || r.measure != "breakdown" || r.parts_ms.size() != some->parts_ms.size()) continue;
         const double all = sum_of(r.parts_ms);
         std::vector<std::string> cells = {r.scene, r.variant, short_number(all)}, in = {r.scene, r.variant};
         for (const auto& [name, ms] : r.parts_ms) cells.push_back(share_text(ms, all));

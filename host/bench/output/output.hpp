@@ -19,6 +19,8 @@ BenchReport read_bench_json(const std::string& text);
 std::string bench_table(const BenchReport& report);
 // Part of bench_table(): where the time of frames goes.
 std::string breakdown_table(const BenchReport& report);
+// Part of bench_table(): pictures rendered by ranks of MPI, and where their time goes.
+std::string ranks_table(const BenchReport& report);
 // Part of bench_table(): pictures rendered by several devices, compared with those of one.
 std::string devices_table(const BenchReport& report);
 // Part of bench_table(): models that move.

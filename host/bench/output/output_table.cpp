@@ -12,12 +12,6 @@
 namespace clarity::bench {
 namespace {
 
-std::string percent(double share) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%.1f", 100 * share);
-    return text;
-}
-
 bool shown(const BenchRecord& r) {
     return r.status == RowStatus::ok && r.time_ms.n > 0;
 }
@@ -261,7 +255,7 @@ std::string left_out(const BenchReport& report) {
 std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
            accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + speedup_table(report) +
-           breakdown_table(report) + devices_table(report) + moving_table(report) + policy_table(report) +
+           breakdown_table(report) + devices_table(report) + ranks_table(report) + moving_table(report) + policy_table(report) +
            analysis_table(report) + dropped_table(report) + left_out(report);
 }
 

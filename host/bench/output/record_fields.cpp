@@ -242,6 +242,8 @@ const Fields<BenchRecord>& record_fields() {
         nested<Speedup>("versus", &R::speedup, versus_fields, [](const Speedup& v) { return !v.baseline.empty(); }),
         nested<Played>("animation", &R::animation, played_fields, [](const Played& p) { return p.total_ms > 0; }),
         count_of(nested<Analysis>("analysis", &R::analysis, analysis_fields, [](const Analysis& a) { return a.present; })),
+        count_of(unless_empty("ranks", &R::ranks)),
+        figure_of(unless_empty("efficiency", &R::efficiency)),
         parts("parts_ms", &R::parts_ms),
         parts("within_ms", &R::within_ms),
         figure_of<R>({"parts_error_ms", [](const R& r) { return r.parts_ms.empty() ? Json() : number_json(r.parts_error_ms); },

@@ -50,4 +50,10 @@ std::string short_number(double value) {
     return text;
 }
 
+std::string percent(double share) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%.1f", 100 * share);
+    return text;
+}
+
 }  // namespace clarity::bench

@@ -12,6 +12,7 @@
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/case_runner.hpp"
 #include "bench/cases/entry.hpp"
+#include "bench/cases/ranks.hpp"
 #include "bench/run/failure.hpp"
 #include "bench/run/fixture.hpp"
 #include "bench/run/machine.hpp"
@@ -36,7 +37,7 @@ std::string row_text(const BenchRecord& row) {
         std::snprintf(text, sizeof text, "%.3f ms, %.1f fps", row.wall_ms.median, row.fps);
     else if (row.rays() == 0)
         std::snprintf(text, sizeof text, "%.3f ms, %.1f fps", row.time_ms.median, row.fps);
-    else if (row.measure == "frame" || row.measure == "picture")
+    else if (row.measure == "frame" || row.measure == "picture" || row.measure == "ranks")
         std::snprintf(text, sizeof text, "%.3f ms, %.1f fps, %.1f Mrays/s", row.time_ms.median, row.fps, row.mrays_per_s);
     else
         std::snprintf(text, sizeof text, "%.3f ms, %.1f Mrays/s", row.time_ms.median, row.mrays_per_s);
@@ -70,7 +71,7 @@ class Session {
             char stage[32];
             std::snprintf(stage, sizeof stage, "%zu/%zu ", i + 1, suite_.cases.size());
             progress_.stage(stage + c.suite + " " + c.name);
-            if (c.scene != loaded) {
+            if (c.scene != loaded && c.measure != "ranks") {  // ranks load it themselves
                 if (!load(c, report)) {
                     while (i + 1 < suite_.cases.size() && suite_.cases[i + 1].scene == c.scene) ++i;
                     continue;
@@ -104,6 +105,8 @@ class Session {
     // reason.
     std::vector<BenchRecord> measure(const BenchCase& c, const MeasureRules& rules) {
         try {
+            if (c.measure == "ranks")
+                return measure_ranks(suite_.scenes[c.scene].source, plugins_, request_, c, options_, rules, progress_);
             return run_case(fixture_, plugins_, request_, c, rules, progress_);
         } catch (const Cancelled&) {
             throw;

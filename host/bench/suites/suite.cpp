@@ -25,6 +25,10 @@ std::string size_name(uint64_t count) {
     return count >= 1'000'000 ? std::to_string(count / 1'000'000) + "M" : std::to_string(count / 1'000) + "k";
 }
 
+bool ends_with_gz(const std::string& file) {
+    return file.size() > 3 && file.compare(file.size() - 3, 3, ".gz") == 0;
+}
+
 class Planner {
  public:
     Planner(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins)
@@ -62,6 +66,7 @@ class Planner {
         if (name == "large") return large();
         if (name == "cpu") return cpu();
         if (name == "devices") return devices();
+        if (name == "mpi") return mpi();
         if (name == "moving") return moving();
         if (name == "policy") return policy();
         if (name == "quick") return quick();
@@ -295,13 +300,14 @@ class Planner {
             }
     }
 
+    // Sets what the user has not.
+    void usual(Variant& variant, const char* key, const char* value) const {
+        const auto is_key = [&](const auto& pair) { return pair.first == key; };
+        if (std::none_of(request_.settings.begin(), request_.settings.end(), is_key)) variant.settings.emplace_back(key, value);
+    }
+
     // One picture by one device, by two devices, and so on. Without --accel, the default structure of the devices is used.
     void devices() {
-        const auto usual = [&](Variant& variant, const char* key, const char* value) {
-            const auto is_key = [&](const auto& pair) { return pair.first == key; };
-            if (std::none_of(request_.settings.begin(), request_.settings.end(), is_key))
-                variant.settings.emplace_back(key, value);
-        };
         std::vector<BenchScene> own = {catalog_.project("thesis/aim_100k")};
         for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
         const std::vector<size_t> scenes = chosen_or(own);
@@ -323,6 +329,27 @@ class Planner {
                     variant.overlapped = overlapped;
                     moving.variants.push_back(variant);
                 }
+        }
+    }
+
+    // One picture by the ranks that mpirun starts. They read the files themselves, which must therefore not be packed.
+    void mpi() {
+        std::vector<BenchScene> own = {catalog_.project("thesis/aim_100k")};
+        for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
+        for (BenchScene& scene : own)
+            for (const std::string& file : scene.files)
+                if (scene.missing.empty() && ends_with_gz(file))
+                    scene.missing = scene.name + ": ranks do not read .gz; unpack it and name the file";
+        const std::vector<size_t> scenes = chosen_or(own);
+        limit(120.0 * double(scenes.size()));
+        for (const size_t scene : scenes) {
+            BenchCase& c = add_case("mpi", scene, "ranks", "ranks");
+            c.variants = {{"", "", {}, false}};
+            if (!request_.accels.empty()) c.variants = every_accel();
+            for (Variant& variant : c.variants) {
+                usual(variant, "size", "1920x1080");
+                usual(variant, "spp", "16");
+            }
         }
     }
 
@@ -430,8 +457,8 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale",  "large",
-                                                   "cpu",    "devices", "moving", "policy", "quick"};
+    static const std::vector<std::string> names = {"thesis",  "packets", "accel",  "scale",  "large", "cpu",
+                                                   "devices", "mpi",     "moving", "policy", "quick"};
     return names;
 }
 

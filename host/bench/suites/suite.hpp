@@ -11,15 +11,17 @@ namespace clarity::bench {
 
 // A request of the command line.
 struct BenchRequest {
-    std::vector<std::string> suites;                            // from suite_names()
-    std::vector<std::string> files;                             // scenes which replace a suite's own; without a suite: accel
-    std::vector<std::string> accels;                            // ID[,key=value...]; empty: all structures found
-    std::vector<std::pair<std::string, std::string>> settings;  // key, value; for all variants which do not set the key
-    std::vector<std::string> only;                              // keeps cases with one of these in their name; empty: all
-    uint64_t max_triangles = 10'000'000;                        // largest model of the suites scale and large
-    double time_limit_s = 0;                                    // of the whole run; 0: the sum of the suites' own limits
-    bool baselines = true;                                      // measure the baselines too
-    bool breakdown = false;                                     // measure the parts of a frame's time, besides the suites
+    std::vector<std::string> suites;                               // from suite_names()
+    std::vector<std::string> files;                                // scenes which replace a suite's own; without a suite: accel
+    std::vector<std::string> accels;                               // ID[,key=value...]; empty: all structures found
+    std::vector<std::pair<std::string, std::string>> settings;     // key, value; for all variants which do not set the key
+    std::vector<std::string> only;                                 // keeps cases with one of these in their name; empty: all
+    std::vector<unsigned> ranks = {1, 2, 4};                       // of suite mpi: numbers of processes
+    std::string mpirun = "mpirun --bind-to none --oversubscribe";  // starts them: a program and its options
+    uint64_t max_triangles = 10'000'000;                           // largest model of the suites scale and large
+    double time_limit_s = 0;                                       // of the whole run; 0: the sum of the suites' own limits
+    bool baselines = true;                                         // measure the baselines too
+    bool breakdown = false;                                        // measure the parts of a frame's time, besides the suites
 };
 
 struct SuiteScene {
@@ -44,7 +46,7 @@ enum class Timing { timed, counted_only };
 struct BenchCase {
     std::string suite, name;
     std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
-                          // moving | refit | rebuild | object | clip | play
+                          // ranks | moving | refit | rebuild | object | clip | play
     size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene

@@ -18,7 +18,7 @@ void record_frame(const RenderOptions& options, const FrameFile& file, const std
     record.picture = std::filesystem::path(file.path).filename().string();
     record.digest = file.digest;
     record.pixels = pixels;
-    record.file_digest = file_digest(file.path);
+    record.file_digest = digest_of_file(file.path);
     record.seconds = seconds_since(file.begin);
     record.samples = file.samples;
     record.of_checkpoint = file.of_checkpoint;

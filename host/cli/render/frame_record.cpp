@@ -1,7 +1,6 @@
 #include "cli/render/frame_record.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/digest.hpp"
@@ -119,18 +118,6 @@ FrameRecord read_record(const std::string& path) {
     }
 }
 
-std::string file_digest(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return {};
-    Digest digest;
-    std::vector<char> piece(size_t(1) << 20);
-    do {
-        file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-        digest.add_bytes(piece.data(), size_t(file.gcount()));
-    } while (file);
-    return file.bad() ? std::string() : digest.hex();
-}
-
 bool is_rendered(const std::string& picture, const std::string& digest) {
     const std::string path = record_path(picture);
     std::error_code error;
@@ -138,7 +125,7 @@ bool is_rendered(const std::string& picture, const std::string& digest) {
     try {
         const FrameRecord record = read_record(path);
         return record.picture == std::filesystem::path(picture).filename().string() && record.digest == digest &&
-               record.file_digest == file_digest(picture);
+               record.file_digest == digest_of_file(picture);
     } catch (const Error&) {  // a damaged record is as good as none
         return false;
     }

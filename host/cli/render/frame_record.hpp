@@ -27,8 +27,6 @@ void write_record(const FrameRecord& record, const std::string& path);
 // Throws Error(failed), which says why the file is no record.
 FrameRecord read_record(const std::string& path);
 
-// Digest of a file's content; empty if it cannot be read.
-std::string file_digest(const std::string& path);
 // Whether there is a whole picture of this digest: its record names it, and the file is the one that the record was written
 // for.
 bool is_rendered(const std::string& picture, const std::string& digest);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 #include <utility>
 
 #include "base/digest.hpp"
 #include "cli/pose_options.hpp"
 #include "import/scene_digest.hpp"
+#include "scene/motion/file_sequence.hpp"
+#include "scene/motion/shutter.hpp"
 
 namespace clarity {
 namespace {
@@ -66,14 +69,15 @@ void FrameScene::describe(Digest& digest, std::optional<int> frame) {
     digest.add_value(time_s);
     digest.add_value(open_s);
     if (imported_->motion.sequences.empty()) return;
-    // The scene knows the numbers of a sequence's files only. Those that the picture shows are read.
-    for (const double at : {time_s - open_s / 2, time_s, time_s + open_s / 2}) {
-        for (const PosedMesh& mesh : evaluate(*imported_, clip.name, at, std::ref(sequences_)).meshes) {
-            digest.add_value(mesh.mesh);
-            digest.add_bytes(mesh.positions.data(), mesh.positions.size() * sizeof(float));
-            digest.add_bytes(mesh.normals.data(), mesh.normals.size() * sizeof(float));
-        }
-        if (open_s == 0) break;
+    // The scene knows the numbers of a sequence's files only. Those that any sample of the picture shows are read.
+    const Shutter shutter{time_s, open_s, static_cast<unsigned>(words_.settings.spp)};
+    std::set<std::string> files;
+    for (unsigned sample = 0; sample < shutter.samples; ++sample)
+        add_sequence_files(*imported_, sample_time(shutter, sample), files);
+    for (const std::string& file : files) {
+        const std::vector<float> positions = sequences_(file);
+        digest.add_value(positions.size());
+        digest.add_bytes(positions.data(), positions.size() * sizeof(float));
     }
 }
 

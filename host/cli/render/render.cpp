@@ -16,7 +16,6 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
-#include "base/statistics.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -251,18 +250,22 @@ class RenderJob {
     void import(Progress& progress) {
         const auto begin = Clock::now();
         const auto import = [&] {
-            return import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress);
+            Scene scene = import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress);
+            stats_.import_ms = ms_since(begin);
+            return scene;
         };
         scene_.take(std::make_shared<const Scene>(mpi_ ? mpi_->share_scene(import) : import()));
-        stats_.import_ms = ms_since(begin);
+        stats_.share_ms = ms_since(begin) - stats_.import_ms;
     }
 
     void prepare(Progress& progress) {
+        const auto begin = Clock::now();
         if (!preparer_) preparer_ = std::make_unique<MultiPreparer>(plugins_, devices_);
         blur_.reset();
         prepared_ = preparer_->prepare(scene_.scene(), settings_, progress);
         stats_.prepared = prepared_->first();
         blur_ = scene_.blur(prepared_, *preparer_);
+        stats_.prepare_ms = ms_since(begin);
         const Prepared& prepared = *stats_.prepared;
         char line[160];
         std::snprintf(line, sizeof line, "import %.0f ms, build %.0f ms, upload %.0f ms, compile %.0f ms%s", stats_.import_ms,
@@ -286,6 +289,7 @@ class RenderJob {
         PictureCheckpoint checkpoint(options_, frame.number, frame.digest, way_of_tracing(stats_.devices, *stats_.prepared),
                                      all, mpi_);
         resumed_ = 0;
+        if (mpi_) gather_prepare_times(stats_, *mpi_);
         if (mpi_) say_at_deadline(words_of_rank(checkpoint));
         // The first pass counts rays, which costs a little time, and warms up caches; timed passes come after it.
         const bool warm_up = options_.repeat > 1;
@@ -350,7 +354,7 @@ class RenderJob {
     }
 
     void write(MultiFrameRenderer& frames, const Frame& frame, const std::string& path, Progress& progress) {
-        if (mpi_) gather_stats();
+        if (mpi_) gather_frame_times(stats_, *mpi_);
         const auto all_done = Clock::now();
         FramePixels pixels;
         if (writes_display(path))
@@ -373,20 +377,6 @@ class RenderJob {
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
         log(LogLevel::info, path + times);
-    }
-
-    // Waits until all ranks have traced their parts.
-    void gather_stats() {
-        const std::vector<double> device_ms = mpi_->gather(median(stats_.frame_ms)),
-                                  wall_ms = mpi_->gather(median(stats_.wall_ms));
-        stats_.ranks.clear();
-        for (size_t r = 0; r < wall_ms.size(); ++r) stats_.ranks.push_back({device_ms[r], wall_ms[r]});
-        for (uint64_t* const count :
-             {&stats_.primary, &stats_.shadow, &stats_.secondary, &stats_.dropped, &stats_.overflowed}) {
-            double sum = 0;
-            for (const double of_rank : mpi_->gather(double(*count))) sum += of_rank;
-            *count = static_cast<uint64_t>(sum);
-        }
     }
 
     void report() {

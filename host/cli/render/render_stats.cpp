@@ -1,8 +1,10 @@
 #include "cli/render/render_stats.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "base/elapsed.hpp"
 #include "base/statistics.hpp"
 
 namespace clarity {
@@ -65,6 +67,29 @@ double mrays_per_s(const RenderStats& stats) {
     return ms > 0 ? double(stats.primary + stats.shadow + stats.secondary) / ms / 1000 : 0;
 }
 
+void gather_prepare_times(RenderStats& stats, Ranks& ranks) {
+    const auto begin = std::chrono::steady_clock::now();
+    stats.ranks.clear();
+    for (const double ms : ranks.gather(stats.prepare_ms)) stats.ranks.push_back({ms, 0, 0});
+    stats.wait_to_trace_ms = ms_since(begin);
+}
+
+void gather_frame_times(RenderStats& stats, Ranks& ranks) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::vector<double> device_ms = ranks.gather(median(stats.frame_ms));
+    stats.wait_traced_ms = ms_since(begin);
+    const std::vector<double> wall_ms = ranks.gather(median(stats.wall_ms));
+    for (size_t r = 0; r < wall_ms.size(); ++r) {
+        stats.ranks[r].frame_ms = device_ms[r];
+        stats.ranks[r].wall_ms = wall_ms[r];
+    }
+    for (uint64_t* const count : {&stats.primary, &stats.shadow, &stats.secondary, &stats.dropped, &stats.overflowed}) {
+        double sum = 0;
+        for (const double of_rank : ranks.gather(double(*count))) sum += of_rank;
+        *count = static_cast<uint64_t>(sum);
+    }
+}
+
 std::string stats_json(const RenderStats& stats) {
     const Prepared& prepared = *stats.prepared;
     const AccelData& accel = *prepared.accel;
@@ -91,7 +116,12 @@ std::string stats_json(const RenderStats& stats) {
     json["frame_wall_ms"] = times_json(stats.wall_ms);
     if (!stats.ranks.empty()) {
         for (const RankTimes& rank : stats.ranks)
-            json["ranks"].push_back({{"frame_ms", rounded(rank.frame_ms)}, {"frame_wall_ms", rounded(rank.wall_ms)}});
+            json["ranks"].push_back({{"prepare_ms", rounded(rank.prepare_ms)},
+                                     {"frame_ms", rounded(rank.frame_ms)},
+                                     {"frame_wall_ms", rounded(rank.wall_ms)}});
+        json["share_ms"] = rounded(stats.share_ms);
+        json["prepare_ms"] = rounded(stats.prepare_ms);
+        json["wait_ms"] = {{"to_trace", rounded(stats.wait_to_trace_ms)}, {"traced", rounded(stats.wait_traced_ms)}};
         json["collect_ms"] = rounded(stats.collect_ms);
     }
     json["build_ms"] = rounded(accel.build_ms);

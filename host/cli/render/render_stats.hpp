@@ -5,11 +5,13 @@
 
 #include "render/frame/frame_stats.hpp"
 #include "render/multi/multi_preparer.hpp"
+#include "render/multi/ranks.hpp"
 
 namespace clarity {
 
 // One of several processes that share pictures (--mpi).
 struct RankTimes {
+    double prepare_ms = 0;             // until it had structure, buffers and program
     double frame_ms = 0, wall_ms = 0;  // of its part of a frame, medians: by the clock of its devices, of its host
 };
 
@@ -22,11 +24,19 @@ struct RenderStats {
     double import_ms = 0;
     double first_picture_ms = 0;            // from the start of the command until the first picture is in memory
     std::vector<double> frame_ms, wall_ms;  // one entry per timed frame with all its samples: device clock, host clock
-    std::vector<RankTimes> ranks;           // empty: one process renders
-    double collect_ms = 0;                  // from the moment that all ranks are done until the first one has the last picture
+    double prepare_ms = 0;                  // of structure, buffers and program together
+    // Of several ranks; times are those of the first one. share_ms: from the end of the import until all had the scene.
+    // wait_to_trace_ms: until the others could trace, too; wait_traced_ms: until they had traced the last picture. collect_ms:
+    // from then on until the first one had the picture.
+    std::vector<RankTimes> ranks;  // empty: one process renders
+    double share_ms = 0, wait_to_trace_ms = 0, wait_traced_ms = 0, collect_ms = 0;
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, overflowed = 0;  // of one frame
 };
 
+// Waits until all ranks can trace, so that this wait is no part of a picture's time, and fills in stats.ranks.
+void gather_prepare_times(RenderStats& stats, Ranks& ranks);
+// Waits until all ranks have traced their parts, and fills in their times; rays become those of all.
+void gather_frame_times(RenderStats& stats, Ranks& ranks);
 // The statistics as JSON, which ends in a newline. Its keys never change; new ones may come.
 std::string stats_json(const RenderStats& stats);
 // Median of frame_ms; 0 if nothing was timed.

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/files/temporary_folder.hpp"
 #include "base/printable.hpp"
@@ -16,7 +17,7 @@ namespace {
 std::string difference(const PluginRegistry& plugins, const RenderOptions& asked, const std::string& path) {
     const FrameRecord record = read_record(path);
     const std::string picture = (std::filesystem::path(path).parent_path() / record.picture).string();
-    const std::string found = file_digest(picture);
+    const std::string found = digest_of_file(picture);
     if (found.empty()) return picture + " is missing or cannot be read";
     if (found != record.file_digest) return picture + " is not the file that was recorded: it was changed or damaged";
     const TemporaryFolder folder("clarity-verify");
