@@ -11,6 +11,7 @@
 #include "bench/output/row.hpp"
 #include "bench/run/failure.hpp"
 #include "bench/run/rank_run.hpp"
+#include "render/multi/multi_preparer.hpp"
 
 namespace clarity::bench {
 namespace {
