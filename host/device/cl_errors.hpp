@@ -7,6 +7,24 @@
 
 namespace clarity {
 
+// Whether a call fails with this error after the device itself has failed. -9999: NVIDIA's, after a read out of bounds.
+inline bool means_lost(cl_int error) {
+    constexpr cl_int kNvidiaIllegalAccess = -9999;
+    return error == CL_DEVICE_NOT_AVAILABLE || error == CL_INVALID_CONTEXT || error == CL_INVALID_COMMAND_QUEUE ||
+           error == CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST || error == kNvidiaIllegalAccess;
+}
+
+// The message of a failed call. Notes it if the device is lost.
+inline Error error_on(const Device& device, const std::string& doing, const cl::Error& e) {
+    if (means_lost(e.err())) device.loss()->note_failed();
+    if (e.err() == CL_OUT_OF_RESOURCES) device.loss()->note_refused();
+    const bool lost = device.loss()->lost();
+    return Error(Exit::failed, doing + " on " + device.info().name + ": " + e.what() + " failed with OpenCL error " +
+                                   std::to_string(e.err()) +
+                                   (e.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ? " (out of memory)" : "") +
+                                   (lost ? ", after which the device cannot be used until it is opened anew" : ""));
+}
+
 // Calls `work` and returns its result. A cl::Error becomes Error(failed), which names the action (`doing`), the device, the
 // failed OpenCL function and its code.
 template <class Work>
@@ -14,9 +32,7 @@ auto wrap_cl_errors(const Device& device, const char* doing, Work&& work) {
     try {
         return work();
     } catch (const cl::Error& e) {
-        throw Error(Exit::failed, std::string(doing) + " on " + device.info().name + ": " + e.what() +
-                                      " failed with OpenCL error " + std::to_string(e.err()) +
-                                      (e.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ? " (out of memory)" : ""));
+        throw error_on(device, doing, e);
     }
 }
 

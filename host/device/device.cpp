@@ -1,10 +1,12 @@
 #include "device/device.hpp"
 
+#include <utility>
+
 #include "base/error.hpp"
 
 namespace clarity {
 
-Device::Device(DeviceInfo info) : info_(std::move(info)) {
+Device::Device(DeviceInfo info) : info_(std::move(info)), loss_(std::make_shared<DeviceLoss>()) {
     try {
         context_ = cl::Context(info_.cl_device);
         queue_ = cl::CommandQueue(context_, info_.cl_device, CL_QUEUE_PROFILING_ENABLE);
@@ -15,12 +17,17 @@ Device::Device(DeviceInfo info) : info_(std::move(info)) {
     }
 }
 
-Device::Device(DeviceInfo info, cl::Context context) : info_(std::move(info)), context_(std::move(context)) {
+Device::Device(DeviceInfo info, cl::Context context, std::shared_ptr<DeviceLoss> loss)
+    : info_(std::move(info)), loss_(std::move(loss)), context_(std::move(context)) {
     queue_ = cl::CommandQueue(context_, info_.cl_device, CL_QUEUE_PROFILING_ENABLE);
 }
 
+Device::~Device() {
+    if (loss_->stuck()) never_release(std::make_shared<std::pair<cl::Context, cl::CommandQueue>>(context_, queue_));
+}
+
 std::shared_ptr<Device> Device::with_own_queue() const {
-    return std::shared_ptr<Device>(new Device(info_, context_));
+    return std::shared_ptr<Device>(new Device(info_, context_, loss_));
 }
 
 unsigned DeviceInfo::preferred_lanes() const {

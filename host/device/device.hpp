@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "device/device_loss.hpp"
+
 namespace clarity {
 
 // A device that may be opened, or one part of it.
@@ -47,15 +49,21 @@ class Device {
  public:
     // Throws Error(no_device).
     explicit Device(DeviceInfo info);
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
     const DeviceInfo& info() const { return info_; }
     cl::Context& context() { return context_; }
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
+    // Shared by all queues of the context. A device that is lost has to be opened anew.
+    const std::shared_ptr<DeviceLoss>& loss() const { return loss_; }
     // Returns the same device and context with a queue of its own, so that kernels of both queues may run at the same time.
     std::shared_ptr<Device> with_own_queue() const;
 
  private:
-    Device(DeviceInfo info, cl::Context context);
+    Device(DeviceInfo info, cl::Context context, std::shared_ptr<DeviceLoss> loss);
     DeviceInfo info_;
+    std::shared_ptr<DeviceLoss> loss_;
     cl::Context context_;
     cl::CommandQueue queue_;
 };

@@ -217,4 +217,33 @@ TEST_F(Faults, EveryFailureOfACallIsAMessage) {
     }
 }
 
+// A GPU's launch that never ends: nothing can stop it, and releasing anything on the device would wait for it.
+TEST_F(Faults, ALaunchWithoutEndIsGivenUp) {
+    ASSERT_EQ(render("other,gpu").exit_code, 0);
+    for (const char* tracer : {"iterative", "wavefront"})
+        for (const char* from : {"1", "2", "3"}) {
+            fs::remove(scratch_.path("out/a.png"));
+            RunOptions options;
+            options.environment["CLARITY_LAUNCH_LIMIT"] = "1.5";
+            const ProgramResult result = render(std::string("other,gpu,launch-endless=") + from, options, {"--tracer", tracer});
+            EXPECT_EQ(result.exit_code, 1) << tracer << " " << from << ": " << result.err;
+            EXPECT_GT(result.seconds, 1.5);
+            EXPECT_LT(result.seconds, 1.5 + 4.0) << "a compilation, and the limit once";
+            expect_says(result, "has not come to an end on ");
+            expect_says(result, "CLARITY_LAUNCH_LIMIT");
+            EXPECT_FALSE(has_picture());
+        }
+}
+
+TEST_F(Faults, ADeviceThatIsLostIsNamedAsSuch) {
+    ASSERT_EQ(render("other,gpu").exit_code, 0);
+    for (const char* fault : {"enqueue=-2@2", "enqueue=-34@1", "read=-36@1"}) {
+        fs::remove(scratch_.path("out/a.png"));
+        const ProgramResult result = render(std::string("other,gpu,") + fault);
+        EXPECT_EQ(result.exit_code, 1) << fault << ": " << result.err;
+        expect_says(result, "the device cannot be used until it is opened anew");
+        EXPECT_FALSE(has_picture()) << fault;
+    }
+}
+
 }  // namespace

@@ -1,14 +1,17 @@
 /* faulty_icd.c -- an OpenCL driver that forwards to PoCL and misbehaves on demand.
  *
  * All objects of a driver point to its table of functions. This driver loads PoCL, puts its own functions into PoCL's table, and
- * hands out PoCL's platform as its own. CLARITY_FAULT holds words with commas between them:
+ * hands out PoCL's platform as its own. CLARITY_FAULT holds words with commas between them. So does the file that CLARITY_FAULT_FILE
+ * names, if there is one, and it may change while the process runs:
  *   other              the platform has another name, so that it is treated as a driver that gives binaries cheaply
  *   build-hangs, build-crashes, build-exits, build-eats, build-refuses     what clBuildProgram does with a source
  *   build-hangs-late   the first build of a process is in order
  *   binary-flipped     binaries have a wrong byte; clBuildProgram refuses such ones with an error
  *   no-source          clCreateProgramWithSource fails: whoever comes here wanted to compile
  *   enqueue=CODE@N, buffer=CODE@N, read=CODE@N     the N-th launch, buffer, read-back and all after it fail with CODE
- *   launch-hangs       launches take for ever
+ *   launch-hangs       launches take for ever: the call does not return
+ *   gpu                the device says that it is a GPU
+ *   launch-endless=N   the N-th launch and all after it return, but their events never complete, and neither does their queue
  *   read-short         read-backs leave the second half as it was */
 #define _GNU_SOURCE
 #include <CL/cl.h>
@@ -32,10 +35,9 @@ struct _cl_platform_id {
 static cl_icd_dispatch real; /* PoCL's table as it was */
 static const unsigned char wrong_magic = 0xEE;
 
-/* Whether CLARITY_FAULT has the word; `value` gets what follows a '='. */
-static int fault(const char *word, const char **value)
+/* Whether a list has the word; `value` gets what follows a '='. */
+static int listed(const char *at, const char *word, const char **value)
 {
-    const char *at = getenv("CLARITY_FAULT");
     const size_t length = strlen(word);
     for (; at && *at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
         if (strncmp(at, word, length) != 0) continue;
@@ -43,6 +45,18 @@ static int fault(const char *word, const char **value)
         if (at[length] == '=' || at[length] == ',' || at[length] == 0) return 1;
     }
     return 0;
+}
+
+static int fault(const char *word, const char **value)
+{
+    static _Thread_local char text[256];
+    if (listed(getenv("CLARITY_FAULT"), word, value)) return 1;
+    const char *path = getenv("CLARITY_FAULT_FILE");
+    FILE *file = path ? fopen(path, "r") : NULL;
+    if (!file) return 0;
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    return listed(text, word, value);
 }
 
 /* The error of "word=CODE@N" from the N-th call on; calls are counted in *calls. */
@@ -67,6 +81,13 @@ static cl_int CL_API_CALL platform_info(cl_platform_id id, cl_platform_info what
     if (value && bytes < sizeof name) return CL_INVALID_VALUE;
     if (value) memcpy(value, name, sizeof name);
     return CL_SUCCESS;
+}
+
+static cl_int CL_API_CALL device_info(cl_device_id id, cl_device_info what, size_t bytes, void *value, size_t *needed)
+{
+    const cl_int error = real.clGetDeviceInfo(id, what, bytes, value, needed);
+    if (what == CL_DEVICE_TYPE && value && error == CL_SUCCESS && fault("gpu", NULL)) *(cl_device_type *)value = CL_DEVICE_TYPE_GPU;
+    return error;
 }
 
 static int is_source(cl_program program)
@@ -130,6 +151,15 @@ static cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_ui
     static int calls;
     const cl_int error = counted("enqueue", &calls);
     if (fault("launch-hangs", NULL)) hang();
+    const char *from = NULL;
+    static int launches;
+    if (fault("launch-endless", &from) && ++launches >= (from ? atoi(from) : 1)) {
+        cl_context context = NULL;
+        cl_int made = real.clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, NULL);
+        if (made) return made;
+        const cl_event never = real.clCreateUserEvent(context, &made);
+        return made ? made : real.clEnqueueMarkerWithWaitList(queue, 1, &never, event);
+    }
     return error ? error : real.clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, count, wait, event);
 }
 
@@ -167,6 +197,7 @@ static cl_platform_id load(void)
     cl_icd_dispatch *table = platform->dispatch;
     real = *table;
     table->clGetPlatformInfo = platform_info;
+    table->clGetDeviceInfo = device_info;
     table->clBuildProgram = build;
     table->clCreateProgramWithSource = with_source;
     table->clCreateProgramWithBinary = with_binary;

@@ -207,6 +207,7 @@ void Session::post_frame() {
         job.revision += anew;
         job.display_revision += shown;
         posted_job_ = job;
+        note_sides(anew);
         frames_.post(std::move(job));
     }
 }
@@ -217,6 +218,7 @@ void Session::update(bool gesture) {
     take_libraries();
     take_scene_files();
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
+    take_lost_devices();
     sequence_.update(*this);
     if (sequence_.running()) playback_.pause(desired);
     playback_.advance(desired, now_s());
@@ -226,6 +228,7 @@ void Session::update(bool gesture) {
     post_frame();
     if (!behind()) sequence_.posted(*this);
     picture_ = frames_.latest();
+    if (picture_ && picture_->job.revision == posted_job_.revision) shown_sides_ = posted_sides_;
     take_saved();
     take_pick();
 }
@@ -234,12 +237,13 @@ void Session::take_outcomes() {
     for (Outcome& outcome : worker_.take()) {
         switch (outcome.kind) {
             case Outcome::Kind::ready:
-                if (outcome.whole) message_ = {};
+                if (outcome.whole && !std::exchange(keeps_message_, false)) message_ = {};
                 adopt(outcome.ready);
                 break;
             case Outcome::Kind::failed:
                 report(outcome.message, outcome.details);
                 playback_.pause(desired);
+                if (outcome.lost) note_lost_again();
                 if (outcome.files_failed && ready_) {
                     // The worker keeps the old files by itself. A new request would remove the message.
                     const bool asked = is_posted(desired_request());
@@ -423,8 +427,9 @@ bool Session::not_in_force() const {
 }
 
 bool Session::idle() const {
-    return !worker_.activity().busy && is_posted(desired_request()) && !moving_ && !playback_.playing() && frames_.idle() &&
-           !inspector_.busy() && pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
+    return !worker_.activity().busy && !worker_.has_outcomes() && is_posted(desired_request()) && !moving_ &&
+           !playback_.playing() && frames_.idle() && !inspector_.busy() && pick_request_ == picked_request_ &&
+           !sequence_.running() && picture_ == frames_.latest();
 }
 
 float Session::scene_size() const {

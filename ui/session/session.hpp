@@ -156,6 +156,10 @@ class Session {
     void adopt(const std::shared_ptr<const Ready>& ready);
     void post_request();
     void post_frame();
+    void note_sides(bool changed);
+    bool edited_since_shown() const;
+    void take_lost_devices();
+    void note_lost_again();
     void follow_pose(const Ready& before);  // the file's lights, and its camera if the user looks through one
     void follow_path();
     void show_first_pose();
@@ -184,6 +188,19 @@ class Session {
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;
+    // What a picture is made of: its devices and settings as desired. `posted_sides_` are those of posted_job_, `shown_sides_`
+    // those of the newest picture.
+    struct Sides {
+        Side main;
+        std::optional<Side> other;
+        uint64_t kernel_revision = 0;
+    };
+    Sides posted_sides_;
+    std::optional<Sides> shown_sides_;
+    std::weak_ptr<const Ready> lost_;                   // whose devices were lost last
+    std::shared_ptr<const Picture> picture_when_lost_;  // the newest then
+    bool lost_again_ = false;                           // while they were opened anew; nothing was tried since
+    bool keeps_message_ = false;                        // of the loss, while the device is opened anew
     WindowMessage message_;
     uint64_t message_count_ = 0;
     History history_;

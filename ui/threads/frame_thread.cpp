@@ -54,7 +54,8 @@ bool FrameThread::idle() const {
 
 bool FrameThread::begun() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return !job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.revision == begun_revision_;
+    return !job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost() ||
+           job_.revision == begun_revision_;
 }
 
 std::string FrameThread::take_failure() {
@@ -111,7 +112,7 @@ std::vector<FrameThread::Saved> FrameThread::take_saved() {
 // Whether there is something to do, which sample is next, and whether it must be traced. The caller holds the lock.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     retrace = false;
-    if (!job_.ready || failed_ || released_ || job_.ready->withdrawn()) return false;
+    if (!job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost()) return false;
     const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
     const bool fresh = job_.revision != traced_revision_ || sharpen;
     sample = fresh ? 0 : samples_;

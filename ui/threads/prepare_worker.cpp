@@ -134,7 +134,13 @@ std::shared_ptr<const std::vector<DeviceInfo>> PrepareWorker::devices() const {
     return devices_;
 }
 
+bool PrepareWorker::has_outcomes() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !outcomes_.empty();
+}
+
 void PrepareWorker::publish(Outcome outcome) {
+    outcome.lost = outcome.kind == Outcome::Kind::failed && all_lost(main_.devices);
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         outcomes_.push_back(std::move(outcome));
@@ -348,11 +354,35 @@ void PrepareWorker::renew_devices() {
     other_.preparer->open_devices(other_.devices);
 }
 
+// Lets go of everything on the devices of a side.
+std::vector<DeviceInfo> PrepareWorker::close_lost(SideState& side) {
+    tracers_.release();
+    const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
+    withdraw_loans();
+    const bool stuck =
+        std::any_of(side.devices.begin(), side.devices.end(), [](const auto& device) { return device->loss()->stuck(); });
+    if (stuck) never_release(std::make_shared<PoseFollower>(std::move(side.follower)));
+    side.follower = PoseFollower();
+    side.built.reset();
+    side.devices.clear();
+    return side.preparer->close_devices();
+}
+
 void PrepareWorker::open_side(const std::string& choice, SideState& state, const SideState& neighbour,
                               StageProgress& progress) {
-    if (!state.devices.empty() && choice == state.choice) return;
+    const bool lost = all_lost(state.devices);
+    if (!state.devices.empty() && choice == state.choice && !lost) return;
     progress.stage("opening the device");
-    Devices devices = open_devices(choose_devices(choice), neighbour.devices);
+    const Devices open = all_lost(neighbour.devices) ? Devices() : neighbour.devices;
+    if (lost) {
+        const std::vector<DeviceInfo> infos = close_lost(state);
+        if (choice == state.choice) {
+            state.devices = open_devices(infos, open);
+            state.preparer->open_devices(state.devices);
+            return;
+        }
+    }
+    Devices devices = open_devices(choose_devices(choice), open);
     state.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
     state.follower.reset();
     state.built.reset();

@@ -24,6 +24,7 @@ struct Outcome {
     std::string message, details;  // of a failure
     bool files_failed = false;     // the import failed
     bool whole = false;            // `ready`, and no part of the request failed
+    bool lost = false;             // failed because the devices were lost, which the next request opens anew
 };
 
 // What the worker does now.
@@ -55,6 +56,7 @@ class PrepareWorker {
     // Returns the outcomes since the last call, oldest first.
     std::vector<Outcome> take();
     Activity activity() const;
+    bool has_outcomes() const;                                       // that take() would return
     std::shared_ptr<const std::vector<DeviceInfo>> devices() const;  // nullptr until the devices are listed
 
  private:
@@ -77,6 +79,7 @@ class PrepareWorker {
     void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
     bool needs_reopen() const;
     void renew_devices();
+    std::vector<DeviceInfo> close_lost(SideState& side);
     void withdraw_loans();
     ReadySide lend(const Devices& devices, std::shared_ptr<const MultiPrepared> prepared);
     void open_side(const std::string& choice, SideState& state, const SideState& neighbour, StageProgress& progress);

@@ -17,6 +17,11 @@ bool DeviceLoan::withdrawn() const {
     return !lent_;
 }
 
+bool DeviceLoan::lost() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return lent_ && all_lost(lent_->devices);
+}
+
 void DeviceLoan::withdraw() {
     std::shared_ptr<const OnDevices> last;  // destroyed after the lock is released, because drivers take their time
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -58,6 +58,8 @@ class DeviceLoan {
     // result before release() returns.
     std::shared_ptr<const OnDevices> get() const;
     bool withdrawn() const;
+    // Whether all of its devices are lost (device/device_loss.hpp), and were not withdrawn yet.
+    bool lost() const;
     void withdraw();
 
  private:
@@ -107,6 +109,8 @@ struct Ready {
     std::function<MotionBlur::Source(const Devices&, const Settings&)> blur_source;
     // Whether its devices were closed. Its picture can still be shown, but not traced.
     bool withdrawn() const { return main.loan->withdrawn() || (other && other->loan->withdrawn()); }
+    // Whether the devices of a side are lost, so that they have to be opened anew.
+    bool lost() const { return main.loan->lost() || (other && other->loan->lost()); }
 };
 
 // What moves the vertices of a mesh that `scene` has at rest; nullptr: it has them as they are.

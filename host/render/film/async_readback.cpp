@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
 
 namespace clarity {
 
@@ -21,7 +22,12 @@ AsyncReadback& AsyncReadback::operator=(AsyncReadback&& other) noexcept {
 // A device may still be writing to the memory, so wait before giving it back. Whether the picture succeeded no longer matters.
 void AsyncReadback::settle() {
     const cl::Event& last = copied_() ? copied_ : mapped_;
-    if (memory_ && last()) clWaitForEvents(1, &last());
+    if (memory_ && last()) {
+        if (device_->loss()->stuck())
+            never_release(memory_);
+        else
+            clWaitForEvents(1, &last());
+    }
     memory_.reset();
 }
 
@@ -32,7 +38,7 @@ ByteImage AsyncReadback::wait(std::vector<KernelTime>* times) {
             void* const seen = queue.enqueueMapBuffer(in_place_, CL_TRUE, CL_MAP_READ, 0, bytes(), nullptr, &copied_);
             queue.enqueueUnmapMemObject(in_place_, seen);
         } else {
-            copied_.wait();
+            wait_for(*device_, copied_, "tone mapping");
         }
     });
     if (times) {

@@ -8,6 +8,7 @@
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
+#include "device/launch_limit.hpp"
 #include "render/film/false_colors.hpp"
 
 namespace clarity {
@@ -83,7 +84,7 @@ cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned count, Cou
 }
 
 RayCounts FilmKernels::end_sum(KernelTime& time) {
-    sums_read_.wait();
+    wait_for(*device_, sums_read_, "the kernel sum_counters");
     time = {"counters", event_ms(summed_)};
     cl_uint halves[8];
     std::memcpy(halves, read_sums_.get(), sizeof halves);
@@ -153,7 +154,7 @@ cl::Event FilmKernels::begin_rows(const cl::Buffer& film, const GroupRows& rows,
 }
 
 void FilmKernels::end_rows(std::vector<KernelTime>& times) {
-    rows_read_.back().wait();
+    wait_for(*device_, rows_read_.back(), "the kernel map_tones_of_rows");
     times.push_back({"tone map", event_ms(rows_mapped_)});
     times.push_back({"read-back", span_ms(rows_read_.front(), rows_read_.back())});
 }

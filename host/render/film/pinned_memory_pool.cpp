@@ -6,6 +6,8 @@
 
 #include "base/aligned_bytes.hpp"
 
+#include "device/launch_limit.hpp"
+
 namespace clarity {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr size_t kShelved = 2;
 struct PinnedMemoryPool::Block {
     AlignedBytes plain;
     cl::Buffer pinned;  // used instead of `plain` on devices other than CPUs
-    cl::CommandQueue queue;
+    std::shared_ptr<Device> device;
     uint8_t* bytes = nullptr;
     size_t room = 0;
     Block() = default;
@@ -25,8 +27,12 @@ struct PinnedMemoryPool::Block {
     Block& operator=(const Block&) = delete;
     ~Block() {
         if (!pinned() || !bytes) return;
+        if (device->loss()->stuck()) {
+            never_release(std::make_shared<cl::Buffer>(pinned));
+            return;
+        }
         try {
-            queue.enqueueUnmapMemObject(pinned, bytes);
+            device->queue().enqueueUnmapMemObject(pinned, bytes);
         } catch (const cl::Error&) {  // the device is lost, and this memory with it
         }
     }
@@ -47,10 +53,13 @@ std::unique_ptr<PinnedMemoryPool::Block> PinnedMemoryPool::make(size_t bytes) {
         block->plain = AlignedBytes(bytes, false);
         block->bytes = static_cast<uint8_t*>(block->plain.data());
     } else {
-        block->queue = device_->queue();
+        block->device = device_;
         block->pinned = cl::Buffer(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
-        block->bytes =
-            static_cast<uint8_t*>(block->queue.enqueueMapBuffer(block->pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
+        cl::Event mapped;
+        block->bytes = static_cast<uint8_t*>(
+            device_->queue().enqueueMapBuffer(block->pinned, CL_FALSE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes, nullptr, &mapped));
+        device_->queue().flush();
+        wait_for(*device_, mapped, "a launch before the first read-back");
     }
     return block;
 }

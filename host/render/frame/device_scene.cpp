@@ -110,7 +110,7 @@ void add_slots(const AccelData& accel, std::vector<Content>& contents) {
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
                          Progress& progress)
-    : scene_(std::move(scene)), accel_(std::move(accel)) {
+    : loss_(device.loss()), scene_(std::move(scene)), accel_(std::move(accel)) {
     for (const Material& material : scene_->materials) materials_.push_back(material.values);
     const BuildScene& build = accel_->scene;
     if (!scene_->normals.empty() || !scene_->uvs.empty()) {
@@ -156,7 +156,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
 }
 
 DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
-    : still_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
+    : loss_(at_rest.loss_),
+      still_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
       before_lights_(at_rest.before_lights_),
       slots_(at_rest.slots_),
       shape_buffers_(at_rest.shape_buffers_),
@@ -168,6 +169,20 @@ DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
     std::move(moving.slots.begin(), moving.slots.end(), slots_.begin() + static_cast<std::ptrdiff_t>(shape_buffers_));
     bounds_ = std::move(moving.bounds);
     roots_ = std::move(moving.roots);
+}
+
+// A kernel that still runs reads the buffers, and on a CPU the memory of `accel_` and `scene_`.
+DeviceScene::~DeviceScene() {
+    if (!loss_->stuck()) return;
+    struct Kept {
+        std::vector<cl::Buffer> buffers;
+        std::shared_ptr<const Scene> scene;
+        std::shared_ptr<const AccelData> accel;
+    };
+    auto kept = std::make_shared<Kept>(Kept{std::move(before_lights_), std::move(scene_), std::move(accel_)});
+    kept->buffers.insert(kept->buffers.end(), slots_.begin(), slots_.end());
+    kept->buffers.insert(kept->buffers.end(), {bounds_, roots_});
+    never_release(std::move(kept));
 }
 
 DeviceScene::Fixed DeviceScene::fixed() const {
@@ -194,7 +209,8 @@ void DeviceScene::complete(cl::CommandQueue& queue, const cl::Buffer& frames, si
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
                          const std::vector<PosedMesh>& deformed, Progress& progress)
-    : still_(std::move(still)),
+    : loss_(device.loss()),
+      still_(std::move(still)),
       scene_(still_->scene_),
       accel_(std::move(accel)),
       before_lights_(still_->before_lights_),

@@ -22,6 +22,7 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     // textures, numbers of vertices. deformed: the meshes with other normals; none of them is flattened.
     DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
                 const std::vector<PosedMesh>& deformed, Progress& progress);
+    ~DeviceScene();
 
     // The buffers that differ from pose to pose where a scene moves on the device.
     struct Moving {
@@ -48,6 +49,7 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     uint64_t bytes() const { return bytes_; }
 
  private:
+    std::shared_ptr<const DeviceLoss> loss_;    // of the device
     std::shared_ptr<const DeviceScene> still_;  // whose buffers this one shares
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const AccelData> accel_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
 #include "render/film/bands.hpp"
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
@@ -193,7 +194,7 @@ struct FrameRenderer::Impl {
             at = overflows.bind(kernel, at, true);
         }
         view.bind(*prepared.on_device, kernel, at);
-        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, side_work);
+        return launcher.run(*device, queue, kernel, first_group, launched, layout.local_size(), go_on, begun, side_work);
     }
 
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
@@ -229,12 +230,16 @@ struct FrameRenderer::Impl {
 };
 
 FrameRenderer::FrameRenderer(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>(device)) {}
-FrameRenderer::~FrameRenderer() = default;
+FrameRenderer::~FrameRenderer() {
+    if (impl_->device->loss()->stuck()) never_release(std::shared_ptr<Impl>(std::move(impl_)));
+}
 
 FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settings, const View& view, const Samples& samples,
                                 bool count_rays, Progress& progress, const SharedRows* shared,
                                 const std::function<void()>& meanwhile) {
     Impl& im = *impl_;
+    if (im.device->loss()->lost())
+        throw Error(Exit::failed, im.device->info().name + " has failed before: it has to be opened anew");
     return wrap_cl_errors(*im.device, "tracing", [&] {
         const Impl::Picture picture{prepared, settings, view, shared, progress};
         im.begin(picture);
@@ -281,6 +286,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
             add_stats(stats, one);
             if (samples.complete && !samples.complete(sample) && sample < end) throw Cancelled();
         }
+        im.device->loss()->note_worked();
         return stats;
     });
 }
@@ -311,7 +317,7 @@ void FrameRenderer::read_values(FloatImage& image) {
         float* const film = color ? im.scratch.data() : image.pixels.data();
         const std::vector<Band> bands = im.group_rows().bands();
         read_bands(im.device->queue(), im.film.get(), bands, stored * sizeof(float), film);
-        im.device->queue().finish();
+        finish(*im.device, im.device->queue(), "reading the film");
         for (const Band& band : bands) {
             const size_t begin = band.first * size_t(im.width), end = begin + band.count * size_t(im.width);
             if (color) {
@@ -332,7 +338,7 @@ void FrameRenderer::read_sums(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
         read_bands(im.device->queue(), im.film.get(), im.group_rows().bands(), im.film_bytes(im.width), image.pixels.data());
-        im.device->queue().finish();
+        finish(*im.device, im.device->queue(), "reading the film");
     });
 }
 
@@ -347,7 +353,7 @@ void FrameRenderer::write_sums(const Prepared& prepared, const Settings& setting
         for (const Band& band : GroupRows{im.width, im.height, im.layout.row_height(), rows}.bands())
             im.device->queue().enqueueWriteBuffer(im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
                                                   reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
-        im.device->queue().finish();
+        finish(*im.device, im.device->queue(), "reading the film");
     });
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/view_buffers.hpp"
@@ -60,7 +61,9 @@ struct Inspector::Impl {
 Inspector::Inspector(std::shared_ptr<Device> device) {
     wrap_cl_errors(*device, "preparing the inspector", [&] { impl_ = std::make_unique<Impl>(device); });
 }
-Inspector::~Inspector() = default;
+Inspector::~Inspector() {
+    if (impl_ && impl_->device->loss()->stuck()) never_release(std::shared_ptr<Impl>(std::move(impl_)));
+}
 
 RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y) {
     Impl& im = *impl_;
@@ -90,6 +93,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         im.view.bind(*prepared.on_device, kernel, at);
         const size_t items = layout.local_size();
         im.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(items));
+        finish(*im.device, im.queue, "following the rays of a pixel");
 
         rt_u32 found[kSummaryWords] = {};
         im.queue.enqueueReadBuffer(summary, CL_TRUE, 0, sizeof found, found);

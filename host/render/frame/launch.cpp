@@ -5,10 +5,11 @@
 
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
 
 namespace clarity {
 
-LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
+LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, unsigned group_count, unsigned most,
                           const std::function<Piece(unsigned first, unsigned count)>& enqueue,
                           const std::function<void()>& go_on, const SideWork& side_work) {
     LaunchTimes times;
@@ -18,19 +19,22 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
         const unsigned count = pace_.next(group_count - first, most);
         const auto start = std::chrono::steady_clock::now();
         const Piece piece = enqueue(first, count);
-        first += count;
         cl::Event last;
-        if (side_work.behind && first == group_count) last = side_work.behind();
+        if (side_work.behind && first + count == group_count) last = side_work.behind();
         if (side_work.while_it_works && times.launches == 0) {
             queue.flush();
             side_work.while_it_works();
         }
-        queue.finish();
+        queue.flush();
+        wait_for(device, last() ? last : piece.last, [&] {
+            return "a launch of " + std::to_string(count) + " of " + std::to_string(group_count) + " work-groups";
+        });
+        first += count;
         double wall = ms_since(start);
-        const double device = span_ms(piece.first, piece.last, wall);
-        if (last()) wall = std::max(device, wall - std::max(0.0, span_ms(piece.first, last, device) - device));
+        const double traced = span_ms(piece.first, piece.last, wall);
+        if (last()) wall = std::max(traced, wall - std::max(0.0, span_ms(piece.first, last, traced) - traced));
         times.wall_ms += wall;
-        times.device_ms += device;
+        times.device_ms += traced;
         ++times.launches;
         pace_.took(count, wall);
     }
@@ -38,8 +42,9 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
     return times;
 }
 
-LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
+LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument,
+                          unsigned group_count, unsigned group_size, const std::function<void()>& go_on, unsigned begin,
+                          const SideWork& side_work) {
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
         kernel.setArg(first_argument, begin + first);
@@ -47,7 +52,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
                                    nullptr, &event);
         return Piece{event, event};
     };
-    return run(queue, group_count, group_count, enqueue, go_on, side_work);
+    return run(device, queue, group_count, group_count, enqueue, go_on, side_work);
 }
 
 }  // namespace clarity

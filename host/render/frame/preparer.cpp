@@ -2,6 +2,8 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/film/film.hpp"
 #include "render/film/overflow_counter.hpp"
@@ -54,9 +56,17 @@ KernelKind kind_for(const Aov& aov) {
     return KernelKind::aov;
 }
 
-// Runs the kernel on one pixel. PoCL compiles a kernel when it first runs with a work-group size, so the first frame would wait
-// for the compiler. A queue of its own lets frames continue meanwhile.
-void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
+// What a launch on one pixel uses.
+struct OnePixel {
+    cl::CommandQueue queue;
+    cl::Buffer frame, out, counters, distances, lights;
+    ViewBuffers view;
+    OverflowCounter overflows;
+    cl::Kernel kernel;
+    std::unique_ptr<Wavefront> wavefront;
+};
+
+void launch(OnePixel& pixel, const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
     Device& device = *opened;
     Settings tiny = prepared.settings;
     tiny.width = tiny.height = 1;
@@ -65,38 +75,49 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
     view.camera.eye = {0, 0, 1e6f};
     const Layout& layout = prepared.layout;
     const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
-    cl::CommandQueue queue(device.context(), device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
-    cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
-                            const_cast<rt_frame*>(&frame));
-    const unsigned size = layout.local_size();
-    cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096),
-        counters(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16),
-        distances(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * layout.rays() * sizeof(float)),
-        lights(device.context(), CL_MEM_READ_ONLY, 256);
+    const cl::Context& context = device.context();
+    pixel.queue = cl::CommandQueue(context, device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
+    pixel.frame = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame, const_cast<rt_frame*>(&frame));
+    pixel.out = cl::Buffer(context, CL_MEM_READ_WRITE, 4096);
+    pixel.counters = cl::Buffer(context, CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16);
+    pixel.distances = cl::Buffer(context, CL_MEM_READ_WRITE, size_t(layout.group_packets()) * layout.rays() * sizeof(float));
+    pixel.lights = cl::Buffer(context, CL_MEM_READ_ONLY, 256);
     if (program.is_wavefront()) {
-        ViewBuffers view_buffers;
-        view_buffers.write(queue, *prepared.scene, *prepared.on_device, {frame}, view);
+        pixel.view.write(pixel.queue, *prepared.scene, *prepared.on_device, {frame}, view);
         Launcher launcher;
-        const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 0, 1, 1, 0, out, distances};
-        Wavefront(opened).trace(queue, launcher, pixel, [] {});
+        const WavefrontFrame traced{prepared, view, pixel.view, layout, 1, 1, 0, 1, 1, 0, pixel.out, pixel.distances};
+        pixel.wavefront = std::make_unique<Wavefront>(opened);
+        pixel.wavefront->trace(pixel.queue, launcher, traced, [] {});
         return;
     }
-    cl::Kernel kernel = program.kernel();
-    OverflowCounter overflows;
+    pixel.kernel = program.kernel();
     cl_uint at = 0;
-    kernel.setArg(at++, frame_buffer);
-    kernel.setArg(at++, cl_uint(0));
-    kernel.setArg(at++, out);
+    pixel.kernel.setArg(at++, pixel.frame);
+    pixel.kernel.setArg(at++, cl_uint(0));
+    pixel.kernel.setArg(at++, pixel.out);
     if (program.has_generations()) {
-        kernel.setArg(at++, counters);
-        kernel.setArg(at++, distances);
+        pixel.kernel.setArg(at++, pixel.counters);
+        pixel.kernel.setArg(at++, pixel.distances);
     } else if (prepared.settings.debug) {
-        overflows.clear(queue);
-        at = overflows.bind(kernel, at, true);
+        pixel.overflows.clear(pixel.queue);
+        at = pixel.overflows.bind(pixel.kernel, at, true);
     }
-    prepared.on_device->bind(kernel, at, lights);
-    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));
-    queue.finish();
+    prepared.on_device->bind(pixel.kernel, at, pixel.lights);
+    const unsigned size = layout.local_size();
+    pixel.queue.enqueueNDRangeKernel(pixel.kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));
+    finish(device, pixel.queue, "the first launch of the kernels, on one pixel,");
+}
+
+// Runs the kernel on one pixel. PoCL compiles a kernel when it first runs with a work-group size, so the first frame would wait
+// for the compiler. A queue of its own lets frames continue meanwhile.
+void warm_up(const std::shared_ptr<Device>& device, const TraceProgram& program, const Prepared& prepared) {
+    const auto pixel = std::make_shared<OnePixel>();
+    try {
+        launch(*pixel, device, program, prepared);
+    } catch (...) {
+        if (device->loss()->stuck()) never_release(pixel);
+        throw;
+    }
 }
 
 // settings: of a structure that is there.
@@ -225,8 +246,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         next->compile_ms = fresh ? ms_since(start) : 0;
         next->compile_cached = !fresh;
     } catch (const cl::Error& e) {
-        throw Error(Exit::failed, std::string("preparing ") + plugin->id + " on " + device_->info().name + ": " + e.what() +
-                                      " failed with OpenCL error " + std::to_string(e.err()));
+        throw error_on(*device_, std::string("preparing ") + plugin->id, e);
     }
     last_ = next;
     return next;

@@ -105,7 +105,7 @@ LaunchTimes Wavefront::trace(cl::CommandQueue& queue, Launcher& launcher, const 
     const Room room = room_for(frame);
     bind(frame, room);
     const auto piece = [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); };
-    return launcher.run(queue, frame.groups, room.groups, piece, go_on, side_work);
+    return launcher.run(*device_, queue, frame.groups, room.groups, piece, go_on, side_work);
 }
 
 }  // namespace clarity

@@ -20,6 +20,10 @@ bool ends_on_zeros(const KernelRow& row) {
 
 }  // namespace
 
+ProgramCache::~ProgramCache() {
+    if (device_->loss()->stuck()) never_release(std::make_shared<std::list<Entry>>(std::move(entries_)));
+}
+
 std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool* fresh) {
     Progress never_cancelled;
     return get(source, fresh, never_cancelled);

@@ -29,6 +29,7 @@ class TraceProgram {
 class ProgramCache {
  public:
     explicit ProgramCache(std::shared_ptr<Device> device) : device_(std::move(device)) {}
+    ~ProgramCache();
     // Compiles the program if it is not kept. *fresh: whether it was compiled now. Throws Error(kernel_build_failed), and
     // Cancelled.
     std::shared_ptr<TraceProgram> get(const KernelSource& source, bool* fresh = nullptr);

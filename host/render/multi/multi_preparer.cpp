@@ -45,6 +45,11 @@ std::vector<DeviceInfo> infos_of(const Devices& devices) {
     return infos;
 }
 
+bool all_lost(const Devices& devices) {
+    return !devices.empty() &&
+           std::all_of(devices.begin(), devices.end(), [](const auto& device) { return device->loss()->lost(); });
+}
+
 std::string devices_name(const std::vector<DeviceInfo>& infos) {
     std::vector<std::pair<std::string, unsigned>> counted;
     for (const DeviceInfo& info : infos) {

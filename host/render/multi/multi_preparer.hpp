@@ -15,6 +15,7 @@ using Devices = std::vector<std::shared_ptr<Device>>;
 // device's Error(no_device). open: devices that are already open; these are reused, so that each has only one context.
 Devices open_devices(const std::vector<DeviceInfo>& infos, const Devices& open = {});
 std::vector<DeviceInfo> infos_of(const Devices& devices);
+bool all_lost(const Devices& devices);  // false if there are none
 
 // "NVIDIA H200", "2 x NVIDIA H200" or "NVIDIA H200 + AMD EPYC". All parts of a CPU count as that CPU.
 std::string devices_name(const std::vector<DeviceInfo>& infos);

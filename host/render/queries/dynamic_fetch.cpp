@@ -43,7 +43,7 @@ LaunchTimes DynamicFetch::trace(const Prepared& prepared, const TraceProgram& pr
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (rays + kFetchGroup - 1) / kFetchGroup;
-    return launcher_.run(queue, groups, groups, enqueue, [] {});
+    return launcher_.run(*device_, queue, groups, groups, enqueue, [] {});
 }
 
 }  // namespace clarity

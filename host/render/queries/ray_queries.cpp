@@ -43,7 +43,7 @@ LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgr
     const unsigned each = program.row.rays_per_item;
     const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
     const size_t groups = (blocks + in_group - 1) / in_group;
-    return launchers_[program.row.kind].run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
+    return launchers_[program.row.kind].run(*device_, device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
                                             layout.local_size(), [] {});
 }
 

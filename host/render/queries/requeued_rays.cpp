@@ -52,7 +52,7 @@ LaunchTimes RequeuedRays::trace(const Prepared& prepared, const TraceProgram& pr
         return piece;
     };
     const unsigned groups = (rays + kShortGroup - 1) / kShortGroup;
-    return launcher_.run(queue, groups, groups, enqueue, [] {});
+    return launcher_.run(*device_, queue, groups, groups, enqueue, [] {});
 }
 
 }  // namespace clarity
