@@ -228,7 +228,7 @@ TEST_F(Faults, ALaunchWithoutEndIsGivenUp) {
             const ProgramResult result = render(std::string("other,gpu,launch-endless=") + from, options, {"--tracer", tracer});
             EXPECT_EQ(result.exit_code, 1) << tracer << " " << from << ": " << result.err;
             EXPECT_GT(result.seconds, 1.5);
-            EXPECT_LT(result.seconds, 1.5 + 4.0) << "a compilation, and the limit once";
+            EXPECT_LT(result.seconds, 1.5 + 20) << "a compilation on a busy machine, and the limit once";
             expect_says(result, "has not come to an end on ");
             expect_says(result, "CLARITY_LAUNCH_LIMIT");
             EXPECT_FALSE(has_picture());
