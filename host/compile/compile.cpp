@@ -46,8 +46,10 @@ struct DeviceRequest {
 // Compiles a program that is not on disk, and keeps it there.
 CompileOutcome compile_first(const DeviceRequest& wanted, const CompileRequest& request, Progress& progress) {
     const DeviceInfo& info = wanted.info;
-    // PoCL generates code once more for a binary, which takes as long as the compilation. Its own cache serves as well.
-    const CompileJob job{request.source, wanted.options, info.id(), info.name, info.driver, wanted.launches, !info.pocl};
+    // For the binary of a program that was not launched PoCL generates code, which the first launch does anyhow. PoCL's own
+    // cache serves as well then.
+    const bool wants_binary = !info.pocl || wanted.launches;
+    const CompileJob job{request.source, wanted.options, info.id(), info.name, info.driver, wanted.launches, wants_binary};
     CompileOutcome outcome = compile_in_worker(info, job, request.what, progress);
     if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
     return outcome;
@@ -81,15 +83,17 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         result.log = outcome.log;
         binary = std::move(outcome.binary);
     }
+    set_aside(wanted.key);
     if (!binary->empty()) {
-        if (auto program = program_of(device, *binary, wanted.options)) {
+        auto program = program_of(device, *binary, wanted.options);
+        put_back(wanted.key);
+        if (program) {
             result.program = *program;
             result.ms = ms_since(start);
             return result;
         }
         forget_program(wanted.key);
     }
-    set_aside(wanted.key);
     BuildResult built = here(wanted.options);
     put_back(wanted.key);
     return built;

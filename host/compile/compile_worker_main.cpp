@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "compile/compile.hpp"
 #include "compile/compile_wire.hpp"
+#include "compile/pocl_forms.hpp"
 #include "compile/zero_launch.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"
@@ -47,6 +49,13 @@ std::vector<char> binary_of(const cl::Program& program) {
     return binary;
 }
 
+std::vector<std::string> kernels_of(const cl::Program& program) {
+    std::vector<std::string> names;
+    std::istringstream text(program.getInfo<CL_PROGRAM_KERNEL_NAMES>());
+    for (std::string name; std::getline(text, name, ';');) names.push_back(name);
+    return names;
+}
+
 std::string log_of(const cl::Program& program, const cl::Device& device) {
     size_t bytes = 0;
     clGetProgramBuildInfo(program(), device(), CL_PROGRAM_BUILD_LOG, 0, nullptr, &bytes);
@@ -80,6 +89,7 @@ CompileOutcome compile(const CompileJob& job) {
     if (job.ends_on_zeros) {
         say_step("launching");
         launch_on_zeros(*device, program);
+        if (device->info().pocl) share_launched_forms(kernels_of(program));
     }
     if (job.wants_binary) outcome.binary = binary_of(program);
     return outcome;

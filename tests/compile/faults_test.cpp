@@ -87,6 +87,26 @@ TEST_F(Faults, NoneRendersAndTheSecondStartCompilesNothing) {
     EXPECT_TRUE(has_picture());
 }
 
+// What the store holds is enough for PoCL, also if its own cache is gone. A form of a kernel that no launch uses is not
+// compiled: it is a second name of one that is.
+TEST_F(Faults, PoclLoadsItsBinariesToo) {
+    RunOptions options;
+    options.environment["POCL_CACHE_DIR"] = scratch_.path("kcache");
+    ASSERT_EQ(render("", options).exit_code, 0);
+    size_t forms = 0;
+    for (const auto& file : fs::recursive_directory_iterator(scratch_.path("kcache"))) {
+        if (file.path().extension() != ".so") continue;
+        ++forms;
+        EXPECT_EQ(file.hard_link_count(), 2u) << file.path();
+    }
+    EXPECT_GE(forms, 4u) << "two for each kernel of two programs at the least";
+    fs::remove_all(scratch_.path("kcache"));
+    fs::remove(scratch_.path("out/a.png"));
+    const ProgramResult second = render("no-source", options);
+    EXPECT_EQ(second.exit_code, 0) << "both programs are loaded from their binaries: " << second.err;
+    EXPECT_TRUE(has_picture());
+}
+
 TEST_F(Faults, ASignalEndsABuildThatHangs) {
     for (const int signal : {SIGINT, SIGTERM}) {
         const ProgramResult result = render(signal == SIGINT ? "build-hangs" : "other,build-hangs", signalled(signal, 0.4));
