@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/film/image_io.hpp"
+#include "ui/app/close_limit.hpp"
 #include "ui/app/key_actions.hpp"
 #include "ui/automation/script.hpp"
 #include "ui/hud/hud.hpp"
@@ -31,6 +32,7 @@ constexpr float kLongestStep =
     0.1f;  // longest time that one step of motion covers, so that nothing jumps after the loop paused
 constexpr float kTurnRadPerSecond = 0.9f;
 constexpr double kShortestTurn = 0.01;
+constexpr double kCloseSeconds = 5;  // the threads may take this long to end when the window is closed
 
 }  // namespace
 
@@ -69,9 +71,10 @@ App::~App() {
     preferences.panel_visible = state_.panel_visible;
     preferences_sync_.note(preferences, state_, session_->desired);
     save_preferences(folder_, preferences);
-    // A running compiler cannot be stopped, and the session waits for it. So the window closes first.
+    // The session waits for its threads, which may be in the middle of a launch. So the window closes first.
     window_->hide();
     window_->wait_events(0);
+    const CloseLimit limit(kCloseSeconds);
     overlay_.reset();
     session_.reset();
     pane_.reset();

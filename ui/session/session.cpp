@@ -219,6 +219,7 @@ void Session::update(bool gesture) {
     take_scene_files();
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
     take_lost_devices();
+    watch_tracing();
     sequence_.update(*this);
     if (sequence_.running()) playback_.pause(desired);
     playback_.advance(desired, now_s());

@@ -159,6 +159,7 @@ class Session {
     void note_sides(bool changed);
     bool edited_since_shown() const;
     void take_lost_devices();
+    void watch_tracing();
     void note_lost_again();
     void follow_pose(const Ready& before);  // the file's lights, and its camera if the user looks through one
     void follow_path();
@@ -198,6 +199,7 @@ class Session {
     Sides posted_sides_;
     std::optional<Sides> shown_sides_;
     std::weak_ptr<const Ready> lost_;                   // whose devices were lost last
+    bool told_silent_ = false;                          // the user knows that tracing gives no sign of life
     std::shared_ptr<const Picture> picture_when_lost_;  // the newest then
     bool lost_again_ = false;                           // while they were opened anew; nothing was tried since
     bool keeps_message_ = false;                        // of the loss, while the device is opened anew

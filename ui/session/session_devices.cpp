@@ -1,7 +1,10 @@
 // session_devices.cpp -- what the window does when devices are lost while they trace.
+#include <cmath>
+#include <string>
 #include <utility>
 
 #include "base/log.hpp"
+#include "device/launch_limit.hpp"
 #include "ui/session/session.hpp"
 
 namespace clarity::ui {
@@ -55,6 +58,18 @@ void Session::take_lost_devices() {
     }
     log(LogLevel::info, next);
     if (!message_.text.empty()) message_.text += ". " + next;
+}
+
+// A launch on a GPU has a limit of its own. On a CPU nothing stops a launch, and a driver may hang in a call: then all that can
+// be done is to say so.
+void Session::watch_tracing() {
+    const double silent_s = frames_.silent_s();
+    const bool silent = silent_s > 1.5 * launch_limit_s();
+    if (silent && !told_silent_)
+        report("tracing has given no sign of life for " + std::to_string(std::lround(silent_s)) +
+               " s: a launch does not end, or the driver does not return from a call, and neither can be stopped. The last "
+               "picture stays. If kernels were edited, they may loop for ever. Close the window to end the program");
+    told_silent_ = silent;
 }
 
 }  // namespace clarity::ui

@@ -1,6 +1,7 @@
 #include "ui/threads/frame_thread.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 
@@ -14,7 +15,18 @@ namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
-class FrameThread::StopProgress : public Progress {};
+// Those who trace ask between two launches whether they are to stop. So it also tells that they go on.
+class FrameThread::StopProgress : public Progress {
+ public:
+    bool cancelled() const override {
+        last_sign_ = Clock::now();
+        return Progress::cancelled();
+    }
+    double silent_s() const { return seconds_since(last_sign_); }
+
+ private:
+    mutable std::atomic<Clock::time_point> last_sign_{Clock::now()};
+};
 
 FrameThread::FrameThread(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
 
@@ -56,6 +68,11 @@ bool FrameThread::begun() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return !job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost() ||
            job_.revision == begun_revision_;
+}
+
+double FrameThread::silent_s() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return running_ ? running_->silent_s() : 0;
 }
 
 std::string FrameThread::take_failure() {

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
+#include "base/files/pending_write.hpp"
 #include "render/film/png_text.hpp"
 
 // Static, because the window links the stb library too.
@@ -204,6 +205,7 @@ PictureNotes picture_notes() {
 }
 
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes) {
+    const PendingWrite pending;
     check_ending(path);
     const Format format = format_of(path);
     if (format == Format::png) return write_png(path, display, notes);
@@ -212,6 +214,7 @@ void write_image(const std::string& path, const FloatImage& values, const ByteIm
 }
 
 void write_layers(const std::string& path, const std::vector<PictureLayer>& layers, const PictureNotes& notes) {
+    const PendingWrite pending;
     check_ending(path);
     for (const PictureLayer& layer : layers)
         check_size(path, layers.front().values.width, layers.front().values.height, layer.values.channels,
