@@ -18,6 +18,14 @@
 #define RT_CAT_(a, b) a##b
 #define RT_CAT(a, b) RT_CAT_(a, b)
 
+/* Whether the compiler knows a builtin function. Clang 14 (PoCL 3.1) says yes also where the machine lacks the instruction, so a
+ * caller asks for the instruction set, too. Other architectures and simulators do not know it and take the portable form. */
+#ifdef __has_builtin
+#define RT_HAS_BUILTIN(name) __has_builtin(name)
+#else
+#define RT_HAS_BUILTIN(name) 0
+#endif
+
 #if RT_LANES == 1
 
 typedef float vfloat;
@@ -70,13 +78,13 @@ RT_INLINE __attribute__((overloadable)) void rt_store(vfloat v, global float *p)
 
 /* rt_bits: the lanes of a mask as bits, lane 0 in bit 0. PoCL 3.1's any() tests lane after lane and costs a third of a frame;
  * the movemask instruction takes one cycle. RT_PORTABLE, a setting for tests, selects the fallback everywhere. */
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512DQ__)
+#if !defined(RT_PORTABLE) && RT_LANES == 16 && defined(__AVX512DQ__) && RT_HAS_BUILTIN(__builtin_ia32_cvtd2mask512)
 #define rt_bits(m) ((uint)(ushort)__builtin_ia32_cvtd2mask512(m))
-#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 8 && defined(__AVX__)
+#elif !defined(RT_PORTABLE) && RT_LANES == 8 && defined(__AVX__) && RT_HAS_BUILTIN(__builtin_ia32_movmskps256)
 #define rt_bits(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
-#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 4
+#elif !defined(RT_PORTABLE) && RT_LANES == 4 && defined(__SSE__) && RT_HAS_BUILTIN(__builtin_ia32_movmskps)
 #define rt_bits(m) ((uint)__builtin_ia32_movmskps(as_float4(m)))
-#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX__)
+#elif !defined(RT_PORTABLE) && RT_LANES == 16 && defined(__AVX__) && RT_HAS_BUILTIN(__builtin_ia32_movmskps256)
 #define rt_bits(m)                                                                                                             \
     ((uint)__builtin_ia32_movmskps256(as_float8((m).lo)) | (uint)__builtin_ia32_movmskps256(as_float8((m).hi)) << 8)
 #else

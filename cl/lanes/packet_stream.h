@@ -33,7 +33,7 @@
 /* Lane p of the result is the greatest lane of v[p], for RT_LANES vectors. Each step merges vectors in pairs: half of the lanes
  * of the result belong to either. Two shuffles and a maximum for a pair take a third of what vector after vector takes. */
 #if RT_STREAM > 1
-#if defined(RT_PORTABLE) || !defined(__clang__)
+#if defined(RT_PORTABLE) || !RT_HAS_BUILTIN(__builtin_shufflevector)
 RT_INLINE vfloat rt_greatest_each(const vfloat *v)
 {
     float each[RT_LANES];

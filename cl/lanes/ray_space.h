@@ -46,11 +46,11 @@ RT_INLINE void rt_triangle_normal(float ax, float ay, float az, float bx, float 
  * register. */
 RT_INLINE vfloat rt_pick(float4 quad, vint axis)
 {
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512F__)
+#if !defined(RT_PORTABLE) && RT_LANES == 16 && defined(__AVX512F__) && RT_HAS_BUILTIN(__builtin_ia32_vpermilvarps512)
     return __builtin_ia32_vpermilvarps512((float16)(quad, quad, quad, quad), axis);
-#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 8 && defined(__AVX__)
+#elif !defined(RT_PORTABLE) && RT_LANES == 8 && defined(__AVX__) && RT_HAS_BUILTIN(__builtin_ia32_vpermilvarps256)
     return __builtin_ia32_vpermilvarps256((float8)(quad, quad), axis);
-#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 4 && defined(__AVX__)
+#elif !defined(RT_PORTABLE) && RT_LANES == 4 && defined(__AVX__) && RT_HAS_BUILTIN(__builtin_ia32_vpermilvarps)
     return __builtin_ia32_vpermilvarps(quad, axis);
 #else
     return rt_select(RT_MASK(axis == rt_vint(2)), rt_vfloat(quad.z),

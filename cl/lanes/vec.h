@@ -31,7 +31,7 @@ RT_INLINE rt_vec rt_choose(vmask m, rt_vec a, rt_vec b)
 RT_INLINE vfloat rt_inverse_length(rt_vec a) { return rt_vfloat(1.0f) / sqrt(rt_max(rt_dot(a, a), rt_vfloat(1e-36f))); }
 RT_INLINE rt_vec rt_normalize(rt_vec a) { return rt_scale(rt_inverse_length(a), a); }
 /* Stores x, y, z and w of lane after lane. */
-#if RT_LANES == 16 && defined(__clang__)
+#if RT_LANES == 16 && RT_HAS_BUILTIN(__builtin_shufflevector)
 RT_INLINE void rt_store_lanes(rt_vec v, float w, float4 *out)
 {
     /* Shuffles stay within quarters of the register, where they are cheapest: lanes l, l + 4, l + 8 and l + 12 become a

@@ -13,7 +13,8 @@
 
 #define RT_ROW 4u
 
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#if !defined(RT_PORTABLE) && defined(__AVX512DQ__) && defined(__AVX512VL__) && RT_HAS_BUILTIN(__builtin_ia32_cvtd2mask512) &&  \
+    RT_HAS_BUILTIN(__builtin_ia32_selectps_512) && RT_HAS_BUILTIN(__builtin_ia32_vpermilvarps512)
 
 typedef float rt_unaligned16 __attribute__((ext_vector_type(16), aligned(16)));
 
@@ -71,7 +72,7 @@ RT_INLINE uint rt_row_candidates(const rt_single_rays *r, uint l, const global r
     rt_row_corners(quads + 2, r, l, &cx, &cy, &cz);
     const float4 u = RT_EDGE(cx, cy, bx, by), v = RT_EDGE(ax, ay, cx, cy), w = RT_EDGE(bx, by, ax, ay), zero = (float4)(0.0f);
     const int4 inside = ~((u < zero) | (v < zero) | (w < zero)) | ~((u > zero) | (v > zero) | (w > zero));
-#if !defined(RT_PORTABLE) && defined(__x86_64__)
+#if !defined(RT_PORTABLE) && defined(__SSE__) && RT_HAS_BUILTIN(__builtin_ia32_movmskps)
     return (uint)__builtin_ia32_movmskps(as_float4(inside));
 #else
     const int4 weighted = inside & (int4)(1, 2, 4, 8);

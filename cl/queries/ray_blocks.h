@@ -23,7 +23,7 @@ RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
  * the last block. Without it a CPU waits for memory a sixth of the time of bunny's camera rays. */
 RT_INLINE void rt_fetch_ahead(const global float *blocks, uint block, uint last)
 {
-#if RT_CPU && RT_LANES > 1 && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
+#if RT_CPU && RT_LANES > 1 && RT_HAS_BUILTIN(__builtin_prefetch) && !defined(__SPIR__) /* simulators compile for SPIR */
     const uint next = min(block + RT_STREAM, last), after = min(next + RT_STREAM, last);
     const global vfloat *fields = (const global vfloat *)blocks;
     if (rt_any(RT_MASK(rt_load_reach(blocks, next) >= rt_vfloat(0.0f))))
@@ -59,7 +59,7 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
 }
 
 /* Stores an answer past the caches: a CPU then neither fetches the line that it overwrites nor keeps it. */
-#if RT_CPU && RT_LANES > 1 && defined(__has_builtin) && __has_builtin(__builtin_nontemporal_store)
+#if RT_CPU && RT_LANES > 1 && RT_HAS_BUILTIN(__builtin_nontemporal_store)
 #define RT_STORE_NONTEMPORAL(out, v) __builtin_nontemporal_store(v, out)
 #else
 #define RT_STORE_NONTEMPORAL(out, v) (*(out) = (v))

@@ -16,7 +16,7 @@ typedef struct rt_queue {
 } rt_queue;
 
 /* rt_compress: moves the lanes in `bits` to the front. */
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512F__)
+#if !defined(RT_PORTABLE) && RT_LANES == 16 && defined(__AVX512F__) && RT_HAS_BUILTIN(__builtin_ia32_compresssf512_mask)
 #define rt_compress(v, bits) __builtin_ia32_compresssf512_mask(v, (float16)(0.0f), (ushort)(bits))
 #elif RT_LANES == 1
 #define rt_compress(v, bits) (v)
