@@ -31,7 +31,7 @@ std::shared_ptr<Device> Device::with_own_queue() const {
 }
 
 unsigned DeviceInfo::preferred_lanes() const {
-    if (!cpu) return 1;
+    if (!traces_packets()) return 1;
     if (float_width >= 16) return 16;
     if (float_width >= 8) return 8;
     return 4;

@@ -21,10 +21,13 @@ struct DeviceInfo {
     uint64_t cache_bytes = 0, local_bytes = 0;  // cache that all units share, local memory of a work-group; 0: not known
     unsigned cache_line_bytes = 0;
     bool pocl = false, nvidia = false;
+    bool llvmpipe = false;  // Mesa's driver for CPUs, which computes work-items side by side, as a GPU does
     cl::Platform cl_platform;
     cl::Device cl_device;
     std::string id() const;  // "0:0"; the second of four parts: "0:0/4.1"
-    // Lanes that suit the device: 1 on a GPU, the native float width on a CPU.
+    // Whether a work-item traces a packet of rays in lanes, and not one ray. Layouts and kernels follow this.
+    bool traces_packets() const { return cpu && !llvmpipe; }
+    // Lanes that suit the device: 1, or the native float width if it traces packets.
     unsigned preferred_lanes() const;
 };
 

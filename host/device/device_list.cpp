@@ -92,6 +92,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsi
     info.cache_line_bytes = ask<cl_uint>(device, CL_DEVICE_GLOBAL_MEM_CACHELINE_SIZE);
     info.pocl = says(info.platform, "Portable Computing Language");
     info.nvidia = says(info.vendor, "NVIDIA");
+    info.llvmpipe = info.platform == "rusticl" && says(info.name, "llvmpipe");
     return info;
 }
 

@@ -18,11 +18,11 @@ constexpr size_t kAlignment = 16;  // of `more`, as CONTRACT.md says
 std::string source_of(const rt_plugin& plugin, const Device& device, const Variant& variant) {
     SourceWriter out;
     out.define_int("RT_LANES", static_cast<unsigned>(variant.lanes));
-    out.define_int("RT_CPU", device.info().cpu);
+    out.define_int("RT_CPU", device.info().traces_packets());
     out.define_uint("RT_KERNEL_CONTRACT", plugin.primitive->kernel_contract);
     if (variant.portable) out.line("#define RT_PORTABLE");
     for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h"}) out.include(name);
-    if (!device.info().cpu) out.include("lanes/subgroup.h");
+    if (!device.info().traces_packets()) out.include("lanes/subgroup.h");
     for (const char* name : {"lanes/rays.h", "lanes/vec.h", "primitives/shape.h", "primitives/shape_single_ray.h"})
         out.include(name);
     out.include(plugin, plugin.primitive->kernels);

@@ -32,7 +32,14 @@ namespace {
 // free. That is 1.03 to 1.10 times as fast on a GPU. With refraction the faster tracer depends on the scene: see
 // docs/experiments.md.
 std::string tracer_for(const Device& device, const Scene& scene) {
-    return device.info().cpu || refracts(scene, {}) ? "iterative" : "wavefront";
+    return device.info().traces_packets() || refracts(scene, {}) ? "iterative" : "wavefront";
+}
+
+// Mesa 22.3: the simplest kernel of four lanes was still being compiled after 100 s, with 1.3 GiB of memory.
+void refuse_lanes(const Settings& s, const DeviceInfo& info) {
+    if (s.lanes > 1)
+        throw Error(Exit::usage, "--lanes " + std::to_string(s.lanes) + ": the compiler of " + info.name +
+                                     " does not come to an end with kernels of several lanes: take --lanes 1");
 }
 
 Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
@@ -40,7 +47,9 @@ Settings resolve(const Settings& asked, const Device& device, const Scene& scene
     if (s.tracer == "auto") s.tracer = tracer_for(device, scene);
     if (s.lanes == 0) s.lanes = static_cast<int>(device.info().preferred_lanes());
     if (s.packet_w == 0)
-        s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a packet stream: cl/lanes/packet_stream.h
+        s.packet_w = s.packet_h =
+            device.info().traces_packets() ? std::max(4, s.lanes) : 1;  // a packet stream: cl/lanes/packet_stream.h
+    if (device.info().llvmpipe) refuse_lanes(s, device.info());
     return s;
 }
 
@@ -211,7 +220,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     next->scene = scene;
     next->settings = resolve(settings, *device_, *scene);
     const rt_plugin* plugin = &resolve_accel(plugins_, kind_of({info_}), next->settings);
-    next->layout = make_layout(next->settings, device_->info().cpu);
+    next->layout = make_layout(next->settings, device_->info().traces_packets());
     try {
         next->accel = built ? std::move(built) : build_or_last(scene, next->settings, progress);
         next->is_moved = moved.by_device;

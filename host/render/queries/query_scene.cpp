@@ -18,8 +18,8 @@ std::shared_ptr<const Prepared> prepare_queries(Device& device, std::shared_ptr<
     s.accel_params = accel->params;
     s.tracer = "iterative";
     if (s.lanes == 0) s.lanes = static_cast<int>(device.info().preferred_lanes());
-    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;
-    prepared->layout = make_layout(s, device.info().cpu);
+    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().traces_packets() ? std::max(4, s.lanes) : 1;
+    prepared->layout = make_layout(s, device.info().traces_packets());
     progress.stage("uploading the scene");
     wrap_cl_errors(device, "uploading the scene", [&] {
         prepared->on_device = std::make_shared<DeviceScene>(device, std::move(scene), std::move(accel), progress);
