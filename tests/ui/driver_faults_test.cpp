@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <filesystem>
-#include <thread>
 
-#include "support/scratch.hpp"
-#include "ui/driver/window_fixture.hpp"
+#include "ui/driver/faulty_driver.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -17,28 +14,13 @@ struct Fault {
     const char *words, *trigger, *says;
 };
 
-class DriverFaults : public WindowTest {
+class DriverFaults : public FaultyDriverTest {
  protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        scratch_.write("vendors/faulty.icd", std::string(FAULTY_DRIVER) + "\n");
-        fault("");
-    }
-    // What the driver does from now on.
-    void fault(const std::string& words) {
-        scratch_.write("next", words);
-        std::filesystem::rename(scratch_.path("next"), scratch_.path("fault"));
-    }
     std::unique_ptr<WindowDriver> open_on_faulty(const char* always, const char* limit_s = "10") {
-        return open({{"OCL_ICD_VENDORS", scratch_.path("vendors")},
-                     {"CLARITY_FAULT", always},
-                     {"CLARITY_FAULT_FILE", scratch_.path("fault")},
-                     {"CLARITY_PROGRAM_CACHE", scratch_.path("programs")},
-                     {"CLARITY_COMPILE", ""},
-                     {"CLARITY_COMPILE_PATIENCE", "2"},
-                     {"CLARITY_COMPILE_MEMORY", "1500"},
-                     {"CLARITY_LAUNCH_LIMIT", limit_s},
-                     {"CLARITY_DEVICE", ""}});
+        return FaultyDriverTest::open_on_faulty(always, {{"CLARITY_COMPILE", ""},
+                                                         {"CLARITY_COMPILE_PATIENCE", "2"},
+                                                         {"CLARITY_COMPILE_MEMORY", "1500"},
+                                                         {"CLARITY_LAUNCH_LIMIT", limit_s}});
     }
     static bool says(const nlohmann::json& state, const std::string& text) {
         for (const char* place : {"message", "stage"})
@@ -79,7 +61,6 @@ class DriverFaults : public WindowTest {
         window.settle();
         EXPECT_EQ(difference(before, window.picture(), 0), 0) << one.words;
     }
-    Scratch scratch_;
 };
 
 TEST_F(DriverFaults, OfTheCompiler) {

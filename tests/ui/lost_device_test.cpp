@@ -1,38 +1,20 @@
 // Devices that are lost while the window traces, with a driver that misbehaves on demand (tests/compile/faulty_icd.c).
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
-#include "support/scratch.hpp"
-#include "ui/driver/window_fixture.hpp"
+#include "ui/driver/faulty_driver.hpp"
 
 namespace clarity::ui {
 namespace {
 
-class LostDevice : public WindowTest {
+class LostDevice : public FaultyDriverTest {
  protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        scratch_.write("vendors/faulty.icd", std::string(FAULTY_DRIVER) + "\n");
-        fault("");
-    }
-    // What the driver does from now on.
-    void fault(const std::string& words) {
-        scratch_.write("next", words);
-        std::filesystem::rename(scratch_.path("next"), scratch_.path("fault"));
-    }
     std::unique_ptr<WindowDriver> open_on_faulty() {
-        return open({{"OCL_ICD_VENDORS", scratch_.path("vendors")},
-                     {"CLARITY_FAULT", "other,gpu"},
-                     {"CLARITY_FAULT_FILE", scratch_.path("fault")},
-                     {"CLARITY_PROGRAM_CACHE", scratch_.path("programs")},
-                     {"CLARITY_LAUNCH_LIMIT", "10"},  // the first launch on a busy machine may take 3 s
-                     {"CLARITY_DEVICE", ""}});
+        // The first launch on a busy machine may take 3 s.
+        return FaultyDriverTest::open_on_faulty("other,gpu", {{"CLARITY_LAUNCH_LIMIT", "10"}});
     }
     static bool says(const nlohmann::json& state, const char* text) {
         return std::string(state["message"]).find(text) != std::string::npos;
     }
-    Scratch scratch_;
 };
 
 TEST_F(LostDevice, ALaunchWithoutEndIsReportedAndThePictureReturns) {

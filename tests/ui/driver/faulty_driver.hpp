@@ -1,0 +1,40 @@
+// faulty_driver.hpp -- base class of tests of a window on a driver that misbehaves on demand (tests/compile/faulty_icd.c).
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "support/scratch.hpp"
+#include "window_fixture.hpp"
+
+namespace clarity::ui {
+
+class FaultyDriverTest : public WindowTest {
+ protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        scratch_.write("vendors/faulty.icd", std::string(FAULTY_DRIVER) + "\n");
+        fault("");
+    }
+    // What the driver does from now on.
+    void fault(const std::string& words) {
+        scratch_.write("next", words);
+        std::filesystem::rename(scratch_.path("next"), scratch_.path("fault"));
+    }
+    // always: what the driver does from the start. more: further variables.
+    std::unique_ptr<WindowDriver> open_on_faulty(const char* always, const std::map<std::string, std::string>& more) {
+        std::map<std::string, std::string> environment = {{"OCL_ICD_VENDORS", scratch_.path("vendors")},
+                                                          {"CLARITY_FAULT", always},
+                                                          {"CLARITY_FAULT_FILE", scratch_.path("fault")},
+                                                          {"CLARITY_PROGRAM_CACHE", scratch_.path("programs")},
+                                                          {"CLARITY_DEVICE", ""}};
+        environment.insert(more.begin(), more.end());
+        return open(environment);
+    }
+
+ private:
+    Scratch scratch_;
+};
+
+}  // namespace clarity::ui
