@@ -16,11 +16,11 @@ struct Fault {
 
 class DriverFaults : public FaultyDriverTest {
  protected:
-    std::unique_ptr<WindowDriver> open_on_faulty(const char* always, const char* limit_s = "10") {
+    std::unique_ptr<WindowDriver> open_on_faulty(const char* always) {
         return FaultyDriverTest::open_on_faulty(always, {{"CLARITY_COMPILE", ""},
                                                          {"CLARITY_COMPILE_PATIENCE", "2"},
                                                          {"CLARITY_COMPILE_MEMORY", "1500"},
-                                                         {"CLARITY_LAUNCH_LIMIT", limit_s}});
+                                                         {"CLARITY_LAUNCH_LIMIT", "10"}});
     }
     static bool says(const nlohmann::json& state, const std::string& text) {
         for (const char* place : {"message", "stage"})
@@ -44,7 +44,7 @@ class DriverFaults : public FaultyDriverTest {
                     (std::string(state["message"]) + " / " + std::string(state["stage"])).c_str());
         EXPECT_TRUE(says(state, one.says)) << one.words << ": " << state["message"] << state["stage"];
         // A busy machine may delay us for a moment. A window that waits for the driver takes longer than this.
-        EXPECT_LT(double(state["slowest_answer_ms"]), 500) << one.words;
+        EXPECT_LT(double(state["slowest_answer_ms"]), 1000) << one.words;
     }
     // Likewise. Then the fault is gone, and the window has the picture that it had before.
     void meet(WindowDriver& window, const Fault& one) {
@@ -83,8 +83,8 @@ TEST_F(DriverFaults, OfADevice) {
 
 // Nothing stops a launch on a CPU. The window says so, and closes.
 TEST_F(DriverFaults, ALaunchThatHangs) {
-    const auto window = open_on_faulty("", "4");
-    meet_it(*window, {"launch-hangs", "set depth 2", "no sign of life for 6 s"});
+    const auto window = open_on_faulty("");
+    meet_it(*window, {"launch-hangs", "set depth 2", "no sign of life"});
     const auto begin = std::chrono::steady_clock::now();
     window->quit();
     EXPECT_EQ(window->exit_code(), 0);

@@ -10,7 +10,7 @@
 #define BVH8_CHILDREN(node) ((const global uint *)((node) + 192))
 
 /* The bits of a mask of eight children, child 0 in bit 0: as rt_bits of lanes.h, but not for RT_LANES rays. */
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX__)
+#if !defined(RT_PORTABLE) && defined(__AVX__) && RT_HAS_BUILTIN(__builtin_ia32_movmskps256)
 #define BVH8_BITS(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
 #else
 RT_INLINE uint bvh8_bits(int8 m)
@@ -77,7 +77,7 @@ RT_INLINE void bvh8_intersect(const global char *node, const bvh8_rows *rows, co
  * core's cache a sixth faster for it. */
 RT_INLINE void bvh8_prefetch_at(ulong address)
 {
-#if RT_CPU && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
+#if RT_CPU && RT_HAS_BUILTIN(__builtin_prefetch) && !defined(__SPIR__) /* simulators compile for SPIR */
     __attribute__((opencl_unroll_hint(4)))
     for (uint i = 0; i < 256u; i += 64u) __builtin_prefetch((const void *)(address + i));
 #endif

@@ -39,11 +39,17 @@ RT_INLINE void bvh8_begin_ray_stacks(bvh8_ray_stacks *s, const rt_rays *ray, con
     }
 }
 
+#if !defined(RT_PORTABLE) && defined(__AVX512VL__) && RT_HAS_BUILTIN(__builtin_ia32_permvarsf256) && \
+    RT_HAS_BUILTIN(__builtin_ia32_permvarsi256) && RT_HAS_BUILTIN(__builtin_ia32_compresssf256_mask) && \
+    RT_HAS_BUILTIN(__builtin_ia32_compresssi256_mask)
+#define BVH8_COMPRESSES
+#endif
+
 /* Writes the children of a node that a ray enters, and its entry distances, in the order of `slots`. Returns their number.
  * Eight are written, whatever their number. */
 RT_INLINE uint bvh8_push(float8 in, float8 out, const global char *node, const int8 *slots, float *entry, uint *child)
 {
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512VL__)
+#ifdef BVH8_COMPRESSES
     const int8 slot = *slots;
     const float8 from = __builtin_ia32_permvarsf256(in, slot), to = __builtin_ia32_permvarsf256(out, slot);
     const int8 children = __builtin_ia32_permvarsi256(*(const global int8 *)(node + 192), slot);
@@ -71,7 +77,7 @@ RT_INLINE uint bvh8_push(float8 in, float8 out, const global char *node, const i
 RT_INLINE uint bvh8_push_any(float8 in, float8 out, const global char *node, uint *child)
 {
     const uint bits = BVH8_BITS(in <= out);
-#if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512VL__)
+#ifdef BVH8_COMPRESSES
     const int8 children = *(const global int8 *)(node + 192);
     vstore8(__builtin_ia32_compresssi256_mask(children, children, (uchar)bits), 0, (int *)child);
     return popcount(bits);
