@@ -14,8 +14,9 @@ inline bool means_lost(cl_int error) {
            error == CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST || error == kNvidiaIllegalAccess;
 }
 
-// The message of a failed call. Notes it if the device is lost.
+// The message of a failed call. Notes it if the device is lost, and waits for what a CPU still does.
 inline Error error_on(const Device& device, const std::string& doing, const cl::Error& e) {
+    device.drain();
     if (means_lost(e.err())) device.loss()->note_failed();
     if (e.err() == CL_OUT_OF_RESOURCES) device.loss()->note_refused();
     const bool lost = device.loss()->lost();

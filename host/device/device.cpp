@@ -26,6 +26,10 @@ Device::~Device() {
     if (loss_->stuck()) never_release(std::make_shared<std::pair<cl::Context, cl::CommandQueue>>(context_, queue_));
 }
 
+void Device::drain() const noexcept {
+    if (info_.cpu) clFinish(queue_());
+}
+
 std::shared_ptr<Device> Device::with_own_queue() const {
     return std::shared_ptr<Device>(new Device(info_, context_, loss_));
 }

@@ -60,6 +60,9 @@ class Device {
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
     // Shared by all queues of the context. A device that is lost has to be opened anew.
     const std::shared_ptr<DeviceLoss>& loss() const { return loss_; }
+    // Waits for what is in the queue, on a CPU: after a failure the owner of a buffer frees it, and kernels of PoCL do not keep
+    // theirs. Drivers for GPUs do.
+    void drain() const noexcept;
     // Returns the same device and context with a queue of its own, so that kernels of both queues may run at the same time.
     std::shared_ptr<Device> with_own_queue() const;
 
