@@ -18,8 +18,8 @@
 #define RT_CAT_(a, b) a##b
 #define RT_CAT(a, b) RT_CAT_(a, b)
 
-/* Whether the compiler knows a builtin function. Clang 14 (PoCL 3.1) says yes also where the machine lacks the instruction, so a
- * caller asks for the instruction set, too. Other architectures and simulators do not know it and take the portable form. */
+/* Whether the compiler knows a builtin function. Clang says yes also where the machine lacks the instruction, so a caller asks for
+ * the instruction set, too. Other architectures and simulators do not know it and take the portable form. */
 #ifdef __has_builtin
 #define RT_HAS_BUILTIN(name) __has_builtin(name)
 #else

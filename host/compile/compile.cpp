@@ -83,8 +83,8 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         result.log = outcome.log;
         binary = std::move(outcome.binary);
     }
-    set_aside(wanted.key);
     if (!binary->empty()) {
+        if (info.pocl) set_aside(wanted.key);
         auto program = program_of(device, *binary, wanted.options);
         put_back(wanted.key);
         if (program) {
@@ -94,6 +94,7 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         }
         forget_program(wanted.key);
     }
+    set_aside(wanted.key);
     BuildResult built = here(wanted.options);
     put_back(wanted.key);
     return built;

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "base/files/pending_write.hpp"
 #include "base/log.hpp"
 #include "device/launch_limit.hpp"
 #include "ui/session/session.hpp"
@@ -64,7 +65,7 @@ void Session::take_lost_devices() {
 // be done is to say so.
 void Session::watch_tracing() {
     const double silent_s = frames_.silent_s();
-    const bool silent = silent_s > 1.5 * launch_limit_s();
+    const bool silent = silent_s > 1.5 * launch_limit_s() && !PendingWrite::any();  // the same thread saves pictures
     if (silent && !told_silent_)
         report("tracing has given no sign of life for " + std::to_string(std::lround(silent_s)) +
                " s: a launch does not end, or the driver does not return from a call, and neither can be stopped. The last "

@@ -15,7 +15,7 @@ namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
-// Those who trace ask between two launches whether they are to stop. So it also tells that they go on.
+// Between two launches the tracer asks whether it is to stop. The time of the last question is its last sign of life.
 class FrameThread::StopProgress : public Progress {
  public:
     bool cancelled() const override {

@@ -34,7 +34,7 @@ class FrameThread {
     bool idle() const;
     // Whether the posted job is being traced, or was, or cannot be.
     bool begun() const;
-    // Seconds since the work in hand gave a sign of life, which it does between two launches. 0 if nothing is traced.
+    // Seconds since the work in hand gave a sign of life, which a trace does between two launches. 0 if there is none.
     double silent_s() const;
     // Returns why tracing stopped, and forgets it. Empty: it did not.
     std::string take_failure();

@@ -35,21 +35,10 @@ std::string tracer_for(const Device& device, const Scene& scene) {
     return device.info().traces_packets() || refracts(scene, {}) ? "iterative" : "wavefront";
 }
 
-// Mesa 22.3: the simplest kernel of four lanes was still being compiled after 100 s, with 1.3 GiB of memory.
-void refuse_lanes(const Settings& s, const DeviceInfo& info) {
-    if (s.lanes > 1)
-        throw Error(Exit::usage, "--lanes " + std::to_string(s.lanes) + ": the compiler of " + info.name +
-                                     " does not come to an end with kernels of several lanes: take --lanes 1");
-}
-
 Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
     Settings s = asked;
     if (s.tracer == "auto") s.tracer = tracer_for(device, scene);
-    if (s.lanes == 0) s.lanes = static_cast<int>(device.info().preferred_lanes());
-    if (s.packet_w == 0)
-        s.packet_w = s.packet_h =
-            device.info().traces_packets() ? std::max(4, s.lanes) : 1;  // a packet stream: cl/lanes/packet_stream.h
-    if (device.info().llvmpipe) refuse_lanes(s, device.info());
+    resolve_packet(s, device.info());
     return s;
 }
 

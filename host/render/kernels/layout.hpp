@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 
+#include "device/device.hpp"
 #include "render/settings/settings.hpp"
 
 namespace clarity {
@@ -37,8 +38,11 @@ struct Layout {
     unsigned row_height() const { return group_h * packet_h; }  // pixels; of a row of work-groups
     PixelPlace place_of(unsigned x, unsigned y, unsigned width) const;
 };
-// cpu: whether the device is a CPU. In `settings`, packet and lanes must be resolved. Throws Error(usage) if packet x ray_slots
-// needs more private memory than devices have.
+// Chooses lanes and the packet's size where they are `auto`, as suits the device. Throws Error(usage) for lanes that its
+// compiler cannot do.
+void resolve_packet(Settings& settings, const DeviceInfo& info);
+// cpu: DeviceInfo::traces_packets(). In `settings`, packet and lanes must be resolved. Throws Error(usage) if packet x
+// ray_slots needs more private memory than devices have.
 Layout make_layout(const Settings& settings, bool cpu);
 
 }  // namespace clarity

@@ -1,7 +1,5 @@
 #include "render/queries/query_scene.hpp"
 
-#include <algorithm>
-
 #include "device/cl_errors.hpp"
 #include "render/frame/device_scene.hpp"
 
@@ -17,8 +15,7 @@ std::shared_ptr<const Prepared> prepare_queries(Device& device, std::shared_ptr<
     s.accel = accel->plugin->id;
     s.accel_params = accel->params;
     s.tracer = "iterative";
-    if (s.lanes == 0) s.lanes = static_cast<int>(device.info().preferred_lanes());
-    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().traces_packets() ? std::max(4, s.lanes) : 1;
+    resolve_packet(s, device.info());
     prepared->layout = make_layout(s, device.info().traces_packets());
     progress.stage("uploading the scene");
     wrap_cl_errors(device, "uploading the scene", [&] {
