@@ -19,9 +19,9 @@ class Trials : public ::testing::Test {
         if (run_program({"devices"}).exit_code == 3) GTEST_SKIP() << "no OpenCL device on this machine";
         fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
         fs::create_directories(scratch_.path("plugins/accel"));
-        for (const char* id : {"linear", "bvh2"})
-            fs::copy(fs::path(CLARITY_SOURCE_DIR) / "plugins/accel" / id, scratch_.path(std::string("plugins/accel/") + id),
-                     fs::copy_options::recursive);
+        fs::create_directories(scratch_.path("plugins/primitives"));
+        for (const std::string folder : {"plugins/accel/linear", "plugins/accel/bvh2", "plugins/primitives/torus"})
+            fs::copy(fs::path(CLARITY_SOURCE_DIR) / folder, scratch_.path(folder), fs::copy_options::recursive);
         scratch_.write("a.scene", kScene);
     }
     void edit(const std::string& file, const std::string& from, const std::string& to) {
@@ -30,16 +30,28 @@ class Trials : public ::testing::Test {
         ASSERT_NE(at, std::string::npos) << file << " has changed: edit something else of it here";
         scratch_.write(file, text.replace(at, from.size(), to));
     }
-    ProgramResult render(const std::string& accel, const std::string& trial = {}) {
-        fs::remove(scratch_.path("a.png"));
+    ProgramResult run(const std::vector<std::string>& arguments) {
         RunOptions options;
         options.environment = {{"CLARITY_KERNEL_PATH", scratch_.path("cl")},
                                {"CLARITY_COMPILE", "worker"},
-                               {"CLARITY_TRIAL", trial},
                                {"XDG_CACHE_HOME", scratch_.path("cache")}};
-        return run_program({"render", scratch_.path("a.scene"), "-o", scratch_.path("a.png"), "--size", "32x32", "--lanes", "1",
-                            "--depth", "2", "--tracer", "iterative", "--device", "cpu", "--accel", accel},
-                           options);
+        return run_program(arguments, options);
+    }
+    ProgramResult render(const std::string& accel, const std::string& trial = "auto") {
+        fs::remove(scratch_.path("a.png"));
+        return run({"render", scratch_.path("a.scene"), "-o", scratch_.path("a.png"), "--size", "32x32", "--lanes", "1",
+                    "--depth", "2", "--tracer", "iterative", "--device", "cpu", "--accel", accel, "--trial", trial});
+    }
+    ProgramResult trace(bool any_hit) {
+        scratch_.write("rays", "0 0 5 0  0 0 -1 inf\n");
+        std::vector<std::string> words = {"trace",    scratch_.path("a.scene"),
+                                          "--rays",   scratch_.path("rays"),
+                                          "-o",       scratch_.path("hits"),
+                                          "--lanes",  "1",
+                                          "--device", "cpu",
+                                          "--accel",  "linear"};
+        if (any_hit) words.push_back("--any");
+        return run(words);
     }
     void expect_refused(const ProgramResult& result, const std::vector<std::string>& says) const {
         EXPECT_EQ(result.exit_code, 5) << result.err;
@@ -93,6 +105,38 @@ TEST_F(Trials, AReadBehindASlotIsFound) {
 TEST_F(Trials, AStackThatIsTooSmallIsFound) {
     edit("plugins/accel/bvh2/bvh2.cl", "RT_STACK_OK(top + 1u, BVH2_STACK, hit)", "RT_STACK_OK(top + 1u, 2u, hit)");
     expect_refused(render("bvh2"), {"would have written beyond a traversal stack", "bvh2.cl, changed from line 44 on"});
+}
+
+TEST_F(Trials, KernelsOfAShapeAreTried) {
+    scratch_.write("a.scene", "torus center 0 0 0 normal 0 1 0 radius 1 tube .3\nlight point position 2 3 4\n");
+    const std::string file = "plugins/primitives/torus/torus.cl", start = "RT_INLINE void torus_surface(";
+    edit(file, start, "/* harmless */ " + start);
+    EXPECT_EQ(render("linear").exit_code, 0);
+    EXPECT_EQ(kept(), 1u);
+    edit(file, "if (!s->wants_uv) return;", "while (s->wants_uv < 2) s->tex_u = at.x;");
+    expect_refused(render("linear"), {"did not come to an end within", "while they traced a frame", scratch_.path(file)});
+}
+
+TEST_F(Trials, KernelsOfTheFilmAreTried) {
+    edit("cl/film.cl", "if (i < count) rt_map_tones", "while (i < count) rt_map_tones");
+    expect_refused(render("linear"), {"did not come to an end within", "while they mapped tones", scratch_.path("cl/film.cl")});
+    edit("cl/film.cl", "while (i < count) rt_map_tones", "if (i < count) rt_map_tones");
+    edit("cl/film.cl", "const float16 sum = vload16(i, film);", "const float16 sum = vload16(i + 768u, film);");
+    expect_refused(render("linear"), {"crashed (segmentation fault", "the film", "while they mapped tones"});
+}
+
+TEST_F(Trials, KernelsOfRayQueriesAreTried) {
+    EXPECT_EQ(trace(false).exit_code, 0);
+    EXPECT_EQ(kept(), 0u);
+    edit(linear_, loop_, "/* harmless */\n    " + loop_);
+    EXPECT_EQ(trace(false).exit_code, 0);
+    EXPECT_EQ(kept(), 1u);
+    edit(linear_, loop_, "for (uint i = 0; i < count; i += 0u) {");
+    for (const bool any_hit : {false, true}) {
+        const ProgramResult result = trace(any_hit);
+        EXPECT_EQ(result.exit_code, 5) << result.err;
+        EXPECT_NE(result.err.find("while they traced 1000 rays of a query"), std::string::npos) << result.err;
+    }
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "compile/compile.hpp"
 #include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
-#include "device/program.hpp"
 
 namespace clarity {
 namespace {
@@ -35,7 +35,10 @@ cl::Program BuildKernels::compile(const std::string& text, const std::string& wh
         headers += "#line 1 \"cl/" + name + "\"\n" + kernel_text(name);
     if (!more_options.empty()) options += " " + more_options;
     cl::Program& program = programs_[options + "\n" + headers + text];
-    if (!program()) program = build_program(*device_, headers + text, options, what).program;
+    if (!program()) {
+        Progress never_cancelled;
+        program = compile_program(*device_, {headers + text, options, what}, never_cancelled).program;
+    }
     return program;
 }
 

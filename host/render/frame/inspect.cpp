@@ -9,6 +9,7 @@
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/trial/trial.hpp"
 
 namespace clarity {
 namespace {
@@ -72,7 +73,8 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
                                      std::to_string(width) + "x" + std::to_string(height));
     const Layout& layout = prepared.layout;
-    const auto program = im.programs.get(kernel_for(prepared, KernelKind::inspect));
+    Progress never_cancelled;
+    const auto program = tried_program(im.programs, prepared, KernelKind::inspect, never_cancelled);
     return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
         const cl::Context& context = im.device->context();
         im.view.write(im.queue, *prepared.scene, *prepared.on_device, {make_frame(view, settings, layout, *prepared.accel, 0)},

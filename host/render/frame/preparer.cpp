@@ -226,21 +226,23 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         if (progress.cancelled()) throw Cancelled();
         // The film's program is needed with the first picture. It compiles beside that of the tracer, in a worker of its own.
         std::future<void> film;
-        if (!std::exchange(film_compiled_, true))
-            film = std::async(std::launch::async, [&] { compile_ahead(info_, film_program(), progress); });
+        if (!film_compiled_)
+            film = std::async(std::launch::async, [&] {
+                compile_ahead(info_, film_program(), progress);
+                try_film(info_, next->settings, progress);
+            });
         progress.stage("compiling kernels");
         progress.report(-1);
         const auto start = std::chrono::steady_clock::now();
         bool fresh = false;
-        const KernelSource source = kernel_for(*next, kind_for(find_aov(next->settings.aov)));
-        const auto program = programs_->get(source, &fresh, progress);
+        const auto program = tried_program(*programs_, *next, kind_for(find_aov(next->settings.aov)), progress, &fresh);
         next->program = program;
-        try_kernels({source, *next, info_}, progress);
         if (fresh) {
             progress.stage(kFirstLaunchStage);
             warm_up(device_, *program, *next);
         }
         if (film.valid()) film.get();
+        film_compiled_ = true;
         next->compile_ms = fresh ? ms_since(start) : 0;
         next->compile_cached = !fresh;
     } catch (const cl::Error& e) {

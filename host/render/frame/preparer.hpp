@@ -61,7 +61,7 @@ class Preparer {
     std::shared_ptr<Device> device_;          // nullptr: closed
     std::unique_ptr<ProgramCache> programs_;  // nullptr: closed
     std::shared_ptr<const Prepared> last_;    // without buffers and program after close_device()
-    bool film_compiled_ = false;              // or found on disk
+    bool film_compiled_ = false;              // or found on disk, and tried
     mutable std::mutex mutex_;
 };
 

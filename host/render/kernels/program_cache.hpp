@@ -18,6 +18,7 @@ class TraceProgram {
     const KernelRow& row;  // of the kernel that traces; the program may have other kernels too
     cl::Program program;
     double compile_ms = 0;
+    bool tried = false;  // by tried_program()
     // Whether the kernel traces more than camera rays, and therefore takes buffers for counters and distances.
     bool has_generations() const { return row.kind == KernelKind::color || row.kind == KernelKind::generations; }
     bool is_wavefront() const { return row.has(kFrameQueues); }

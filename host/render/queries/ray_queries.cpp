@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
 #include "render/frame/frame_constants.hpp"
+#include "render/trial/trial.hpp"
 
 namespace clarity {
 namespace {
@@ -77,7 +78,8 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
             autotuner_ = Autotuner(static_cast<unsigned>(kinds_.size()));
         }
         const KernelKind kind = kinds_[autotuner_.variant()];
-        const auto program = programs_.get(kernel_for(prepared, kind));
+        Progress never_cancelled;
+        const auto program = tried_program(programs_, prepared, kind, never_cancelled);
         tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
         cl::CommandQueue& queue = device_->queue();
         view_.write(queue, *prepared.scene, *prepared.on_device,

@@ -175,6 +175,10 @@ const std::vector<Setting>& settings_table() {
                 Effect::recompile, &Settings::portable),
         boolean("debug", "Debug kernels", "bounds every traversal stack and counts what would overflow", Effect::recompile,
                 &Settings::debug),
+        choice("trial", "Try kernels",
+               "kernels that were edited, and those of plugins that did not come with the program, run in a worker process "
+               "first, on a small scene; auto: on CPUs; off: never, for measurements",
+               {"auto", "on", "off"}, Effect::recompile, &Settings::trial),
     };
     return table;
 }

@@ -25,6 +25,7 @@ struct Settings {
     bool fast_math = false;  // -cl-fast-relaxed-math
     bool portable = false;   // the kernels' fallbacks instead of CPU instructions, for tests
     bool debug = false;      // kernels check the bounds of traversal stacks
+    std::string trial = "auto";  // auto|on|off: whether edited kernels and strangers' run in a worker first
     // The picture.
     int width = 1024, height = 768;
     int spp = 1;         // samples per pixel

@@ -1,39 +1,29 @@
 #include "render/trial/trial.hpp"
 
-#include <unistd.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <mutex>
-#include <set>
+#include <vector>
 
 #include "base/error.hpp"
-#include "base/files/cache_folder.hpp"
 #include "base/files/library_files.hpp"
-#include "base/hash.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "compile/compile.hpp"
 #include "device/kernel_files.hpp"
 #include "plugin/registry.hpp"
-#include "render/kernels/scene_features.hpp"
+#include "render/film/film.hpp"
+#include "render/trial/passed_programs.hpp"
 #include "render/trial/trial_arguments.hpp"
+#include "render/trial/trial_supervisor.hpp"
 #include "worker/child.hpp"
-#include "worker/supervisor.hpp"
 
 namespace clarity {
 namespace {
 
 namespace fs = std::filesystem;
 
-bool is_wanted(const DeviceInfo& info) {
-    if (std::getenv(worker::kWorkerVariable)) return false;
-    const char* word = std::getenv("CLARITY_TRIAL");
-    if (word && std::strcmp(word, "off") == 0) return false;
-    return (word && std::strcmp(word, "on") == 0) || (info.cpu && compiles_in_worker());
+bool is_wanted(const DeviceInfo& info, const Settings& settings) {
+    if (std::getenv(worker::kWorkerVariable) || settings.trial == "off") return false;
+    return settings.trial == "on" || (info.cpu && compiles_in_worker());
 }
 
 // The file that a plugin was loaded from; empty: it is part of this program.
@@ -43,141 +33,52 @@ std::string library_of(const rt_plugin& plugin) {
     return file.empty() || fs::equivalent(file, program_file(), error) ? std::string() : file;
 }
 
+// The plugins whose kernels are in programs for this scene and structure.
+std::vector<const rt_plugin*> plugins_with_kernels(const Prepared& prepared) {
+    std::vector<const rt_plugin*> plugins{prepared.accel->layout};
+    for (const ShapeKind& kind : prepared.scene->shape_kinds) plugins.push_back(kind.plugin);
+    return plugins;
+}
+
 // What has to be tried: "cl/tracers/iterative.cl, changed from line 12 on". Empty: these kernels are the program's own.
 struct Suspects {
     std::string text;
     SourceLocation first;  // of what was edited; without a message
 };
 
-Suspects suspects_of(const Trial& trial) {
+Suspects suspects_of(const std::string& source, const std::vector<const rt_plugin*>& plugins) {
     Suspects found;
     const auto add = [&](const std::string& text) { found.text += (found.text.empty() ? "" : ", ") + text; };
     for (const EditedKernel& edited : edited_kernels()) {
-        if (trial.source.text.find("\"" + edited.shown_name + "\"") == std::string::npos) continue;
+        if (source.find("\"" + edited.shown_name + "\"") == std::string::npos) continue;
         if (found.text.empty()) found.first = {edited.path, edited.line, 0, {}};
         add(edited.path + (edited.line ? ", changed from line " + std::to_string(edited.line) + " on" : ""));
     }
-    const std::string library = library_of(*trial.prepared.accel->layout);
-    if (!library.empty() && !is_own_library(original_of(library))) add("the kernels of " + original_of(library));
+    for (const rt_plugin* plugin : plugins) {
+        const std::string library = library_of(*plugin);
+        if (!library.empty() && !is_own_library(original_of(library))) add("the kernels of " + original_of(library));
+    }
     return found;
 }
 
-// Programs that have passed, by their text and device, in this process and in earlier ones.
-class Passed {
- public:
-    explicit Passed(const Trial& trial) {
-        const std::string text = trial.source.options + '\n' + trial.info.name + '\n' + trial.info.driver + '\n' +
-                                 trial.prepared.settings.accel + '\n' + trial.source.text;
-        char name[40];
-        std::snprintf(name, sizeof name, "%016llx-%zx", static_cast<unsigned long long>(hash_bytes(text.data(), text.size())),
-                      text.size());
-        name_ = name;
-    }
-    bool known() const {
-        const std::lock_guard<std::mutex> lock(mutex());
-        std::error_code error;
-        return names().count(name_) || (!cache_folder().empty() && fs::exists(folder() / name_, error));
-    }
-    void keep() const {
-        const std::lock_guard<std::mutex> lock(mutex());
-        names().insert(name_);
-        // The note for later processes is a convenience: without it they try these kernels again.
-        if (cache_folder().empty()) return;
-        std::error_code error;
-        fs::create_directories(folder(), error);
-        std::ofstream(folder() / name_) << '\n';
-    }
-
- private:
-    static fs::path folder() { return cache_folder() / "tried_kernels"; }
-    static std::mutex& mutex() {
-        static auto& all = *new std::mutex;
-        return all;
-    }
-    static std::set<std::string>& names() {
-        static auto& all = *new std::set<std::string>;
-        return all;
-    }
-    std::string name_;
+// A program that may have to be tried.
+struct Subject {
+    const DeviceInfo& info;
+    std::string what, source, options;      // as the compiler gets them
+    std::string depends_on;                 // what else the trial depends on
+    std::string look_closer;                // what to do when it has failed
+    std::vector<const rt_plugin*> plugins;  // with kernels in it
 };
 
-class TrialSupervisor : public worker::Supervisor {
- public:
-    TrialSupervisor(worker::WorkerProcess& process, Progress& progress)
-        : Supervisor(process, {worker::kTrialGreeting, "a trial worker", worker::worker_program(), Exit::kernel_build_failed},
-                     progress) {}
-    // Why there was no trial, through no fault of the kernels; empty: there was one.
-    const std::string& not_tried() const { return not_tried_; }
-
- private:
-    void handle(const worker::Message& message) override {
-        if (message.kind == worker::MessageKind::running) {
-            step_ = message.text;
-            limit_s_ = message.fraction > 0 && message.fraction < 1e9f ? double(message.fraction) : 60;
-            made_progress();
-        } else if (message.kind == worker::MessageKind::report) {
-            not_tried_ = message.text;
-        }
-    }
-    double idle_limit_s() const override { return limit_s_; }
-    bool counts_processor_time() const override { return true; }
-    uint64_t processor_limit_s() const override { return 0; }
-    uint64_t memory_limit_bytes() const override {
-        return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) / 4 * 3;
-    }
-    std::string speaker() const override { return "the trial of kernels"; }
-    void ended(const worker::Ending& ending) const override {
-        using End = worker::Ending::Kind;
-        const auto fail = [&](const std::string& what) { throw Error(Exit::kernel_build_failed, what + " while " + step_); };
-        switch (ending.kind) {
-            case End::crashed:
-                fail("crashed (" + ending.how + ")");
-                break;
-            case End::no_progress:
-                fail("did not come to an end within " + ending.how + " of processor time");
-                break;
-            case End::memory:
-                fail("took more than " + ending.how + " of memory");
-                break;
-            case End::exited:
-                fail("ended the process (" + ending.how + ")");
-                break;
-            default:
-                fail("were killed from outside, maybe for want of memory,");
-        }
-    }
-    std::string step_ = "starting", not_tried_;
-    double limit_s_ = 60;
-};
-
-TrialArguments arguments_of(const Trial& trial) {
-    const AccelData& accel = *trial.prepared.accel;
-    TrialArguments arguments;
-    for (const rt_plugin* plugin : {accel.plugin, accel.layout}) {
-        const std::string library = library_of(*plugin);
-        if (arguments.libraries.empty() || arguments.libraries.back().first != library)
-            arguments.libraries.emplace_back(library, original_of(library));
-    }
-    arguments.device = trial.info.id();
-    arguments.device_name = trial.info.name;
-    arguments.features = features_of(*trial.prepared.scene, accel.scene);
-    arguments.settings = trial.prepared.settings;
-    arguments.settings.accel = accel.plugin->id;
-    arguments.settings.accel_params = accel.params;
-    return arguments;
-}
-
-}  // namespace
-
-void try_kernels(const Trial& trial, Progress& progress) {
-    if (!is_wanted(trial.info)) return;
-    const Suspects suspects = suspects_of(trial);
-    const Passed passed(trial);
-    if (suspects.text.empty() || library_of(*trial.prepared.accel->layout).empty() || passed.known()) return;
+void try_subject(const Subject& subject, const std::function<TrialArguments()>& arguments, Progress& progress) {
+    const Suspects suspects = suspects_of(subject.source, subject.plugins);
+    if (suspects.text.empty()) return;
+    const PassedProgram passed(subject.options + '\n' + subject.info.name + '\n' + subject.info.driver + '\n' +
+                               subject.depends_on + '\n' + subject.source);
+    if (passed.known()) return;
     if (progress.cancelled()) throw Cancelled();
     progress.stage("trying kernels in a worker");
-    worker::WorkerProcess process(worker::worker_program(), "trial-worker", words_of(arguments_of(trial)),
-                                  Exit::kernel_build_failed);
+    worker::WorkerProcess process(worker::worker_program(), "trial-worker", words_of(arguments()), Exit::kernel_build_failed);
     TrialSupervisor supervisor(process, progress);
     try {
         supervisor.follow();
@@ -188,15 +89,81 @@ void try_kernels(const Trial& trial, Progress& progress) {
         SourceLocation place = suspects.first;
         place.message = why;
         throw Error(Exit::kernel_build_failed,
-                    why + " (" + trial.source.what + "; " + suspects.text + "); `clarity check " +
-                        trial.prepared.accel->layout->id +
-                        "` looks closer, with oclgrind if that is installed; CLARITY_TRIAL=off runs kernels untried",
+                    why + " (" + subject.what + "; " + suspects.text + ")" + subject.look_closer +
+                        "; --trial off (in the window: Try kernels) runs kernels untried",
                     {}, place);
     }
     if (supervisor.not_tried().empty())
         passed.keep();
     else
         log(LogLevel::debug, "kernels were not tried: " + printable_line(supervisor.not_tried()));
+}
+
+TrialArguments arguments_for(const DeviceInfo& info, const Settings& settings, TrialKind kind) {
+    TrialArguments arguments;
+    arguments.kind = kind;
+    arguments.device = info.id();
+    arguments.device_name = info.name;
+    arguments.settings = settings;
+    return arguments;
+}
+
+TrialKind trial_of(KernelKind kind) {
+    switch (kind) {
+        case KernelKind::color:
+        case KernelKind::generations:
+        case KernelKind::aov:
+            return TrialKind::frame;
+        case KernelKind::inspect:
+            return TrialKind::pixels;
+        case KernelKind::counted_rays:
+            return TrialKind::counted_rays;
+        default:
+            return TrialKind::rays;
+    }
+}
+
+TrialArguments arguments_of(const Prepared& prepared, const DeviceInfo& info, KernelKind kind) {
+    const AccelData& accel = *prepared.accel;
+    TrialArguments arguments = arguments_for(info, prepared.settings, trial_of(kind));
+    std::vector<const rt_plugin*> plugins = plugins_with_kernels(prepared);
+    plugins.push_back(accel.plugin);
+    for (const rt_plugin* plugin : plugins) {
+        const std::string library = library_of(*plugin);
+        if (!library.empty()) arguments.libraries[library] = original_of(library);
+    }
+    arguments.features = features_of(*prepared.scene, accel.scene);
+    arguments.shapes = sample_shapes(*prepared.scene);
+    arguments.settings.accel = accel.plugin->id;
+    arguments.settings.accel_params = accel.params;
+    return arguments;
+}
+
+}  // namespace
+
+std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepared& prepared, KernelKind kind,
+                                            Progress& progress, bool* fresh) {
+    const KernelSource source = kernel_for(prepared, kind);
+    const std::shared_ptr<TraceProgram> program = programs.get(source, fresh, progress);
+    const DeviceInfo& info = programs.device()->info();
+    if (program->tried || !is_wanted(info, prepared.settings)) return program;
+    // A worker cannot load a structure that is part of this program.
+    if (const rt_plugin& layout = *prepared.accel->layout; !library_of(layout).empty())
+        try_subject(
+            {info, source.what, source.text, source.options, prepared.accel->plugin->id,
+             std::string("; `clarity check ") + layout.id + "` looks closer, with oclgrind if that is installed",
+             plugins_with_kernels(prepared)},
+            [&] { return arguments_of(prepared, info, kind); }, progress);
+    program->tried = true;
+    return program;
+}
+
+void try_film(const DeviceInfo& info, const Settings& settings, Progress& progress) {
+    if (!is_wanted(info, settings)) return;
+    const CompileRequest program = film_program();
+    try_subject(
+        {info, program.what, program.source, program.options, {}, {}, {}},
+        [&] { return arguments_for(info, settings, TrialKind::film); }, progress);
 }
 
 }  // namespace clarity

@@ -1,18 +1,24 @@
 // trial_arguments.hpp -- what the worker that tries kernels is told on its command line.
 #pragma once
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "render/kernels/scene_features.hpp"
 #include "render/settings/settings.hpp"
+#include "render/trial/trial_shapes.hpp"
 
 namespace clarity {
 
+// What the worker runs: a frame, the rays of single pixels, rays of its own without or with counters, the kernels of the film.
+enum class TrialKind { frame, pixels, rays, counted_rays, film };
+
 struct TrialArguments {
-    std::vector<std::pair<std::string, std::string>> libraries;  // as loaded, and the file that each stands for
-    std::string device, device_name;                             // id as `--device` takes it; the worker skips another device
+    TrialKind kind = TrialKind::frame;
+    std::map<std::string, std::string> libraries;  // from each as loaded to the file that it stands for
+    std::string device, device_name;               // id as `--device` takes it; the worker skips another device
     SceneFeatures features;
+    std::vector<TrialShape> shapes;
     Settings settings;
     long parent = 0;  // read only
 };

@@ -1,5 +1,6 @@
-#include "render/trial/trial_scene.hpp"
+#include "render/trial/worker/trial_scene.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace clarity {
@@ -75,9 +76,22 @@ void add_materials(Scene& scene, bool textures) {
     for (const uint32_t texel : {0xFF2040C0u, 0xFFE0E0E0u, 0xFF40C020u, 0xFF808080u}) scene.texels.push_back(texel);
 }
 
+// In rows above the other objects.
+void add_shapes(Scene& scene, const std::vector<TrialShape>& shapes) {
+    size_t number = 0;
+    for (const TrialShape& shape : shapes)
+        for (rt_u32 kind = 0; kind < scene.shape_kinds.size(); ++kind) {
+            if (scene.shape_kinds[kind].id != shape.id) continue;
+            const float column = static_cast<float>(number % 5), row = static_cast<float>(number / 5);
+            add_shape(scene, shape, kind, std::array{kMatt, kGlass, kMirror}[number % 3],
+                      {-2.4f + 1.2f * column, 1.5f + 0.9f * row, 0.3f}, 0.45f);
+            ++number;
+        }
+}
+
 }  // namespace
 
-Scene trial_scene(const SceneFeatures& features) {
+Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& kinds, const std::vector<TrialShape>& shapes) {
     Scene scene;
     add_materials(scene, features.textures);
     add_bumps(scene, kGlass);
@@ -101,6 +115,8 @@ Scene trial_scene(const SceneFeatures& features) {
         scene.polygons.push_back({0, 5, kMatt});
     }
     if (features.planes) scene.planes.push_back({{0, 1, 0}, -1.5f, kMatt});
+    scene.shape_kinds = kinds;
+    add_shapes(scene, shapes);
     Light light;
     light.values = {{4, 6, 5}, RT_LIGHT_POINT, {40, 40, 40}, 0};
     scene.lights.push_back(light);

@@ -1,0 +1,23 @@
+// trial_runs.hpp -- what the worker that tries kernels does with them.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "device/device.hpp"
+#include "plugin/registry.hpp"
+#include "render/trial/trial_arguments.hpp"
+
+namespace clarity {
+
+// Tells what kernels do next, in the past tense ("they traced a frame ..."), and how many seconds of processor time of all
+// threads it may take.
+using TrialSteps = std::function<void(const std::string& step, double limit_s)>;
+
+// Runs kernels as the arguments say. Returns why there is no trial; empty: the kernels have passed. Throws Error if they have
+// not. arguments: of a kind other than film; its `settings` are those of the program that is tried.
+std::string try_on_small_scene(const TrialArguments& arguments, const PluginRegistry& plugins,
+                               const std::shared_ptr<Device>& device, const TrialSteps& say_step);
+// The same for the kernels of the film.
+std::string try_film_kernels(const std::shared_ptr<Device>& device, const TrialSteps& say_step);
+
+}  // namespace clarity
