@@ -64,6 +64,26 @@ TEST_F(KernelEdit, IsCompiledAndShownAutomatically) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
+TEST_F(KernelEdit, TheKernelThatInspectsPixelsIsTriedFirst) {
+    const fs::path file = folder.path() + "/cl/tracers/inspect.cl";
+    std::string text = text_of(file);
+    const std::string from = "if (packet != packet_wanted) continue;";
+    ASSERT_NE(text.find(from), std::string::npos) << file << " has changed: edit something else of it here";
+    write(file, text.replace(text.find(from), from.size(), "while (packet == packet_wanted) summary[0] += 1u;"));
+    auto variables = environment();
+    variables["CLARITY_COMPILE"] = "worker";
+    const auto window = open(variables);
+    window->command("inspect 8 8");
+    window->settle();
+    const std::string failure = window->command("inspection");
+    EXPECT_NE(failure.find("did not come to an end within"), std::string::npos) << failure;
+    EXPECT_NE(failure.find("while they recorded the rays of some pixels"), std::string::npos) << failure;
+    EXPECT_NE(failure.find(file.string() + ", changed from line"), std::string::npos) << failure;
+    window->key("Left");  // pictures go on
+    window->settle();
+    EXPECT_EQ(window->state()["message"], "");
+}
+
 TEST_F(KernelEdit, AMistakeIsReportedUntilItIsRepaired) {
     const auto window = open(environment());
     const Pixels before = window->picture();

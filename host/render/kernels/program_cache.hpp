@@ -4,8 +4,10 @@
 #include <atomic>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/error.hpp"
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/kernels/kernel_source.hpp"
@@ -18,7 +20,9 @@ class TraceProgram {
     const KernelRow& row;  // of the kernel that traces; the program may have other kernels too
     cl::Program program;
     double compile_ms = 0;
-    bool tried = false;  // by tried_program()
+    // Of tried_program(): whether the kernels may run; why they may not.
+    bool tried = false;
+    std::optional<Error> refused;
     // Whether the kernel traces more than camera rays, and therefore takes buffers for counters and distances.
     bool has_generations() const { return row.kind == KernelKind::color || row.kind == KernelKind::generations; }
     bool is_wavefront() const { return row.has(kFrameQueues); }

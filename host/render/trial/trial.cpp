@@ -147,13 +147,23 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
     const std::shared_ptr<TraceProgram> program = programs.get(source, fresh, progress);
     const DeviceInfo& info = programs.device()->info();
     if (program->tried || !is_wanted(info, prepared.settings)) return program;
+    // Until the file changes, or is loaded again: the window asks for the pixel under the mouse often.
+    if (program->refused) throw *program->refused;
     // A worker cannot load a structure that is part of this program.
-    if (const rt_plugin& layout = *prepared.accel->layout; !library_of(layout).empty())
-        try_subject(
-            {info, source.what, source.text, source.options, prepared.accel->plugin->id,
-             std::string("; `clarity check ") + layout.id + "` looks closer, with oclgrind if that is installed",
-             plugins_with_kernels(prepared)},
-            [&] { return arguments_of(prepared, info, kind); }, progress);
+    const rt_plugin& layout = *prepared.accel->layout;
+    try {
+        if (!library_of(layout).empty())
+            try_subject(
+                {info, source.what, source.text, source.options, prepared.accel->plugin->id,
+                 std::string("; `clarity check ") + layout.id + "` looks closer, with oclgrind if that is installed",
+                 plugins_with_kernels(prepared)},
+                [&] { return arguments_of(prepared, info, kind); }, progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& e) {
+        program->refused = e;
+        throw;
+    }
     program->tried = true;
     return program;
 }
