@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "render/moving/pose_follower.hpp"
+#include "render/moving/follow/pose_follower.hpp"
 #include "render/multi/motion_blur.hpp"
 #include "ui/threads/desired_state.hpp"
 

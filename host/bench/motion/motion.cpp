@@ -18,8 +18,8 @@
 #include "device/cl_errors.hpp"
 #include "plugin/extensions.hpp"
 #include "render/frame/preparer.hpp"
-#include "render/moving/device_motion.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include "bench/run/measure.hpp"
 #include "render/frame/frame_renderer.hpp"
 #include "render/frame/preparer.hpp"
-#include "render/moving/device_motion.hpp"
+#include "render/moving/on_device/device_motion.hpp"
 
 namespace clarity::bench {
 

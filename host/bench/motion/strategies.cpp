@@ -11,7 +11,7 @@
 #include "bench/output/row.hpp"
 #include "bench/run/bench.hpp"
 #include "render/frame/preparer.hpp"
-#include "render/moving/pose_follower.hpp"
+#include "render/moving/follow/pose_follower.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include "check/hits/ray_sets.hpp"
 #include "check/scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/moving/device_motion.hpp"
+#include "render/moving/on_device/device_motion.hpp"
 
 namespace clarity::check {
 namespace {

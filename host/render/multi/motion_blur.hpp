@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/settings/view.hpp"
 #include "scene/motion/pose.hpp"

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "render/frame/preparer.hpp"
-#include "render/moving/background_build.hpp"
-#include "render/moving/pose_mover.hpp"
+#include "render/moving/follow/background_build.hpp"
+#include "render/moving/follow/pose_mover.hpp"
 
 namespace clarity {
 

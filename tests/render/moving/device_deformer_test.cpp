@@ -1,13 +1,13 @@
 // device_deformer_test.cpp -- vertices that a device makes, against those that the host makes.
-#include "render/moving/device_deformer.hpp"
+#include "render/moving/on_device/device_deformer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "moving_scenes.hpp"
-#include "render/moving/device_motion.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 #include "render/queries/query_scene.hpp"
 #include "scene/motion/deform.hpp"
 #include "support/scenes.hpp"

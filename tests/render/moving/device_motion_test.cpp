@@ -1,5 +1,5 @@
 // device_motion_test.cpp -- structures that follow poses on a device, against those that follow them on the host.
-#include "render/moving/device_motion.hpp"
+#include "render/moving/on_device/device_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 #include "render/queries/query_scene.hpp"
 #include "render/queries/ray_queries.hpp"
 

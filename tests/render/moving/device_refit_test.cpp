@@ -5,8 +5,8 @@
 
 #include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/moving/device_motion.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 #include "render/queries/query_scene.hpp"
 
 namespace clarity::test {

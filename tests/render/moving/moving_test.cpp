@@ -1,5 +1,5 @@
 // moving_test.cpp -- structures that follow the poses of their scene by refits.
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 
 #include <gtest/gtest.h>
 

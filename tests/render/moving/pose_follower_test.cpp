@@ -1,5 +1,5 @@
 // pose_follower_test.cpp -- a structure that follows poses: when it is refitted, when it must be built, and what it says.
-#include "render/moving/pose_follower.hpp"
+#include "render/moving/follow/pose_follower.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 

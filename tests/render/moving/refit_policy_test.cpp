@@ -1,5 +1,5 @@
 // refit_policy_test.cpp -- the policy beside fixed strategies, on motions with known costs.
-#include "render/moving/refit_policy.hpp"
+#include "render/moving/follow/refit_policy.hpp"
 
 #include <gtest/gtest.h>
 

@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "base/aligned_bytes.hpp"
-#include "render/moving/device_deformer.hpp"
-#include "render/moving/device_structure.hpp"
 #include "render/moving/moved_group.hpp"
 #include "render/moving/moved_instances.hpp"
+#include "render/moving/on_device/device_deformer.hpp"
+#include "render/moving/on_device/device_structure.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {

@@ -1,4 +1,4 @@
-#include "render/moving/refit_policy.hpp"
+#include "render/moving/follow/refit_policy.hpp"
 
 #include <algorithm>
 

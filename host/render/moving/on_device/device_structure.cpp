@@ -1,4 +1,4 @@
-#include "render/moving/device_structure.hpp"
+#include "render/moving/on_device/device_structure.hpp"
 
 #include <algorithm>
 

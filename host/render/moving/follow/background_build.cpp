@@ -1,4 +1,4 @@
-#include "render/moving/background_build.hpp"
+#include "render/moving/follow/background_build.hpp"
 
 #include <utility>
 

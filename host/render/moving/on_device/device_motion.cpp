@@ -1,4 +1,4 @@
-#include "render/moving/device_motion.hpp"
+#include "render/moving/on_device/device_motion.hpp"
 
 #include <algorithm>
 #include <chrono>

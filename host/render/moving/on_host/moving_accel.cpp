@@ -1,4 +1,4 @@
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,10 +1,10 @@
-#include "render/moving/pose_mover.hpp"
+#include "render/moving/follow/pose_mover.hpp"
 
 #include <algorithm>
 
 #include "device/cl_errors.hpp"
-#include "render/moving/device_motion.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 
 namespace clarity {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/moving/deform_table.hpp"
+#include "render/moving/on_device/deform_table.hpp"
 
 #include <algorithm>
 

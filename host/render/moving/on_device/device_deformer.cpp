@@ -1,11 +1,11 @@
-#include "render/moving/device_deformer.hpp"
+#include "render/moving/on_device/device_deformer.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <map>
 
 #include "device/cl_errors.hpp"
-#include "render/moving/deform_table.hpp"
+#include "render/moving/on_device/deform_table.hpp"
 #include "scene/motion/dual_quaternion.hpp"
 
 namespace clarity {

@@ -11,9 +11,9 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/moving/background_build.hpp"
-#include "render/moving/pose_mover.hpp"
-#include "render/moving/refit_policy.hpp"
+#include "render/moving/follow/background_build.hpp"
+#include "render/moving/follow/pose_mover.hpp"
+#include "render/moving/follow/refit_policy.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 

@@ -1,11 +1,11 @@
-#include "render/moving/first_tree.hpp"
+#include "render/moving/follow/first_tree.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "base/error.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/on_host/moving_accel.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {

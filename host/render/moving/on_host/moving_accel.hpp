@@ -21,7 +21,7 @@
 #include "render/accel/accel_build.hpp"
 #include "render/moving/moved_group.hpp"
 #include "render/moving/moved_instances.hpp"
-#include "render/moving/moved_leaves.hpp"
+#include "render/moving/on_host/moved_leaves.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 

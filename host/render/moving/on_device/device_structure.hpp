@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "render/moving/device_groups.hpp"
+#include "render/moving/on_device/device_groups.hpp"
 
 namespace clarity {
 

@@ -1,4 +1,4 @@
-#include "render/moving/moved_leaves.hpp"
+#include "render/moving/on_host/moved_leaves.hpp"
 
 #include <algorithm>
 #include <cfloat>

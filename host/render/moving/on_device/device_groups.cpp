@@ -1,4 +1,4 @@
-#include "render/moving/device_groups.hpp"
+#include "render/moving/on_device/device_groups.hpp"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/progress.hpp"
-#include "render/moving/background_build.hpp"
+#include "render/moving/follow/background_build.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {

@@ -1,4 +1,4 @@
-#include "render/moving/read_back.hpp"
+#include "render/moving/on_device/read_back.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,9 +1,9 @@
-#include "render/moving/pose_follower.hpp"
+#include "render/moving/follow/pose_follower.hpp"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "render/moving/first_tree.hpp"
+#include "render/moving/follow/first_tree.hpp"
 
 namespace clarity {
 namespace {
