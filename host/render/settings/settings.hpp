@@ -20,11 +20,11 @@ struct Settings {
     int depth = 5;  // generations of rays, 1 = camera rays only
     // Pixels of one work-item. 0: automatic, 1x1 on a GPU; lanes x lanes on a CPU, but at least 4x4.
     int packet_w = 0, packet_h = 0;
-    int lanes = 0;           // 1, 4, 8 or 16; 0: automatic
-    int ray_slots = 8;       // rays that a pixel may have in one generation
-    bool fast_math = false;  // -cl-fast-relaxed-math
-    bool portable = false;   // the kernels' fallbacks instead of CPU instructions, for tests
-    bool debug = false;      // kernels check the bounds of traversal stacks
+    int lanes = 0;               // 1, 4, 8 or 16; 0: automatic
+    int ray_slots = 8;           // rays that a pixel may have in one generation
+    bool fast_math = false;      // -cl-fast-relaxed-math
+    bool portable = false;       // the kernels' fallbacks instead of CPU instructions, for tests
+    bool debug = false;          // kernels check the bounds of traversal stacks
     std::string trial = "auto";  // auto|on|off: whether edited kernels and strangers' run in a worker first
     // The picture.
     int width = 1024, height = 768;
