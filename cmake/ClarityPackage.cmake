@@ -1,13 +1,15 @@
 # Manual page, completion, desktop file, icon, recipes for farms, and what `cpack` makes of all that is installed: a .deb, and a .tar.gz
 # that runs from any folder. In build/release: cpack -G DEB, cpack -G TGZ.
 
-# Made from the program's own help. --help-as opens no device and loads no plugin.
+# Made from the program's own help. --help-as opens no device and loads no plugin. A program that is compiled for another machine needs
+# CMAKE_CROSSCOMPILING_EMULATOR.
 set(page ${PROJECT_BINARY_DIR}/share/man/man1/clarity.1.gz)
 set(completion ${PROJECT_BINARY_DIR}/share/bash-completion/completions/clarity)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/man/man1 ${PROJECT_BINARY_DIR}/share/bash-completion/completions)
 add_custom_command(OUTPUT ${page} ${completion} DEPENDS clarity VERBATIM
-  COMMAND sh -c "\"$1\" --help-as man > \"$2.text\" && gzip -9nc \"$2.text\" > \"$2\" && rm \"$2.text\" && \"$1\" --help-as bash > \"$3\"" sh
-    $<TARGET_FILE:clarity> ${page} ${completion})
+  COMMAND sh -c "page=$1 completion=$2; shift 2; \"$@\" --help-as man > \"$page.text\" && gzip -9nc \"$page.text\" > \"$page\" &&\
+    rm \"$page.text\" && \"$@\" --help-as bash > \"$completion\"" sh ${page} ${completion} ${CMAKE_CROSSCOMPILING_EMULATOR}
+    $<TARGET_FILE:clarity>)
 add_custom_target(manual ALL DEPENDS ${page} ${completion})
 add_dependencies(program manual)
 install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

@@ -31,7 +31,7 @@ std::string plain_name(const Document& document, std::string_view name) {
     if (!document.is_binary() && colons != name.npos) name.remove_prefix(colons + 2);
     std::string out = document.is_binary() ? std::string(name.substr(0, name.find(kSeparator))) : without_entities(name);
     std::replace_if(
-        out.begin(), out.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, ' ');
+        out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, ' ');
     return out;
 }
 
