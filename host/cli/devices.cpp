@@ -85,19 +85,20 @@ void print_device(const DeviceInfo& device, size_t number, const Default& chosen
 }  // namespace
 
 int run_devices(bool json) {
-    std::vector<std::string> warnings;
+    std::vector<DeviceWarning> warnings;
     const std::vector<DeviceInfo> devices = list_devices(&warnings);
     const Default chosen = find_default(devices);
     if (json) {
         Json list = {
             {"devices", Json::array()}, {"default", chosen.devices.empty() ? Json() : Json(chosen.ids())}, {"why", chosen.why}};
         for (size_t i = 0; i < devices.size(); ++i) list["devices"].push_back(device_json(devices[i], i, chosen));
-        list["warnings"] = warnings;
+        list["warnings"] = Json::array();
+        for (const DeviceWarning& warning : warnings) list["warnings"].push_back(warning.text);
         std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     } else {
         for (size_t i = 0; i < devices.size(); ++i) print_device(devices[i], i, chosen);
-        for (const std::string& warning : warnings)
-            if (!devices.empty()) print_text("          %s\n", warning.c_str());  // else the error below has them
+        for (const DeviceWarning& warning : warnings)
+            if (!devices.empty()) print_text("          %s\n", warning.text.c_str());  // else the error below has them
         if (chosen.devices.empty() && !devices.empty()) print_text("          no default: %s\n", chosen.why.c_str());
         if (!devices.empty()) print_text("%s", kSeveral);
     }

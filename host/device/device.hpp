@@ -31,9 +31,18 @@ struct DeviceInfo {
     unsigned preferred_lanes() const;
 };
 
+// What is wrong with a platform, or with one of its devices.
+struct DeviceWarning {
+    std::string text;
+    // A driver without a device, as Mesa's on a machine without a GPU of its kind, where another driver has one: for the list.
+    bool is_minor = false;
+};
+
 // Returns all devices of all platforms, best first: GPUs, then CPUs, then others, each ordered by compute units x clock. A
 // platform is skipped if it has no devices or if its driver fails; `warnings` gets a line about it.
-std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings = nullptr);
+std::vector<DeviceInfo> list_devices(std::vector<DeviceWarning>* warnings = nullptr);
+// Logs them; minor ones for -v alone.
+void log_warnings(const std::vector<DeviceWarning>& warnings);
 
 // Returns the devices that `choice` names, each once. "": CLARITY_DEVICE, or else the best device. Otherwise words with commas
 // between them:

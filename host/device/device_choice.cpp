@@ -144,17 +144,17 @@ std::string DeviceInfo::id() const {
 }
 
 std::vector<DeviceInfo> choose_devices(const std::string& choice) {
-    std::vector<std::string> warnings;
+    std::vector<DeviceWarning> warnings;
     const std::vector<DeviceInfo> devices = list_devices(&warnings);
     const char* variable = std::getenv("CLARITY_DEVICE");
     const std::string wanted = choice.empty() && variable ? variable : choice;
     if (devices.empty()) {
         std::string why;
-        for (const std::string& warning : warnings) why += "; " + warning;
+        for (const DeviceWarning& warning : warnings) why += "; " + warning.text;
         if (why.find(kInstallDriver) == std::string::npos) why += std::string("; ") + kInstallDriver;
         throw Error(Exit::no_device, "no OpenCL device" + why);
     }
-    for (const std::string& warning : warnings) log(LogLevel::warning, warning);
+    log_warnings(warnings);
     if (wanted.empty()) return {devices.front()};
     std::vector<DeviceInfo> chosen;
     try {

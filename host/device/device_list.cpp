@@ -14,6 +14,7 @@
 
 #include "device/device_list.hpp"
 
+#include "base/log.hpp"
 #include "base/lower.hpp"
 #include "device/pocl_cache.hpp"
 
@@ -104,7 +105,7 @@ std::string why_unusable(const cl::Device& device) {
 }
 
 void list_platform(const cl::Platform& platform, unsigned index, std::vector<DeviceInfo>& found,
-                   const std::function<void(const std::string&)>& warn) {
+                   const std::function<void(const std::string&, bool is_minor)>& warn) {
     std::string name = "platform " + std::to_string(index);
     std::vector<cl::Device> devices;
     try {
@@ -112,7 +113,7 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
         platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
         if (devices.empty()) throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
     } catch (const cl::Error& e) {
-        warn(name + " is skipped: " + error_name(e.err()));
+        warn(name + " is skipped: " + error_name(e.err()), e.err() == CL_DEVICE_NOT_FOUND);
         return;
     }
     for (unsigned i = 0; i < devices.size(); ++i) {
@@ -124,21 +125,21 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
             why = error_name(e.err());
         }
         if (!why.empty())
-            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + name + " is skipped: " + why);
+            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + name + " is skipped: " + why, false);
     }
 }
 
 }  // namespace
 
-std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
+std::vector<DeviceInfo> list_devices(std::vector<DeviceWarning>* warnings) {
     static std::once_flag once;
     static std::string cache_warning;  // once, and only if PoCL is there
     std::call_once(once, [] {
         pin_pocl_threads();
         cache_warning = use_writable_pocl_cache();
     });
-    const auto warn = [&](const std::string& text) {
-        if (warnings) warnings->push_back(text);
+    const auto warn = [&](const std::string& text, bool is_minor = false) {
+        if (warnings) warnings->push_back({text, is_minor});
     };
     std::vector<DeviceInfo> found;
     std::vector<cl::Platform> platforms;
@@ -155,6 +156,8 @@ std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
 
     if (!cache_warning.empty() && std::any_of(found.begin(), found.end(), [](const DeviceInfo& d) { return d.pocl; }))
         warn(std::exchange(cache_warning, {}));
+    if (warnings && found.empty())
+        for (DeviceWarning& warning : *warnings) warning.is_minor = false;
 
     // Some drivers do not know their clock (virtual machines), but still report compute units.
     const auto rank = [](const DeviceInfo& d) {
@@ -162,6 +165,10 @@ std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
     };
     std::stable_sort(found.begin(), found.end(), [&](const DeviceInfo& a, const DeviceInfo& b) { return rank(a) > rank(b); });
     return found;
+}
+
+void log_warnings(const std::vector<DeviceWarning>& warnings) {
+    for (const DeviceWarning& warning : warnings) log(warning.is_minor ? LogLevel::debug : LogLevel::warning, warning.text);
 }
 
 }  // namespace clarity

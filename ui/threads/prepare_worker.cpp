@@ -149,9 +149,9 @@ void PrepareWorker::publish(Outcome outcome) {
 }
 
 void PrepareWorker::list_all_devices() {
-    std::vector<std::string> warnings;
+    std::vector<DeviceWarning> warnings;
     auto devices = std::make_shared<const std::vector<DeviceInfo>>(list_devices(&warnings));
-    for (const std::string& warning : warnings) log(LogLevel::warning, warning);
+    log_warnings(warnings);
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         devices_ = std::move(devices);
