@@ -25,6 +25,10 @@ struct ImportOptions {
 Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                    Progress& progress);
 
+// Finds the plugins of the shapes in a scene that has come as plain arrays, and validates it. Returns an empty text on success,
+// otherwise what the scene has or is ("is not sound: ...").
+std::string complete_scene(const PluginRegistry& plugins, Scene& scene);
+
 // Main function of the worker process (`clarity import-worker ...`, which people do not call). Returns only if its arguments
 // are wrong.
 int import_worker_main(int argc, char** argv);

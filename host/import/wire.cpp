@@ -20,6 +20,7 @@ namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
 constexpr uint64_t kPieceAlignment = 64;
+constexpr const char* kUnreadable = "the shared memory cannot be read";
 // Writing is not sealed, because the reader gives pages back behind its reading, which counts as writing. The reader copies
 // each byte once and checks the copy, so that what is written later does nothing.
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW;
@@ -75,9 +76,11 @@ std::string move_to_file(int fd, std::vector<T>& array) {
     return why;
 }
 
+// Elements that others have, too, are copied.
 template <class T>
 std::string move_to_file(int fd, SharedArray<T>& array) {
-    std::string why = move_to_file(fd, array.own());
+    std::string why = array.is_sole_owner() ? move_to_file(fd, array.own())
+                                            : append(fd, reinterpret_cast<const char*>(array.data()), array.size() * sizeof(T));
     array.clear();
     return why;
 }
@@ -133,6 +136,43 @@ bool move_from_file(int fd, const Section& section, std::vector<char>& buffer, S
     return move_from_file(fd, section, buffer, array.own());
 }
 
+std::string read_header(int fd, uint64_t size, Header& header) {
+    if (size < sizeof header) return "the shared memory holds " + std::to_string(size) + " bytes, less than its header";
+    if (!copy_from_file(fd, 0, &header, sizeof header)) return kUnreadable;
+    if (header.magic != kMagic) return "the shared memory holds no scene";
+    if (header.total_bytes != size) return "the shared memory's size is not the one in its header";
+    return {};
+}
+
+// Fills the arrays of a scene: take(section, array) returns whether it could read the section.
+template <class Take>
+std::string take_sections(const Header& header, Scene& scene, Take&& take) {
+    Converted converted;
+    uint32_t section = 0;
+    std::string why;
+    visit(scene, converted, [&](auto& array) {
+        using Element = typename std::decay_t<decltype(array)>::value_type;
+        const Section& s = header.sections[section++];
+        const uint64_t size = header.total_bytes;
+        if (s.offset % kPieceAlignment != 0 || s.offset > size || s.bytes > size - s.offset || s.bytes % sizeof(Element) != 0) {
+            why = "section " + std::to_string(section - 1) + " of the shared memory is out of range";
+        }
+        if (why.empty() && !take(s, array)) why = kUnreadable;
+    });
+    if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not match their lengths";
+    return why;
+}
+
+template <class T>
+void borrow(const std::shared_ptr<const char>& bytes, const Section& section, SharedArray<T>& array) {
+    array = SharedArray<T>::borrow(bytes, reinterpret_cast<const T*>(bytes.get() + section.offset), section.bytes / sizeof(T));
+}
+template <class T>
+void borrow(const std::shared_ptr<const char>& bytes, const Section& section, std::vector<T>& array) {
+    const T* const first = reinterpret_cast<const T*>(bytes.get() + section.offset);
+    array.assign(first, first + section.bytes / sizeof(T));
+}
+
 }  // namespace
 
 std::string write_scene(int fd, Scene scene) {
@@ -171,27 +211,23 @@ std::string read_scene(int fd, Scene& scene) {
     const uint64_t size = static_cast<uint64_t>(status.st_size);
     const int seals = fcntl(fd, F_GET_SEALS);
     if (seals < 0 || (seals & kSeals) != kSeals) return "the shared memory is not sealed";
-    if (size < sizeof(Header)) return "the shared memory holds " + std::to_string(size) + " bytes, less than its header";
-    constexpr const char* unreadable = "the shared memory cannot be read";
     Header header;
-    if (!copy_from_file(fd, 0, &header, sizeof header)) return unreadable;
-    if (header.magic != kMagic) return "the shared memory holds no scene";
-    if (header.total_bytes != size) return "the shared memory's size is not the one in its header";
-
-    Converted converted;
-    uint32_t section = 0;
+    const std::string why = read_header(fd, size, header);
+    if (!why.empty()) return why;
     std::vector<char> buffer;
-    std::string why;
-    visit(scene, converted, [&](auto& array) {
-        using Element = typename std::decay_t<decltype(array)>::value_type;
-        const Section& s = header.sections[section++];
-        if (s.offset % kPieceAlignment != 0 || s.offset > size || s.bytes > size - s.offset || s.bytes % sizeof(Element) != 0) {
-            why = "section " + std::to_string(section - 1) + " of the shared memory is out of range";
-        }
-        if (why.empty() && !move_from_file(fd, s, buffer, array)) why = unreadable;
+    return take_sections(header, scene, [&](const Section& s, auto& array) { return move_from_file(fd, s, buffer, array); });
+}
+
+std::string map_scene(const MemoryFile& file, Scene& scene) {
+    if (!file.sealed()) return "the shared memory is not sealed";
+    Header header;
+    const std::string why = read_header(file.fd(), file.bytes(), header);
+    if (!why.empty()) return why;
+    const std::shared_ptr<const char> bytes = map_file(file.fd(), header.total_bytes);
+    return take_sections(header, scene, [&](const Section& s, auto& array) {
+        borrow(bytes, s, array);
+        return true;
     });
-    if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not match their lengths";
-    return why;
 }
 
 }  // namespace clarity::import

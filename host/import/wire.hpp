@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "base/files/memory_file.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::import {
@@ -15,5 +16,10 @@ std::string write_scene(int fd, Scene scene);
 // read once, so that it does not matter if the worker still writes. Indices and numbers are not checked here but by validate().
 // Returns an empty text on success, otherwise the reason.
 std::string read_scene(int fd, Scene& scene);
+
+// The scene of a file that write_scene() wrote and that has been sealed whole: its large arrays lie in the file, so that all
+// processes that call this share one copy. Indices and numbers are not checked. Returns an empty text on success, otherwise the
+// reason. Throws Error(failed) if the file cannot be mapped.
+std::string map_scene(const MemoryFile& file, Scene& scene);
 
 }  // namespace clarity::import

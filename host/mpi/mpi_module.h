@@ -9,7 +9,11 @@ typedef struct clarity_mpi_module {
     /* Begins MPI. here: the number of this process among those of its host; here_count: how many those are. */
     const char *(*begin)(unsigned *rank, unsigned *count, unsigned *here, unsigned *here_count);
     const char *(*end)(void); /* waits for all ranks */
-    /* The bytes of rank 0 go to all. Any size. */
+    /* The bytes of the first process of each host go to the others of that host. */
+    const char *(*tell_host)(void *bytes, uint64_t size);
+    /* Says who takes part in broadcasts from now on: all ranks call it, rank 0 with 1. */
+    const char *(*receivers)(int takes_part);
+    /* The bytes of rank 0 go to all that take part, which alone call it. Any size. */
     const char *(*broadcast)(void *bytes, uint64_t size);
     /* all[r] becomes the number that rank r gave, on all ranks. */
     const char *(*gather)(double mine, double *all);

@@ -1,19 +1,19 @@
 #include "mpi/mpi_ranks.hpp"
 
 #include <dlfcn.h>
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include <chrono>
 #include <filesystem>
+#include <optional>
+#include <thread>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
+#include "import/import.hpp"
 #include "import/wire.hpp"
+#include "render/accel/shared_accel.hpp"
 
 namespace clarity {
 namespace {
@@ -58,32 +58,19 @@ const clarity_mpi_module* load() {
 }
 #endif
 
-// A file in memory, closed at the end.
-class MemoryFile {
- public:
-    MemoryFile() : fd_(memfd_create("clarity-scene", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
-        if (fd_ < 0) throw Error(Exit::failed, std::string("memory for the scene: ") + std::strerror(errno));
+constexpr uint64_t kPiece = uint64_t{64} << 20;  // bytes that a rank holds twice while a scene comes in
+
+// Waits until another process has written the whole file. MPI would wait with a busy processor, which that process needs; if it
+// dies, mpirun ends this one, too.
+void wait_for(const MemoryFile& file, Progress& progress) {
+    while (!file.sealed()) {
+        if (progress.cancelled()) throw Cancelled();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    ~MemoryFile() { close(fd_); }
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-    int fd() const { return fd_; }
-
- private:
-    const int fd_;
-};
-
-void check_file(const std::string& why) {
-    if (!why.empty()) throw Error(Exit::failed, "sharing the scene among ranks: " + why);
 }
 
-void transfer(const std::function<ssize_t(char*, size_t, off_t)>& call, std::vector<char>& bytes, uint64_t at) {
-    for (size_t done = 0; done < bytes.size();) {
-        const ssize_t count = call(&bytes[done], bytes.size() - done, static_cast<off_t>(at + done));
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) check_file(std::strerror(errno));
-        done += static_cast<size_t>(count);
-    }
+void check_scene(const std::string& why) {
+    if (!why.empty()) throw Error(Exit::failed, "sharing the scene among ranks: " + why);
 }
 
 }  // namespace
@@ -124,33 +111,56 @@ std::vector<DeviceInfo> MpiRanks::own(const std::vector<DeviceInfo>& devices) co
     return own;
 }
 
-// The scene goes as the flat file in which a worker hands it over, piece by piece: no rank holds it twice.
-Scene MpiRanks::share_scene(const std::function<Scene()>& import) {
-    constexpr uint64_t kPiece = uint64_t{64} << 20;
-    const MemoryFile file;
+// The file of this host's first rank, open in all ranks of the host. mine: whether this rank has to fill it. So has the first
+// one, and one that cannot open the file of the first, as in a container of its own, and has its own instead.
+MemoryFile MpiRanks::file_of_host(bool& mine) {
+    std::optional<MemoryFile> file;
+    MemoryFile::Address address;
+    if (here_ == 0) address = file.emplace().address();
+    check(module_->tell_host(&address, sizeof address), "sharing memory");
+    if (here_ > 0) file = MemoryFile::open(address);
+    mine = here_ == 0 || !file;
+    if (!file) file.emplace();
+    gather(0);  // the first rank does not close its file before the others have opened it
+    return std::move(*file);
+}
+
+// The scene goes as the flat file in which a worker hands it over, piece by piece.
+Scene MpiRanks::share_scene(const PluginRegistry& plugins, const std::function<Scene()>& import, Progress& progress) {
+    if (count_ == 1) return import();
+    bool fills = false;
+    MemoryFile file = file_of_host(fills);
+    check(module_->receivers(fills), "sharing the scene");
+    if (rank_ == 0) check_scene(import::write_scene(file.fd(), import()));
+    if (fills) {
+        double bytes = rank_ == 0 ? double(file.bytes()) : 0;
+        check(module_->broadcast(&bytes, sizeof bytes), "sharing the scene");
+        std::vector<char> piece;
+        for (uint64_t at = 0; at < uint64_t(bytes); at += kPiece) {
+            piece.resize(std::min(kPiece, uint64_t(bytes) - at));
+            if (rank_ == 0) file.read_at(at, piece.data(), piece.size());
+            check(module_->broadcast(piece.data(), piece.size()), "sharing the scene");
+            if (rank_ > 0) file.write_at(at, piece.data(), piece.size());
+        }
+        file.seal();
+    }
+    wait_for(file, progress);
     Scene scene;
-    double size = 0;
-    if (rank_ == 0) {
-        scene = import();
-        if (count_ == 1) return scene;
-        check_file(import::write_scene(file.fd(), scene));
-        struct stat status {};
-        if (fstat(file.fd(), &status) != 0) check_file(std::strerror(errno));
-        size = double(status.st_size);
-    }
-    const auto bytes = static_cast<uint64_t>(gather(size)[0]);
-    std::vector<char> piece;
-    for (uint64_t at = 0; at < bytes; at += kPiece) {
-        piece.resize(std::min(kPiece, bytes - at));
-        if (rank_ == 0) transfer([&](char* to, size_t n, off_t from) { return pread(file.fd(), to, n, from); }, piece, at);
-        check(module_->broadcast(piece.data(), piece.size()), "sharing the scene");
-        if (rank_ > 0) transfer([&](char* from, size_t n, off_t to) { return pwrite(file.fd(), from, n, to); }, piece, at);
-    }
-    if (rank_ == 0) return scene;
-    if (fcntl(file.fd(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW) != 0) check_file(std::strerror(errno));
-    check_file(import::read_scene(file.fd(), scene));
-    check_file(validate(scene));
+    check_scene(import::map_scene(file, scene));
+    const std::string why = import::complete_scene(plugins, scene);
+    if (!why.empty()) throw Error(Exit::import_failed, "the scene that rank 0 has sent " + why);
     return scene;
+}
+
+std::shared_ptr<const AccelData> MpiRanks::share_structure(const PluginRegistry& plugins, const AccelBuilder& build,
+                                                           const Scene& scene, Progress& progress) {
+    if (count_ == 1) return nullptr;
+    bool fills = false;
+    MemoryFile file = file_of_host(fills);
+    if (here_count_ == 1 || (fills && here_ > 0)) return nullptr;
+    if (fills) write_accel(file, *build(scene, progress));
+    wait_for(file, progress);
+    return map_accel(file, plugins);
 }
 
 }  // namespace clarity

@@ -45,17 +45,15 @@ std::string check_arrays(const Scene& s) {
          {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size(), s.shape_parts.size()}) {
         if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
     }
-    const std::pair<const char*, const std::vector<float>*> numbers[] = {{"position", &s.positions.all()},
-                                                                         {"normal", &s.normals.all()},
-                                                                         {"uv", &s.uvs.all()},
-                                                                         {"polygon corner", &s.polygon_corners}};
-    for (const auto& [what, values] : numbers) {
-        if (all_finite(*values)) continue;
-        const auto bad = std::find_if(values->begin(), values->end(), [](float x) { return !std::isfinite(x); });
-        const size_t per_element = values == &s.uvs.all() ? 2 : 3;
-        return text(what, static_cast<uint64_t>(bad - values->begin()) / per_element, "not a finite number");
-    }
-    return {};
+    const auto check = [](const char* what, const auto& values, uint64_t per_element) {
+        if (all_finite(values)) return std::string();
+        const auto bad = std::find_if(values.begin(), values.end(), [](float x) { return !std::isfinite(x); });
+        return text(what, static_cast<uint64_t>(bad - values.begin()) / per_element, "not a finite number");
+    };
+    std::string why = check("position", s.positions, 3);
+    if (why.empty()) why = check("normal", s.normals, 3);
+    if (why.empty()) why = check("uv", s.uvs, 2);
+    return why.empty() ? check("polygon corner", s.polygon_corners, 3) : why;
 }
 
 std::string check_meshes(const Scene& s) {

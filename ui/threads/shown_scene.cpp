@@ -6,7 +6,7 @@
 namespace clarity::ui {
 namespace {
 
-bool same_numbers(const std::vector<float>& of_scene, rt_u32 first_vertex, const std::vector<float>& of_pose) {
+bool same_numbers(const SharedArray<float>& of_scene, rt_u32 first_vertex, const std::vector<float>& of_pose) {
     const size_t first = 3 * size_t(first_vertex);
     return of_scene.size() >= first + of_pose.size() &&
            std::equal(of_pose.begin(), of_pose.end(), of_scene.begin() + static_cast<std::ptrdiff_t>(first));

@@ -254,15 +254,23 @@ class RenderJob {
             stats_.import_ms = ms_since(begin);
             return scene;
         };
-        scene_.take(std::make_shared<const Scene>(mpi_ ? mpi_->share_scene(import) : import()));
+        scene_.take(std::make_shared<const Scene>(mpi_ ? mpi_->share_scene(plugins_, import, progress) : import()));
         stats_.share_ms = ms_since(begin) - stats_.import_ms;
+    }
+
+    // nullptr if this rank has to build its own structure, which may be of another kind than that of the host's first rank.
+    std::shared_ptr<const AccelData> share_structure(Progress& progress) {
+        const auto accel = mpi_->share_structure(plugins_, preparer_->builder(settings_), *scene_.scene(), progress);
+        return accel && preparer_->asks_for(*accel, settings_) ? accel : nullptr;
     }
 
     void prepare(Progress& progress) {
         const auto begin = Clock::now();
         if (!preparer_) preparer_ = std::make_unique<MultiPreparer>(plugins_, devices_);
         blur_.reset();
-        prepared_ = preparer_->prepare(scene_.scene(), settings_, progress);
+        MovedStructure shared;
+        if (mpi_) shared.accel = share_structure(progress);
+        prepared_ = preparer_->prepare(scene_.scene(), settings_, progress, shared);
         stats_.prepared = prepared_->first();
         blur_ = scene_.blur(prepared_, *preparer_);
         stats_.prepare_ms = ms_since(begin);

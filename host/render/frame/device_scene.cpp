@@ -20,9 +20,9 @@ struct Content {
     const void* data;
 };
 
-template <class T>
-Content content(const char* what, const std::vector<T>& data) {
-    return {{what, data.size() * sizeof(T)}, data.data()};
+template <class Array>
+Content content(const char* what, const Array& data) {
+    return {{what, data.size() * sizeof(typename Array::value_type)}, data.data()};
 }
 
 // Makes read-only buffers. On a CPU they are the host's own memory. On other devices they are filled piece by piece, because a
@@ -73,7 +73,7 @@ class Uploader {
 // Returns the vertex normals in the space of their triangles. Normals of flattened meshes are transformed by the inverse
 // transpose, as kernels do for instances. A factor keeps their lengths near the original for any scale.
 std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
-    std::vector<float> normals = scene.normals;
+    std::vector<float> normals(scene.normals.begin(), scene.normals.end());
     for (const uint32_t i : build.flattened) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
@@ -129,10 +129,10 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("planes", build.planes),
         content("materials", materials_),
         content("triangles", attributes_),
-        content("normals", moved ? normals_ : scene_->normals.all()),
-        content("texture coordinates", scene_->uvs.all()),
+        moved ? content("normals", normals_) : content("normals", scene_->normals),
+        content("texture coordinates", scene_->uvs),
         content("texture table", scene_->textures),
-        content("textures", scene_->texels.all()),
+        content("textures", scene_->texels),
     };
     const size_t before_lights = contents.size();
     if (!build.shapes.empty()) {

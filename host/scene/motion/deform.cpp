@@ -88,7 +88,7 @@ PosedMesh at_rest(const Scene& scene, rt_u32 index) {
     const Mesh& mesh = scene.meshes[index];
     PosedMesh out;
     out.mesh = index;
-    const auto range = [&](const std::vector<float>& values) {
+    const auto range = [&](const SharedArray<float>& values) {
         const auto first = values.begin() + 3 * static_cast<std::ptrdiff_t>(mesh.first_vertex);
         return std::vector<float>(first, first + 3 * static_cast<std::ptrdiff_t>(mesh.vertex_count));
     };
