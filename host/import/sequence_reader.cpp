@@ -12,7 +12,8 @@ std::vector<float> SequenceReader::operator()(const std::string& file) {
         if (known == file) return positions;
     constexpr size_t kMostKept = 2;
     while (kept_.size() >= kMostKept) kept_.pop_front();
-    kept_.emplace_back(file, import_scene(plugins_, {file}, options_, progress_).positions);
+    Scene scene = import_scene(plugins_, {file}, options_, progress_);
+    kept_.emplace_back(file, std::move(scene.positions.own()));
     return kept_.back().second;
 }
 

@@ -1,5 +1,5 @@
 /* mpi_module.h -- between the program and the library that knows MPI. The program needs no MPI: only --mpi loads the library. Both
- * are built together, so this table has no versions. */
+ * are built together; the number in the symbol tells a library that is not of this program. */
 #ifndef CLARITY_MPI_MODULE_H
 #define CLARITY_MPI_MODULE_H
 #include <stdint.h>
@@ -22,5 +22,5 @@ typedef struct clarity_mpi_module {
     const char *(*receive)(unsigned from, void *bytes, uint64_t size);
 } clarity_mpi_module;
 
-#define CLARITY_MPI_MODULE_SYMBOL "clarity_mpi_module_v1"
+#define CLARITY_MPI_MODULE_SYMBOL "clarity_mpi_module_v2"
 #endif

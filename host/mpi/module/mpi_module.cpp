@@ -87,5 +87,5 @@ const char* receive(unsigned from, void* bytes, uint64_t size) {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) const clarity_mpi_module clarity_mpi_module_v1;
-const clarity_mpi_module clarity_mpi_module_v1 = {begin, end, tell_host, receivers, broadcast, gather, send, receive};
+extern "C" __attribute__((visibility("default"))) const clarity_mpi_module clarity_mpi_module_v2;
+const clarity_mpi_module clarity_mpi_module_v2 = {begin, end, tell_host, receivers, broadcast, gather, send, receive};

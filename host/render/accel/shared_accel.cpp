@@ -14,8 +14,8 @@ namespace {
 
 constexpr uint64_t kAlignment = 128;
 
-// Plain members, in one array of one element.
-struct Plain {
+// PlainMembers members, in one array of one element.
+struct PlainMembers {
     uint64_t leaf_count, bytes;
     double build_ms, pack_ms;
     std::array<float, 3> min, max;
@@ -55,9 +55,9 @@ void visit_scene(Archive&& a, Accel& accel, Scene& s) {
     a(s.planes), a(s.group_of_mesh), a(s.first_ref_of_group), a(s.number_of_instance);
 }
 
-class Writer {
+class AccelWriter {
  public:
-    explicit Writer(MemoryFile& file) : file_(file) {}
+    explicit AccelWriter(MemoryFile& file) : file_(file) {}
     template <class Array>
     void operator()(const Array& array) {
         static_assert(std::is_trivially_copyable_v<typename Array::value_type>, "only plain data goes through shared memory");
@@ -80,9 +80,9 @@ class Writer {
     uint64_t at_ = 0;
 };
 
-class Reader {
+class AccelReader {
  public:
-    Reader(const char* data, uint64_t bytes) : data_(data), left_(bytes) {}
+    AccelReader(const char* data, uint64_t bytes) : data_(data), left_(bytes) {}
     template <class Array>
     void operator()(Array& array) {
         using Element = typename Array::value_type;
@@ -120,10 +120,11 @@ const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) 
 }  // namespace
 
 void write_accel(MemoryFile& file, const AccelData& accel) {
-    Writer writer(file);
+    AccelWriter writer(file);
     writer(std::string(accel.plugin->id)), writer(std::string(accel.layout->id));
-    writer(std::vector<Plain>{{accel.leaf_count, accel.bytes, accel.build_ms, accel.pack_ms, accel.scene.bounds.min,
-                               accel.scene.bounds.max, static_cast<uint32_t>(accel.slots.size()), accel.scene.bounds.empty}});
+    writer(std::vector<PlainMembers>{{accel.leaf_count, accel.bytes, accel.build_ms, accel.pack_ms, accel.scene.bounds.min,
+                                      accel.scene.bounds.max, static_cast<uint32_t>(accel.slots.size()),
+                                      accel.scene.bounds.empty}});
     const auto defines = Named<rt_u32>::of(accel.defines);
     const auto stats = Named<double>::of(accel.stats);
     writer(defines.names), writer(defines.numbers), writer(stats.names), writer(stats.numbers);
@@ -144,16 +145,16 @@ std::shared_ptr<const AccelData> map_accel(const MemoryFile& file, const PluginR
     const auto mapped = std::make_shared<Mapped>();
     mapped->memory = map_file(file.fd(), file.bytes());
     AccelData& accel = mapped->accel;
-    Reader reader(mapped->memory.get(), file.bytes());
+    AccelReader reader(mapped->memory.get(), file.bytes());
     std::string plugin, layout;
-    std::vector<Plain> plain;
+    std::vector<PlainMembers> plain;
     Named<rt_u32> defines;
     Named<double> stats;
     reader(plugin), reader(layout), reader(plain);
     reader(defines.names), reader(defines.numbers), reader(stats.names), reader(stats.numbers);
     accel.plugin = accel_of(plugins, plugin);
     accel.layout = accel_of(plugins, layout);
-    const Plain& values = plain.at(0);
+    const PlainMembers& values = plain.at(0);
     accel.leaf_count = values.leaf_count, accel.bytes = values.bytes;
     accel.build_ms = values.build_ms, accel.pack_ms = values.pack_ms;
     accel.scene.bounds = {values.min, values.max, values.empty_bounds != 0};
