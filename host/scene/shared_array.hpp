@@ -39,6 +39,7 @@ class SharedArray {
     const T& back() const { return data()[size() - 1]; }
     const_iterator begin() const { return data(); }
     const_iterator end() const { return data() + size(); }
+    std::vector<T> copy() const { return std::vector<T>(begin(), end()); }
     bool operator==(const SharedArray& b) const { return shares(b) || std::equal(begin(), end(), b.begin(), b.end()); }
     bool operator!=(const SharedArray& b) const { return !(*this == b); }
     // Whether both are one array in memory.
@@ -51,7 +52,7 @@ class SharedArray {
         if (is_sole_owner() && values_)
             std::atomic_thread_fence(std::memory_order_acquire);  // another thread may just have let go of it
         else
-            *this = SharedArray(std::vector<T>(begin(), end()));
+            *this = SharedArray(copy());
         return *values_;
     }
     void push_back(const T& value) { own().push_back(value); }

@@ -17,8 +17,8 @@ using namespace clarity::test;
 
 TriangleMesh mesh_of(const Scene& scene) {
     TriangleMesh mesh;
-    mesh.positions = scene.positions;
-    mesh.triangles = scene.triangles;
+    mesh.positions = scene.positions.copy();
+    mesh.triangles = scene.triangles.copy();
     return mesh;
 }
 

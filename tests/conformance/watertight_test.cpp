@@ -70,8 +70,8 @@ TEST(Watertight, Armadillo) {
     CLARITY_SHARED_OR_SKIP(file, "scenes/models/armadillo.obj");
     const ScenePtr scene = load_scene(file);
     TriangleMesh mesh;
-    mesh.positions = scene->positions;
-    mesh.triangles = scene->triangles;
+    mesh.positions = scene->positions.copy();
+    mesh.triangles = scene->triangles.copy();
     const Bounds box = scene->bounds();
     Point inside;
     for (int k = 0; k < 3; ++k) inside[k] = 0.5f * (box.min[k] + box.max[k]);

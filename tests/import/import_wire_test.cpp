@@ -18,24 +18,15 @@ namespace clarity {
 using namespace import;
 namespace {
 
-class MemoryFile {
- public:
-    MemoryFile() : fd_(memfd_create("test", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {}
-    ~MemoryFile() { close(fd_); }
-    int fd() const { return fd_; }
-    std::vector<char> bytes() const {
-        std::vector<char> all(static_cast<size_t>(lseek(fd_, 0, SEEK_END)));
-        EXPECT_EQ(pread(fd_, all.data(), all.size(), 0), static_cast<ssize_t>(all.size()));
-        return all;
-    }
-    void fill(const std::vector<char>& all, bool seal = true) const {
-        EXPECT_EQ(write(fd_, all.data(), all.size()), static_cast<ssize_t>(all.size()));
-        if (seal) fcntl(fd_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW);
-    }
-
- private:
-    int fd_;
-};
+std::vector<char> content_of(const MemoryFile& file) {
+    std::vector<char> all(file.bytes());
+    file.read_at(0, all.data(), all.size());
+    return all;
+}
+void fill(MemoryFile& file, const std::vector<char>& all, bool seal = true) {
+    file.write_at(0, all.data(), all.size());
+    if (seal) fcntl(file.fd(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW);
+}
 
 Scene sample() {
     Scene s;
@@ -66,15 +57,15 @@ Scene sample() {
 
 // The scene as bytes: scenes are equal if their bytes are.
 std::vector<char> image_of(const Scene& scene) {
-    const MemoryFile file;
+    MemoryFile file;
     EXPECT_EQ(write_scene(file.fd(), scene), "");
-    return file.bytes();
+    return content_of(file);
 }
 
 TEST(Wire, everything_arrives) {
     const Scene sent = sample();
     ASSERT_EQ(validate(sent), "");
-    const MemoryFile file;
+    MemoryFile file;
     ASSERT_EQ(write_scene(file.fd(), sent), "");
     Scene got;
     ASSERT_EQ(read_scene(file.fd(), got), "");
@@ -96,15 +87,47 @@ TEST(Wire, everything_arrives) {
     EXPECT_EQ(image_of(got), image_of(sent)) << "and so does the rest";
 }
 
+TEST(Wire, a_sealed_scene_is_used_where_it_lies) {
+    const Scene sent = sample();
+    MemoryFile file;
+    ASSERT_EQ(write_scene(file.fd(), sent), "");
+    Scene got, twice;
+    EXPECT_NE(map_scene(file, got).find("not sealed"), std::string::npos) << "another process might write into the scene";
+    file.seal();
+    ASSERT_EQ(map_scene(file, got), "");
+    {
+        const std::optional<MemoryFile> opened = MemoryFile::open(file.address());
+        ASSERT_TRUE(opened);
+        ASSERT_EQ(map_scene(*opened, twice), "") << "as another process does";
+    }
+    EXPECT_EQ(validate(got), "");
+    EXPECT_EQ(image_of(got), image_of(sent));
+    EXPECT_EQ(image_of(twice), image_of(sent)) << "its memory stays without the file";
+    // The large arrays are the file's pages until they are changed.
+    EXPECT_FALSE(got.positions.is_sole_owner());
+    got.positions.own()[0] = 5;
+    EXPECT_EQ(got.positions[0], 5);
+    EXPECT_EQ(twice.positions[0], sent.positions[0]);
+}
+
+TEST(Wire, a_scene_that_others_share_is_sent_without_harm) {
+    const Scene sent = sample();
+    const Scene copy = sent;
+    const std::vector<char> image = image_of(sent);
+    EXPECT_EQ(image_of(copy), image);
+    EXPECT_EQ(copy.positions.size(), 9u);
+    EXPECT_TRUE(copy.positions.shares(sent.positions));
+}
+
 TEST(Wire, an_unsealed_file_is_refused) {
-    const MemoryFile file;
-    file.fill(image_of(sample()), false);
+    MemoryFile file;
+    fill(file, image_of(sample()), false);
     Scene got;
     EXPECT_NE(read_scene(file.fd(), got).find("not sealed"), std::string::npos);
 }
 
 TEST(Wire, the_file_keeps_its_size) {
-    const MemoryFile file;
+    MemoryFile file;
     ASSERT_EQ(write_scene(file.fd(), sample()), "");
     const off_t size = lseek(file.fd(), 0, SEEK_END);
     EXPECT_LT(ftruncate(file.fd(), 0), 0);
@@ -120,8 +143,8 @@ TEST(Wire, writing_meanwhile_does_no_harm) {
     const std::vector<char> whole = image_of(sent);
     int arrived = 0;
     for (int run = 0; run < 20; ++run) {
-        const MemoryFile file;
-        file.fill(whole);
+        MemoryFile file;
+        fill(file, whole);
         std::atomic<bool> stop{false};
         std::thread writer([&] {
             std::mt19937 random(static_cast<unsigned>(run));
@@ -133,9 +156,10 @@ TEST(Wire, writing_meanwhile_does_no_harm) {
         Scene got;
         const std::string why = read_scene(file.fd(), got);
         const std::string unsound = why.empty() ? validate(got) : why;
-        const std::vector<uint32_t> texels = got.texels;
+        const std::vector<uint32_t> texels = got.texels.copy();
         if (run % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        EXPECT_EQ(got.texels, texels) << "what was read is the host's own";
+        EXPECT_TRUE(std::equal(texels.begin(), texels.end(), got.texels.begin(), got.texels.end()))
+            << "what was read is the host's own";
         if (unsound.empty() && texels.size() == sent.texels.size()) ++arrived;
         stop = true;
         writer.join();
@@ -144,7 +168,7 @@ TEST(Wire, writing_meanwhile_does_no_harm) {
 }
 
 TEST(Wire, the_scene_is_not_held_twice) {
-    const MemoryFile file;
+    MemoryFile file;
     Scene sent = sample();
     sent.texels.assign(8 << 20, 7);  // 32 MB
     sent.textures = {{0, 4096, 2048, 0}};
@@ -163,8 +187,8 @@ TEST(Wire, the_scene_is_not_held_twice) {
 TEST(Wire, every_cut_is_refused) {
     const std::vector<char> whole = image_of(sample());
     for (size_t size = 0; size < whole.size(); size += 7) {
-        const MemoryFile file;
-        file.fill({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+        MemoryFile file;
+        fill(file, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
         Scene got;
         EXPECT_NE(read_scene(file.fd(), got), "") << size << " of " << whole.size() << " bytes";
     }
@@ -185,8 +209,8 @@ TEST(Wire, no_damage_does_harm) {
         } else {
             damaged[random() % range] ^= static_cast<char>(1 + random() % 255);
         }
-        const MemoryFile file;
-        file.fill(damaged);
+        MemoryFile file;
+        fill(file, damaged);
         Scene got;
         if (!read_scene(file.fd(), got).empty()) {
             ++refused;
@@ -215,7 +239,7 @@ TEST(Wire, a_large_mesh_is_handed_over_quickly) {
     sent.meshes = {{"large", 0, vertices, 0, triangles, triangles}};
     double best_ms = 1e9;
     for (int run = 0; run < 5; ++run) {
-        const MemoryFile file;
+        MemoryFile file;
         Scene given = sent;
         const auto start = std::chrono::steady_clock::now();
         ASSERT_EQ(write_scene(file.fd(), std::move(given)), "");

@@ -73,7 +73,7 @@ class Uploader {
 // Returns the vertex normals in the space of their triangles. Normals of flattened meshes are transformed by the inverse
 // transpose, as kernels do for instances. A factor keeps their lengths near the original for any scale.
 std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
-    std::vector<float> normals(scene.normals.begin(), scene.normals.end());
+    std::vector<float> normals = scene.normals.copy();
     for (const uint32_t i : build.flattened) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];

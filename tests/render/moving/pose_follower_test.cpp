@@ -29,7 +29,7 @@ class Follower : public ::testing::Test {
     Pose leaning(float by) const {
         Pose pose;
         for (const Instance& i : rest_->instances) pose.instances.push_back({i.mesh, i.world_from_object, i.visible});
-        PosedMesh mesh{0, rest_->positions, rest_->normals};
+        PosedMesh mesh{0, rest_->positions.copy(), rest_->normals.copy()};
         for (size_t v = 0; v < mesh.positions.size(); v += 3) mesh.positions[v] += by * mesh.positions[v + 1];
         pose.meshes.push_back(mesh);
         return pose;
