@@ -93,15 +93,12 @@ std::vector<double> MpiRanks::gather(double mine) {
     return all;
 }
 
-void MpiRanks::collect(const std::string& mine, const std::function<void(unsigned, const std::string&)>& take) {
-    const std::vector<double> sizes = gather(double(mine.size()));
-    if (rank_ > 0) return check(module_->send(mine.data(), mine.size()), "sending rows");
-    std::string bytes;
-    for (unsigned from = 1; from < count_; ++from) {
-        bytes.resize(static_cast<size_t>(sizes[from]));
-        check(module_->receive(from, &bytes[0], bytes.size()), "receiving rows");
-        take(from, bytes);
-    }
+void MpiRanks::send(const void* data, uint64_t bytes) {
+    check(module_->send(data, bytes), "sending rows");
+}
+
+void MpiRanks::receive(unsigned from, void* data, uint64_t bytes) {
+    check(module_->receive(from, data, bytes), "receiving rows");
 }
 
 std::vector<DeviceInfo> MpiRanks::own(const std::vector<DeviceInfo>& devices) const {

@@ -28,7 +28,8 @@ class MpiRanks : public Ranks {
     unsigned rank() const override { return rank_; }
     unsigned count() const override { return count_; }
     std::vector<double> gather(double mine) override;
-    void collect(const std::string& mine, const std::function<void(unsigned, const std::string&)>& take) override;
+    void send(const void* data, uint64_t bytes) override;
+    void receive(unsigned from, void* data, uint64_t bytes) override;
 
     // Those of the devices that this rank uses: the ranks of a host share them out. With more ranks than devices, several use
     // the same.

@@ -66,7 +66,7 @@ TEST(FrameParts, LeafTestsDoneTwiceChangeNothing) {
             frames.trace(*programs.prepare(*whole, part), whole->settings, view, 0, false, progress);
             return frames.read_values().pixels;
         };
-        const std::vector<float> once = picture(FramePart::whole);
+        const FloatPixels once = picture(FramePart::whole);
         for (const FramePart twice : {FramePart::whole_closest_double_leaf, FramePart::whole_any_double_leaf})
             EXPECT_EQ(picture(twice), once) << c.scene;
     }

@@ -122,7 +122,7 @@ TEST(BaselineFrame, DiffersUnderAnotherLight) {
     View other = view_of(*scene);
     other.lights[0].position[0] = -3;
     EXPECT_GT(differing_pixels(both.ours, render(scene, other, settings_of(64, 64, 3), "packet16").theirs, 1.0f / 255), 0.05);
-    EXPECT_EQ(differing_pixels(both.ours, FloatImage{64, 63, 3, std::vector<float>(64 * 63 * 3)}, 1), 1);
+    EXPECT_EQ(differing_pixels(both.ours, FloatImage{64, 63, 3, FloatPixels(64 * 63 * 3)}, 1), 1);
     other.lights.clear();
     EXPECT_THROW(whitted_view(*scene, other), std::exception);
 }

@@ -44,8 +44,8 @@ std::string Comparison::text() const {
     return line;
 }
 
-Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays,
-                   const std::vector<float>& t, const std::vector<float>* prims) {
+Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays, const FloatPixels& t,
+                   const FloatPixels* prims) {
     Comparison c;
     c.rays = truth.size();
     for (size_t i = 0; i < truth.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "conformance/oracle.hpp"
+#include "render/film/image_io.hpp"
 #include "support/workbench.hpp"
 
 namespace clarity::test {
@@ -31,7 +32,7 @@ struct Comparison {
 };
 
 // Compares t (infinite: no hit) and, if prims is not null, the primitive numbers with the oracle's answers.
-Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays,
-                   const std::vector<float>& t, const std::vector<float>* prims);
+Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays, const FloatPixels& t,
+                   const FloatPixels* prims);
 
 }  // namespace clarity::test

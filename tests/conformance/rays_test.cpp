@@ -67,7 +67,7 @@ void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::ve
     ASSERT_EQ(any.size(), rays.size());
     std::vector<Truth> truth;
     std::vector<Ray> wide;
-    std::vector<float> t, prims;
+    FloatPixels t, prims;
     size_t contradictions = 0, outside = 0;
     for (size_t i = 0; i < rays.size(); ++i) {
         wide.push_back(widened(rays[i]));

@@ -18,7 +18,7 @@ std::string bytes_of(const std::string& path) {
 std::string pixels_of(const std::string& path, const std::string& ending) {
 #ifdef CLARITY_HAVE_OPENEXR
     if (ending == "exr") {
-        const std::vector<float> values = read_exr(path, {"R", "G", "B"}).pixels;
+        const FloatPixels values = read_exr(path, {"R", "G", "B"}).pixels;
         return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
     }
 #endif

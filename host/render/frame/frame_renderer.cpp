@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/parallel_for.hpp"
 #include "device/cl_errors.hpp"
 #include "device/launch_limit.hpp"
 #include "render/film/bands.hpp"
@@ -54,6 +55,16 @@ void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const f
                                (y * layout.group_h + in_y) * layout.packet_h, image);
 }
 
+// From sums of colours, with the number of samples behind each, to their means.
+void divide_sums(const float* sums, float* colors, size_t pixels) {
+    constexpr size_t kAtOnce = 1u << 16;
+    parallel_for(static_cast<uint32_t>((pixels + kAtOnce - 1) / kAtOnce), [&](uint32_t piece) {
+        const size_t end = std::min(pixels, (piece + 1) * kAtOnce);
+        for (size_t i = piece * kAtOnce; i < end; ++i)
+            for (int k = 0; k < 3; ++k) colors[3 * i + k] = sums[4 * i + k] / std::max(sums[4 * i + 3], 1.0f);
+    });
+}
+
 // Limits of the number of samples in one launch. Each launch ends with its slowest rays, so fewer launches waste less time. But
 // a launch cannot be cancelled, and each of its samples takes a layer of memory.
 constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
@@ -90,7 +101,7 @@ struct FrameRenderer::Impl {
     enum class Shown { no, read, begun };
     // How the last picture was displayed. We expect the next one to be displayed in the same way.
     Shown shown = Shown::no;
-    std::vector<float> scratch;  // kept, because fresh pages cost more than the work on them
+    FloatPixels scratch;  // kept, because fresh pages cost more than the work on them
 
     // Waits for everything that is queued, then reads.
     void read(const cl::Buffer& buffer, void* out, size_t bytes) {
@@ -318,11 +329,11 @@ void FrameRenderer::read_values(FloatImage& image) {
         const std::vector<Band> bands = im.group_rows().bands();
         read_bands(im.device->queue(), im.film.get(), bands, stored * sizeof(float), film);
         finish(*im.device, im.device->queue(), "reading the film");
-        for (const Band& band : bands) {
+        parallel_for(static_cast<uint32_t>(bands.size()), [&](uint32_t b) {
+            const Band& band = bands[b];
             const size_t begin = band.first * size_t(im.width), end = begin + band.count * size_t(im.width);
             if (color) {
-                for (size_t i = begin; i < end; ++i)
-                    for (int k = 0; k < 3; ++k) image.pixels[3 * i + k] = film[4 * i + k] / std::max(film[4 * i + 3], 1.0f);
+                divide_sums(film + 4 * begin, image.pixels.data() + 3 * begin, end - begin);
             } else if (im.aov->film == Aov::Film::numbers) {
                 for (size_t i = begin; i < end; ++i) {
                     rt_i32 number;
@@ -330,7 +341,7 @@ void FrameRenderer::read_values(FloatImage& image) {
                     film[i] = static_cast<float>(number);
                 }
             }
-        }
+        });
     });
 }
 

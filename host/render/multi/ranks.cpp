@@ -1,8 +1,8 @@
 #include "render/multi/ranks.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
+#include <string>
 
 #include "base/error.hpp"
 
@@ -22,26 +22,23 @@ std::vector<unsigned> deal_tiles(unsigned tiles, const std::vector<double>& spee
 }
 
 void collect_rows(Ranks& ranks, const std::vector<PixelRows>& mine, size_t row_bytes, unsigned height, char* picture) {
-    std::string bytes;
-    if (ranks.rank() != 0)
-        for (const PixelRows& rows : mine) {
-            bytes.append(reinterpret_cast<const char*>(&rows), sizeof rows);
-            bytes.append(picture + rows.first * row_bytes, rows.count * row_bytes);
-        }
-    ranks.collect(bytes, [&](unsigned rank, const std::string& given) {
-        for (size_t at = 0; at < given.size();) {
-            PixelRows rows;
-            if (given.size() - at >= sizeof rows) std::memcpy(&rows, &given[at], sizeof rows);
-            at += sizeof rows;
-            if (rows.first > height || rows.count > height - rows.first || rows.count == 0 ||
-                given.size() < at + rows.count * row_bytes)
-                throw Error(Exit::failed, "rank " + std::to_string(rank) +
-                                              " sent rows that are not of this picture: do all "
-                                              "ranks run the same version of the program?");
-            std::memcpy(picture + rows.first * row_bytes, &given[at], rows.count * row_bytes);
-            at += rows.count * row_bytes;
-        }
-    });
+    const std::vector<double> counts = ranks.gather(double(mine.size()));
+    if (ranks.rank() != 0) {
+        ranks.send(mine.data(), mine.size() * sizeof(PixelRows));
+        for (const PixelRows& rows : mine) ranks.send(picture + rows.first * row_bytes, rows.count * row_bytes);
+        return;
+    }
+    for (unsigned rank = 1; rank < ranks.count(); ++rank) {
+        std::vector<PixelRows> theirs(static_cast<size_t>(counts[rank]));
+        ranks.receive(rank, theirs.data(), theirs.size() * sizeof(PixelRows));
+        for (const PixelRows& rows : theirs)
+            if (rows.first > height || rows.count > height - rows.first)
+                throw Error(Exit::failed,
+                            "rank " + std::to_string(rank) +
+                                " sent rows that are not of this picture: do all ranks run the same version of the "
+                                "program?");
+        for (const PixelRows& rows : theirs) ranks.receive(rank, picture + rows.first * row_bytes, rows.count * row_bytes);
+    }
 }
 
 }  // namespace clarity

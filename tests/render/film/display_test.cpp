@@ -192,7 +192,7 @@ TEST(View, MaterialsReplaceTheScenes) {
         bench().trace(of, settings, view);
         return bench().frames().read_values().pixels;
     };
-    const std::vector<float> before = picture(scene);
+    const FloatPixels before = picture(scene);
     for (const Material& material : scene->materials) view.materials.push_back(material.values);
     EXPECT_EQ(picture(scene), before) << "the scene's own materials, given by the view, change the picture";
     auto repainted = std::make_shared<Scene>(*scene);
@@ -202,7 +202,7 @@ TEST(View, MaterialsReplaceTheScenes) {
         repainted->materials[i].values = view.materials[i];
     }
     const auto prepared = bench().prepare(scene, settings);
-    const std::vector<float> edited = picture(scene);
+    const FloatPixels edited = picture(scene);
     EXPECT_EQ(bench().prepare(scene, settings)->accel, prepared->accel) << "an edit caused a new build";
     EXPECT_NE(edited, before);
     view.materials.clear();

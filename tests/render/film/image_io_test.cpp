@@ -61,7 +61,7 @@ ByteImage sample_bytes(unsigned width, unsigned height, bool opaque) {
     return {width, height, std::move(pixels)};
 }
 
-bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+bool same_bits(const FloatPixels& a, const FloatPixels& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 

@@ -44,7 +44,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
         faults.end();
         for (int picture = 0; picture < 2; ++picture) {
             frames_.trace(*prepared_, small_, view_, 0, true, progress_);
-            const std::vector<float> pixels = frames_.read_values().pixels;
+            const FloatPixels pixels = frames_.read_values().pixels;
             ASSERT_EQ(pixels.size(), truth_.size()) << after;
             EXPECT_EQ(std::memcmp(pixels.data(), truth_.data(), truth_.size() * sizeof(float)), 0) << after;
         }
@@ -58,7 +58,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
     View view_;
     Settings small_, large_;
     std::shared_ptr<const Prepared> prepared_;
-    std::vector<float> truth_;
+    FloatPixels truth_;
 };
 
 TEST_P(Failures, TooLittleMemoryForAPicture) {

@@ -57,7 +57,7 @@ class FailingDevice : public ::testing::Test {
     const Settings settings_ = make_settings({{"size", "160x120"}});
     ScenePtr scene_;
     View view_;
-    std::vector<float> truth_;
+    FloatPixels truth_;
     SharedBytes display_;
 };
 

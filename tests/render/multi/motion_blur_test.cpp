@@ -147,7 +147,7 @@ TEST_F(Blur, IsTheMeanOfStillPictures) {
     FloatImage mean;
     for (int i = 0; i < 64; ++i) {
         const FloatImage one = still(team, (i + 0.5) / 64, of_still);
-        if (mean.pixels.empty()) mean = {one.width, one.height, one.channels, std::vector<float>(one.pixels.size())};
+        if (mean.pixels.empty()) mean = {one.width, one.height, one.channels, FloatPixels(one.pixels.size(), 0.0f)};
         for (size_t p = 0; p < one.pixels.size(); ++p) mean.pixels[p] += one.pixels[p] / 64;
     }
     const double difference = mean_difference(blur.image, mean), without = mean_difference(still(team, 0.5, settings_), mean);

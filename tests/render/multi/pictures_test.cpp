@@ -187,7 +187,7 @@ TEST_F(SharedPictures, ALaunchMayTraceSeveralSamples) {
             const View view = make_view(*of, 32.0f / 25.0f);
             // Packets of 2x1 are traced one sample per launch.
             const FrameStats truth = one_->trace(of, with("2x1"), view, 0, 21);
-            const std::vector<float> pixels = one_->frames.read_values().pixels, distance = one_->frames.read_distance().pixels;
+            const FloatPixels pixels = one_->frames.read_values().pixels, distance = one_->frames.read_distance().pixels;
             EXPECT_GE(truth.launches, 21u);
             for (Team* team : {one_, two_})
                 for (int picture = 0; picture < 3; ++picture) {

@@ -36,7 +36,7 @@ TEST(CollectRows, RefusesRowsOfAnotherPicture) {
 }
 
 struct Picture {
-    std::vector<float> values;
+    FloatPixels values;
     std::string display;
 };
 

@@ -33,7 +33,7 @@ inline std::string why_no_parts() {
     }
 }
 
-inline size_t differing(const std::vector<float>& a, const std::vector<float>& b) {
+inline size_t differing(const FloatPixels& a, const FloatPixels& b) {
     size_t differ = a.size() == b.size() ? 0 : ~size_t(0) / 2;
     for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) differ += std::memcmp(&a[i], &b[i], sizeof a[i]) != 0;
     return differ;

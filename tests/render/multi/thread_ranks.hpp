@@ -1,12 +1,16 @@
 // thread_ranks.hpp -- ranks that are threads of one process, for tests.
 #pragma once
 #include <condition_variable>
+#include <cstring>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "render/multi/ranks.hpp"
 
 namespace clarity::test {
@@ -14,7 +18,7 @@ namespace clarity::test {
 // What the ranks share.
 class RankTable {
  public:
-    explicit RankTable(unsigned count) : bytes_(count), count_(count) {}
+    explicit RankTable(unsigned count) : bytes_(count), posted_(count), count_(count) {}
     // All ranks give bytes; read() sees those of all, once all have given theirs.
     void exchange(unsigned rank, const std::string& mine, const std::function<void(const std::vector<std::string>&)>& read) {
         {
@@ -27,6 +31,19 @@ class RankTable {
             ~AtEnd() { table.wait(); }
         } at_end{*this};
         read(bytes_);
+    }
+    // Bytes for rank 0, which takes them in the order in which a rank has posted them.
+    void post(unsigned from, std::string bytes) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        posted_[from].push_back(std::move(bytes));
+        posted_some_.notify_all();
+    }
+    std::string take(unsigned from) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        posted_some_.wait(lock, [&] { return !posted_[from].empty(); });
+        std::string bytes = std::move(posted_[from].front());
+        posted_[from].pop_front();
+        return bytes;
     }
     unsigned count() const { return count_; }
 
@@ -42,10 +59,11 @@ class RankTable {
         all_here_.wait(lock, [&] { return round_ != round; });
     }
     std::vector<std::string> bytes_;
+    std::vector<std::deque<std::string>> posted_;
     const unsigned count_;
     unsigned waiting_ = 0, round_ = 0;
     std::mutex mutex_;
-    std::condition_variable all_here_;
+    std::condition_variable all_here_, posted_some_;
 };
 
 class ThreadRanks : public Ranks {
@@ -60,10 +78,11 @@ class ThreadRanks : public Ranks {
         });
         return all;
     }
-    void collect(const std::string& mine, const std::function<void(unsigned, const std::string&)>& take) override {
-        table_.exchange(rank_, mine, [&](const std::vector<std::string>& given) {
-            for (unsigned r = 1; rank_ == 0 && r < given.size(); ++r) take(r, given[r]);
-        });
+    void send(const void* data, uint64_t bytes) override { table_.post(rank_, {static_cast<const char*>(data), bytes}); }
+    void receive(unsigned from, void* data, uint64_t bytes) override {
+        const std::string posted = table_.take(from);
+        if (posted.size() != bytes) throw Error(Exit::failed, "a message of another size");
+        std::memcpy(data, posted.data(), bytes);
     }
 
  private:
