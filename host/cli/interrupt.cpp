@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/files/process_folder.hpp"
 
 namespace clarity {
 namespace {
@@ -41,6 +42,7 @@ char last_words[512] =
 void on_deadline(int) {
     const ssize_t written = ::write(STDERR_FILENO, last_words, std::strlen(last_words));
     (void)written;
+    leave_process_folders();
     _exit(static_cast<int>(Exit::interrupted));
 }
 

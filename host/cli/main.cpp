@@ -7,6 +7,7 @@
 #include <new>
 
 #include "base/error.hpp"
+#include "base/files/process_folder.hpp"
 #include "base/log.hpp"
 #include "check/check.hpp"
 #include "cli/command_line.hpp"
@@ -87,6 +88,7 @@ int main(int argc, char** argv) {
     // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them.
     if (code != 0) {
         std::fflush(nullptr);
+        clarity::remove_process_folders();
         std::_Exit(code);
     }
     return code;

@@ -1,17 +1,15 @@
 #include "compile/compile.hpp"
 
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <optional>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "compile/compile_in_worker.hpp"
+#include "compile/pocl_entries.hpp"
 #include "compile/program_store.hpp"
 #include "device/kernel_files.hpp"
-#include "worker/channel.hpp"
 
 namespace clarity {
 namespace {
@@ -46,22 +44,41 @@ struct DeviceRequest {
 // Compiles a program that is not on disk, and keeps it there.
 CompileOutcome compile_first(const DeviceRequest& wanted, const CompileRequest& request, Progress& progress) {
     const DeviceInfo& info = wanted.info;
-    // For the binary of a program that was not launched PoCL generates code, which the first launch does anyhow. PoCL's own
-    // cache serves as well then.
+    // For the binary of a program that was not launched PoCL generates code, which the first launch does anyhow. Its entry in
+    // PoCL's cache serves as well then.
     const bool wants_binary = !info.pocl || wanted.launches;
-    const CompileJob job{request.source, wanted.options, info.id(), info.name, info.driver, wanted.launches, wants_binary};
-    CompileOutcome outcome = compile_in_worker(info, job, request.what, progress);
+    const std::string folder = info.pocl ? folder_for_worker() : std::string();
+    const CompileJob job{request.source, wanted.options,  info.id(),    info.name,
+                         info.driver,    wanted.launches, wants_binary, folder};
+    CompileOutcome outcome;
+    try {
+        outcome = compile_in_worker(info, job, request.what, progress);
+    } catch (...) {
+        drop_folder(folder);
+        throw;
+    }
+    if (outcome.state == CompileOutcome::compiled && outcome.binary.empty() && !folder.empty()) {
+        take_entry(wanted.key, folder);
+        return outcome;
+    }
     if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
+    drop_folder(folder);
     return outcome;
 }
 
-}  // namespace
-
-bool compiles_in_worker() {
-    if (std::getenv(worker::kWorkerVariable)) return false;
-    const char* place = std::getenv("CLARITY_COMPILE");
-    return !place || std::strcmp(place, "here") != 0;
+// Whether PoCL's cache has the program already, or has it now from the store.
+bool finds_entry(const DeviceRequest& wanted, const std::optional<std::vector<char>>& stored) {
+    return has_entry(wanted.key) || (stored && wanted.info.pocl && unpack_entry(wanted.key, *stored));
 }
+
+// What the store has of a program. A note that it compiles is of no use if PoCL has lost its cache since.
+std::optional<std::vector<char>> stored_program(const DeviceRequest& wanted) {
+    auto stored = find_program(wanted.key);
+    if (stored && stored->empty() && wanted.info.pocl && has_own_pocl_cache()) stored.reset();
+    return stored;
+}
+
+}  // namespace
 
 BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
@@ -74,7 +91,8 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
     if (!compiles_in_worker()) return here(request.options);
     const DeviceRequest wanted(info, request);
     BuildResult result;
-    std::optional<std::vector<char>> binary = find_program(wanted.key);
+    std::optional<std::vector<char>> binary = stored_program(wanted);
+    if (finds_entry(wanted, binary)) return here(wanted.options);
     if (!binary) {
         CompileOutcome outcome = compile_first(wanted, request, progress);
         if (outcome.state == CompileOutcome::failed) throw build_error(info, request.what, outcome.error, outcome.log);
@@ -84,9 +102,7 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         binary = std::move(outcome.binary);
     }
     if (!binary->empty()) {
-        if (info.pocl) set_aside(wanted.key);
         auto program = program_of(device, *binary, wanted.options);
-        put_back(wanted.key);
         if (program) {
             result.program = *program;
             result.ms = ms_since(start);
@@ -104,7 +120,7 @@ void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progre
     if (!compiles_in_worker() || !keeps_programs()) return;
     const DeviceRequest wanted(info, request);
     try {
-        if (!find_program(wanted.key)) compile_first(wanted, request, progress);
+        if (!has_entry(wanted.key) && !stored_program(wanted)) compile_first(wanted, request, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& e) {

@@ -1,13 +1,14 @@
 // compile.hpp -- compiles kernels so that a compiler that hangs, crashes or takes all memory never harms this process.
 //
-// A program is compiled in a worker process first (host/worker). Then the host gets it: as a binary from the worker, or, where
-// the driver keeps a cache of its own and is slow to give binaries (PoCL), by compiling again, which then only reads that
-// cache. Programs that were compiled once are known on disk (program_store.hpp), and need no worker.
+// A program is compiled in a worker process first (host/worker), if compiles_in_worker(). Then the host gets it: as a binary
+// from the worker, or, where PoCL is slow to give one, as what PoCL has written into its cache (pocl_entries.hpp). Programs
+// that were compiled once are known on disk (program_store.hpp), and need no worker.
 #pragma once
 #include <string>
 
 #include "base/progress.hpp"
 #include "device/device.hpp"
+#include "device/pocl_cache.hpp"
 #include "device/program.hpp"
 
 namespace clarity {
@@ -19,9 +20,6 @@ struct CompileRequest {
     // compiles a kernel when it is first launched with a work-group size.
     bool ends_on_zeros = false;
 };
-
-// Where programs are compiled: in a worker, or in this process if CLARITY_COMPILE is `here`, and always inside a worker.
-bool compiles_in_worker();
 
 // Compiles a program for `device`. progress: cancels the compilation within 0.1 s.
 // Throws Error(kernel_build_failed) as build_program() does, also if the compiler crashes or needs too much memory, and

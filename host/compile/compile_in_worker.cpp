@@ -68,8 +68,9 @@ class CompileSupervisor : public worker::Supervisor {
         switch (ending.kind) {
             case End::crashed:
                 fail("the OpenCL compiler crashed: " + ending.how +
-                     (info_.pocl ? "; if it always does, the cache " + pocl_cache() + " may be damaged: delete that folder"
-                                 : ""));
+                     (info_.pocl && !has_own_pocl_cache()
+                          ? "; if it always does, the cache " + pocl_cache() + " may be damaged: delete that folder"
+                          : ""));
                 break;
             case End::exited:
                 fail("the OpenCL compiler ended its process: " + ending.how);

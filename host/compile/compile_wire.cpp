@@ -83,7 +83,8 @@ class WireReader {
 
 std::string write_compile_job(int fd, const CompileJob& job) {
     WireText out;
-    for (const std::string* text : {&job.source, &job.options, &job.device, &job.name, &job.driver}) out.text(*text);
+    for (const std::string* text : {&job.source, &job.options, &job.device, &job.name, &job.driver, &job.pocl_cache})
+        out.text(*text);
     out.number(job.ends_on_zeros);
     out.number(job.wants_binary);
     return out.write_to(fd);
@@ -91,7 +92,7 @@ std::string write_compile_job(int fd, const CompileJob& job) {
 
 std::string read_compile_job(int fd, CompileJob& job) {
     WireReader in(fd);
-    for (std::string* text : {&job.source, &job.options, &job.device, &job.name, &job.driver}) in.text(*text);
+    for (std::string* text : {&job.source, &job.options, &job.device, &job.name, &job.driver, &job.pocl_cache}) in.text(*text);
     in.number(job.ends_on_zeros);
     in.number(job.wants_binary);
     return in.end();

@@ -12,6 +12,7 @@ struct CompileJob {
     std::string device, name, driver;  // id as `--device` takes it; the worker refuses a device of another name or driver
     uint32_t ends_on_zeros = 0;
     uint32_t wants_binary = 0;
+    std::string pocl_cache;  // the folder that PoCL compiles into; empty: its own
 };
 
 // Worker to program.

@@ -97,6 +97,7 @@ CompileOutcome compile(const CompileJob& job) {
 
 void run() {
     const CompileJob job = wait_for_job();
+    if (!job.pocl_cache.empty()) setenv("POCL_CACHE_DIR", job.pocl_cache.c_str(), 1);
     for (const std::string& note : worker::enter_sandbox(worker::WorkerKind::driver, {}, {}, {}))
         log(LogLevel::debug, "compile worker: " + note);
     const std::string why = write_compile_outcome(worker::kResultFd, compile(job));

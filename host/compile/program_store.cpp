@@ -82,6 +82,10 @@ std::string program_key(const DeviceInfo& info, const std::string& source, const
     std::string text;
     for (const std::string* part : {&info.platform, &info.vendor, &info.name, &info.version, &info.driver, &options, &source})
         text += std::to_string(part->size()) + ":" + *part;
+    // Variables of PoCL that change its code.
+    for (const char* name :
+         {"POCL_EXTRA_BUILD_FLAGS", "POCL_WORK_GROUP_METHOD", "POCL_VECTORIZER_REMARKS", "POCL_DEBUG_LLVM_PASSES"})
+        if (const char* value = info.pocl ? std::getenv(name) : nullptr) text += std::string(name) + "=" + value + "\n";
     // Two hashes, so that no two programs ever meet.
     char name[40];
     std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(hash_bytes(text.data(), text.size())),

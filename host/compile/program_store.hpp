@@ -1,9 +1,9 @@
 // program_store.hpp -- programs that were compiled once, on disk: $XDG_CACHE_HOME/clarity/programs, one file for each.
 //
-// A file holds the binary that the driver gave, or nothing, which says that this program compiles and ends. Checksums are
-// verified before a driver sees a binary: PoCL aborts the process on a damaged one. Files appear whole or not at all, so that
-// any number of processes may share the folder. The folder holds at most kStoreBytes; what was used least recently goes first.
-// CLARITY_PROGRAM_CACHE names another folder, or is `off`.
+// A file holds the binary that the driver gave, or what PoCL has compiled (pocl_entries.hpp), or nothing, which says that this
+// program compiles and ends. Checksums are verified before a driver sees the content: PoCL aborts the process on a damaged one.
+// Files appear whole or not at all, so that any number of processes may share the folder. The folder holds at most kStoreBytes;
+// what was used least recently goes first. CLARITY_PROGRAM_CACHE names another folder, or is `off`.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ namespace clarity {
 
 inline constexpr uint64_t kStoreBytes = uint64_t{256} << 20;
 
-// Names a program of a device: its source, options, device, and versions of driver and platform.
+// Names a program of a device: its source, options, device, versions of driver and platform, and what variables tell PoCL.
 std::string program_key(const DeviceInfo& info, const std::string& source, const std::string& options);
 
 // Whether there is a folder for programs.

@@ -136,7 +136,7 @@ std::vector<DeviceInfo> list_devices(std::vector<DeviceWarning>* warnings) {
     static std::string cache_warning;  // once, and only if PoCL is there
     std::call_once(once, [] {
         pin_pocl_threads();
-        cache_warning = use_writable_pocl_cache();
+        cache_warning = prepare_pocl_cache();
     });
     const auto warn = [&](const std::string& text, bool is_minor = false) {
         if (warnings) warnings->push_back({text, is_minor});

@@ -1,6 +1,7 @@
 #include "device/pocl_cache.hpp"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,9 +9,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "base/files/cache_folder.hpp"
+#include "base/files/process_folder.hpp"
+#include "worker/channel.hpp"
 
 namespace clarity {
 namespace {
@@ -43,6 +47,10 @@ std::string why_unwritable(const fs::path& folder) {
     std::string why;
     if (const int failed = posix_fallocate(file, 0, kLeastBytes); failed != 0 && failed != EOPNOTSUPP && failed != EINVAL)
         why = std::strerror(failed);
+    // PoCL loads what it has compiled as libraries.
+    void* const code = why.empty() ? mmap(nullptr, 1, PROT_READ | PROT_EXEC, MAP_PRIVATE, file, 0) : MAP_FAILED;
+    if (why.empty() && code == MAP_FAILED) why = std::string("code in it cannot be run: ") + std::strerror(errno);
+    if (code != MAP_FAILED) munmap(code, 1);
     close(file);
     return why;
 }
@@ -57,29 +65,74 @@ bool is_own_folder(const fs::path& folder) {
            (status.st_mode & 022) == 0;
 }
 
-}  // namespace
-
-std::string pocl_cache() {
-    return pocl_folder().string();
+// Below the folders that others may write to, too.
+fs::path folder_of_user(const fs::path& parent) {
+    return parent / ("clarity-pocl-" + std::to_string(geteuid()));
 }
 
-std::string use_writable_pocl_cache() {
+fs::path temporary_folder() {
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error);
+    return error ? fs::path() : folder_of_user(folder);
+}
+
+fs::path folder_in_cache() {
+    const fs::path cache = cache_folder();
+    return cache.empty() ? fs::path() : cache / "pocl";
+}
+
+// Removed at the end of the process.
+std::unique_ptr<ProcessFolder>& own_folder() {
+    static std::unique_ptr<ProcessFolder> folder;
+    return folder;
+}
+
+bool take_own_folder() {
+    const char* named = std::getenv("POCL_CACHE_DIR");
+    const fs::path candidates[] = {named && *named ? folder_of_user(named) : fs::path(), temporary_folder(), folder_in_cache()};
+    for (const fs::path& parent : candidates) {
+        if (parent.empty() || !is_own_folder(parent) || !why_unwritable(parent).empty()) continue;
+        own_folder() = ProcessFolder::make(parent, "process");
+        if (!own_folder()) continue;
+        setenv("POCL_CACHE_DIR", own_folder()->path().c_str(), 1);
+        return true;
+    }
+    return false;
+}
+
+std::string use_writable_folder() {
     const fs::path folder = pocl_folder();
     if (folder.empty()) return {};
     const std::string why = why_unwritable(folder);
     if (why.empty()) return {};
     const std::string what = "PoCL's cache " + folder.string() + " cannot be written: " + why;
-    std::vector<fs::path> others;
-    if (const fs::path cache = cache_folder(); !cache.empty()) others.push_back(cache / "pocl");
-    std::error_code error;
-    if (const fs::path temporary = fs::temp_directory_path(error); !error)
-        others.push_back(temporary / ("clarity-pocl-" + std::to_string(geteuid())));
-    for (const fs::path& other : others) {
-        if (!is_own_folder(other) || !why_unwritable(other).empty()) continue;
+    for (const fs::path& other : {folder_in_cache(), temporary_folder()}) {
+        if (other.empty() || !is_own_folder(other) || !why_unwritable(other).empty()) continue;
         setenv("POCL_CACHE_DIR", other.c_str(), 1);
         return what + "; " + other.string() + " is used instead";
     }
     return what + ", and no other folder either, so that nothing can be compiled: set POCL_CACHE_DIR to a folder with room";
+}
+
+}  // namespace
+
+bool compiles_in_worker() {
+    if (std::getenv(worker::kWorkerVariable)) return false;
+    const char* place = std::getenv("CLARITY_COMPILE");
+    return !place || std::strcmp(place, "here") != 0;
+}
+
+std::string pocl_cache() {
+    return pocl_folder().string();
+}
+
+bool has_own_pocl_cache() {
+    return own_folder() != nullptr;
+}
+
+std::string prepare_pocl_cache() {
+    if (compiles_in_worker() && take_own_folder()) return {};
+    return use_writable_folder();
 }
 
 }  // namespace clarity

@@ -59,7 +59,7 @@ TEST_P(MachineCode, KeepsPacketsInWideRegisters) {
     const std::string scene = scratch.write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"),
                       cache = scratch.path("pocl");
     RunOptions options;
-    options.environment = {{"POCL_CACHE_DIR", cache}};
+    options.environment = {{"POCL_CACHE_DIR", cache}, {"CLARITY_COMPILE", "here"}};
     const ProgramResult result = run_program(
         {"render", scene, "-o", scratch.path("a.png"), "--size", "64x48", "--lanes", "16", "--accel", GetParam()}, options);
     ASSERT_EQ(result.exit_code, 0) << result.err;

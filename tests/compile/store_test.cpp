@@ -119,12 +119,13 @@ TEST(ProgramKey, NamesAllThatABinaryDependsOn) {
 
 TEST(CompileWire, RefusesEveryCut) {
     const int fd = memfd_create("wire", 0);
-    CompileJob job{"source", "options", "0:0", "name", "driver", 1, 0}, read;
+    CompileJob job{"source", "options", "0:0", "name", "driver", 1, 0, "folder"}, read;
     ASSERT_EQ(write_compile_job(fd, job), "");
     ASSERT_EQ(read_compile_job(fd, read), "");
     EXPECT_EQ(read.source, "source");
     EXPECT_EQ(read.driver, "driver");
     EXPECT_EQ(read.ends_on_zeros, 1u);
+    EXPECT_EQ(read.pocl_cache, "folder");
     CompileOutcome outcome{CompileOutcome::failed, -11, "log", {'b', '\0', 'c'}}, back;
     ASSERT_EQ(write_compile_outcome(fd, outcome), "");
     ASSERT_EQ(read_compile_outcome(fd, back), "");

@@ -93,7 +93,7 @@ TEST_F(Panel, RefusedValuesChangeNothing) {
 // The requirement is 2 s on the idle reference machine. This bound leaves room for a busy machine.
 TEST_F(Panel, PacketSizeChangesQuicklyWithAColdCache) {
     const TemporaryFolder cache;
-    const auto window = open({{"POCL_CACHE_DIR", cache.path()}});
+    const auto window = open({{"POCL_CACHE_DIR", cache.path()}, {"XDG_CACHE_HOME", cache.path()}});
     const auto begin = Clock::now();
     ASSERT_EQ(window->command("set packet 8x8"), "");
     window->settle();

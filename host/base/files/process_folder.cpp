@@ -1,0 +1,106 @@
+#include "base/files/process_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLock = "lock";
+
+// The paths of all folders, for a signal handler.
+constexpr size_t kMostFolders = 4;
+std::atomic<const char*> folders_of_process[kMostFolders];
+static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may touch nothing that locks");
+
+bool is_own(const fs::path& folder) {
+    struct stat status {};
+    return lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid();
+}
+
+// Locks the file, and makes it if that is asked for. Returns its descriptor; -1: another process has it, or it is not there.
+int locked(const fs::path& file, int flags) {
+    const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0600);
+    if (fd < 0 || flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
+    close(fd);
+    return -1;
+}
+
+void remove_with_parent(const fs::path& folder) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    rmdir(folder.parent_path().c_str());  // fails if others have folders there
+}
+
+// Removes a folder whose process is gone.
+void remove_if_left(const fs::path& folder) {
+    if (!is_own(folder)) return;
+    std::error_code error;
+    const int lock = locked(folder / kLock, 0);
+    // A folder without the file may just be in the making.
+    const bool is_old = fs::file_time_type::clock::now() - fs::last_write_time(folder, error) > std::chrono::minutes(1);
+    const bool is_left = lock >= 0 || (!fs::exists(folder / kLock, error) && !error && is_old);
+    if (is_left) fs::remove_all(folder, error);
+    if (lock >= 0) close(lock);
+}
+
+}  // namespace
+
+std::unique_ptr<ProcessFolder> ProcessFolder::make(const fs::path& parent, const std::string& name) {
+    std::error_code error;
+    fs::create_directories(parent, error);
+    for (fs::directory_iterator at(parent, error), end; !error && at != end; at.increment(error))
+        if (at->path().filename().string().compare(0, name.size() + 1, name + "-") == 0) remove_if_left(at->path());
+    std::string path = (parent / (name + "-XXXXXX")).string();
+    if (!mkdtemp(path.data())) return nullptr;
+    const int lock = locked(fs::path(path) / kLock, O_CREAT);
+    if (lock < 0) {
+        fs::remove_all(path, error);
+        return nullptr;
+    }
+    return std::unique_ptr<ProcessFolder>(new ProcessFolder(path, lock));
+}
+
+ProcessFolder::ProcessFolder(fs::path path, int lock) : path_(std::move(path)), lock_(lock) {
+    for (auto& folder : folders_of_process) {
+        const char* none = nullptr;
+        if (folder.compare_exchange_strong(none, path_.c_str())) return;
+    }
+}
+
+ProcessFolder::~ProcessFolder() {
+    for (auto& folder : folders_of_process) {
+        const char* own = path_.c_str();
+        folder.compare_exchange_strong(own, nullptr);
+    }
+    remove_with_parent(path_);
+    close(lock_);
+}
+
+void remove_process_folders() {
+    for (auto& folder : folders_of_process)
+        if (const char* const path = folder) remove_with_parent(path);
+}
+
+void leave_process_folders() {
+    for (auto& folder : folders_of_process) {
+        const char* const path = folder;
+        if (!path) continue;
+        // vfork(), because a copy of a large process takes long.
+        if (vfork() == 0) {
+            execl("/bin/sh", "sh", "-c", "rm -rf -- \"$0\"; rmdir -- \"${0%/*}\" 2>/dev/null", path,
+                  static_cast<char*>(nullptr));
+            _exit(1);
+        }
+    }
+}
+
+}  // namespace clarity

@@ -1,0 +1,32 @@
+// process_folder.hpp -- a folder for temporary files which nothing of this process outlives.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace clarity {
+
+// Removes the folder at its end, and its parent if that is empty. If the process is killed, the next make() with the same
+// parent and name removes it: the lock on its file `lock` is gone with the process.
+class ProcessFolder {
+ public:
+    // PARENT/NAME-XXXXXX, which only this user can read. nullptr: there can be none, for example because PARENT cannot be
+    // written.
+    static std::unique_ptr<ProcessFolder> make(const std::filesystem::path& parent, const std::string& name);
+    ~ProcessFolder();
+    ProcessFolder(const ProcessFolder&) = delete;
+    ProcessFolder& operator=(const ProcessFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+ private:
+    ProcessFolder(std::filesystem::path path, int lock);
+    const std::filesystem::path path_;
+    const int lock_;  // descriptor
+};
+
+// For a process that is about to end by _exit(): removes all its folders.
+void remove_process_folders();
+// The same for a signal handler: starts another process that removes them.
+void leave_process_folders();
+
+}  // namespace clarity

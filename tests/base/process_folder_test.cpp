@@ -1,0 +1,87 @@
+// Folders that nothing of a process outlives.
+#include "base/files/process_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "support/scratch.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ProcessFolders : public ::testing::Test {
+ protected:
+    fs::path parent() const { return scratch_.path("parent"); }
+    size_t count() const {
+        std::error_code none;
+        return size_t(std::distance(fs::directory_iterator(parent(), none), fs::directory_iterator()));
+    }
+    // Makes a folder in another process and runs `end` there. Returns when that process is gone.
+    template <class End>
+    void in_child(End&& end) {
+        const pid_t child = fork();
+        if (child == 0) {
+            const auto folder = ProcessFolder::make(parent(), "one");
+            std::ofstream(folder->path() / "file") << "x";
+            end();
+            _exit(0);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+    }
+    Scratch scratch_;
+};
+
+TEST_F(ProcessFolders, IsGoneAtTheEndWithItsParent) {
+    fs::path path;
+    {
+        const auto folder = ProcessFolder::make(parent(), "one");
+        const auto other = ProcessFolder::make(parent(), "one");
+        ASSERT_TRUE(folder && other);
+        EXPECT_NE(folder->path(), other->path());
+        path = folder->path();
+        fs::create_directories(path / "a/b");
+        std::ofstream(path / "a/b/file") << "x";
+        EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+    }
+    EXPECT_FALSE(fs::exists(path));
+    EXPECT_FALSE(fs::exists(parent()));
+}
+
+TEST_F(ProcessFolders, TheNextOneRemovesWhatAKilledProcessLeft) {
+    in_child([] { raise(SIGKILL); });
+    EXPECT_EQ(count(), 1u) << "nothing could remove it";
+    const auto folder = ProcessFolder::make(parent(), "one");
+    EXPECT_EQ(count(), 1u) << "its own";
+    const auto other = ProcessFolder::make(parent(), "one");
+    EXPECT_TRUE(fs::exists(folder->path())) << "of a process that lives";
+}
+
+TEST_F(ProcessFolders, OneThatIsInTheMakingStays) {
+    fs::create_directories(parent() / "one-ABCDEF");
+    const auto folder = ProcessFolder::make(parent(), "one");
+    EXPECT_TRUE(fs::exists(parent() / "one-ABCDEF"));
+    fs::last_write_time(parent() / "one-ABCDEF", fs::file_time_type::clock::now() - std::chrono::hours(1));
+    const auto other = ProcessFolder::make(parent(), "one");
+    EXPECT_FALSE(fs::exists(parent() / "one-ABCDEF")) << "not for ever";
+}
+
+TEST_F(ProcessFolders, AProcessMayLeaveItsFoldersToBeRemoved) {
+    in_child(leave_process_folders);
+    for (int i = 0; i < 500 && count() > 0; ++i) usleep(10000);
+    EXPECT_EQ(count(), 0u);
+}
+
+TEST_F(ProcessFolders, ThereMayBeNoPlace) {
+    scratch_.write("file", "");
+    EXPECT_FALSE(ProcessFolder::make(scratch_.path("file"), "one"));
+}
+
+}  // namespace
+}  // namespace clarity
