@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kStore = "rt_put_pixels(frame, origin, sums, film);";
+constexpr const char* kMovingScene = "tests/farm/moving.scene";
 
 double number_from(const char* variable, double otherwise) {
     const char* text = std::getenv(variable);
@@ -51,7 +52,7 @@ class Soak : public WindowTest {
     // One action; returns what it was.
     std::string act(WindowDriver& window, int number) {
         const std::string structures[] = {"bvh2", "bvh4", "bvh8", "cwbvh", "spheres", "lbvh", "ploc", "linear"};
-        switch (random() % 12) {
+        switch (random() % 17) {
             case 0:
                 return say(window, "accel " + structures[random() % std::size(structures)]);
             case 1:
@@ -61,7 +62,8 @@ class Soak : public WindowTest {
             case 3:
                 return say(window, "set aov " + chosen({"color", "t", "normal", "steps"}));
             case 4:
-                return say(window, "open " + source_path("scenes/" + chosen({"primitives.scene", "cornell.scene"})));
+                return say(window,
+                           "open " + source_path(chosen({"scenes/primitives.scene", "scenes/cornell.scene", kMovingScene})));
             case 5:
                 return say(window, "cancel");
             case 6:
@@ -74,6 +76,17 @@ class Soak : public WindowTest {
                 window.key(chosen({"Left", "Right", "Up", "Down", "Home"}));
                 return "key";
             case 10:
+                return say(window, "turntable 3 " + folder.path() + "/turn_####.png");
+            case 11:
+                return say(window, chosen({"play 1", "play 0", "time 1.5", "time 3", "step 1", "speed 2"}));
+            case 12:
+                return say(window, chosen({"inspect 20 20", "pick 30 20", "inspect 5 40"}));
+            case 13:
+                return say(window,
+                           chosen({"level 2", "level bottom", "level off", "continuous 1", "continuous 0", "handles 1"}));
+            case 14:
+                return say(window, "save " + folder.path() + "/saved." + chosen({"png", "pfm"}));
+            case 15:
                 save_kernel(good + "\n// " + std::to_string(number) + "\n");
                 return "a harmless edit";
             default:
@@ -108,7 +121,8 @@ TEST_F(Soak, RandomActionsLeaveTheWindowSound) {
     // Back to a known state: the picture must be that of the beginning.
     const auto rest = [&] {
         save_kernel(good);
-        window->command("compare off");
+        for (const char* line : {"compare off", "level off", "continuous 0", "handles 0"}) window->command(line);
+        window->key("Escape");  // ends a sequence
         window->command("open " + source_path("scenes/primitives.scene"));
         window->key("Home");
         for (const std::string& line : start) window->command(line);
