@@ -73,8 +73,10 @@ TEST_F(KernelEdit, TheKernelThatInspectsPixelsIsTriedFirst) {
     auto variables = environment();
     variables["CLARITY_COMPILE"] = "worker";
     const auto window = open(variables);
-    window->command("inspect 8 8");
+    window->command("set lanes 1");
     window->settle();
+    window->command("inspect 8 8");
+    window->settle(400);
     const std::string failure = window->command("inspection");
     EXPECT_NE(failure.find("did not come to an end within"), std::string::npos) << failure;
     EXPECT_NE(failure.find("while they recorded the rays of some pixels"), std::string::npos) << failure;
