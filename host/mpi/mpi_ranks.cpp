@@ -3,7 +3,9 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <thread>
@@ -60,11 +62,14 @@ const clarity_mpi_module* load() {
 
 constexpr uint64_t kPiece = uint64_t{64} << 20;  // bytes that a rank holds twice while a scene comes in
 
-// Waits until another process has written the whole file. MPI would wait with a busy processor, which that process needs; if it
-// dies, mpirun ends this one, too.
-void wait_for(const MemoryFile& file, Progress& progress) {
+// Waits until the first rank of this host has written the whole file. MPI would wait with a busy processor, which that rank
+// needs.
+void wait_for(const MemoryFile& file, int64_t first_rank, Progress& progress) {
     while (!file.sealed()) {
         if (progress.cancelled()) throw Cancelled();
+        // Not every starter of ranks ends all when one has ended.
+        if (kill(static_cast<pid_t>(first_rank), 0) != 0 && errno == ESRCH && !file.sealed())
+            throw Error(Exit::failed, "the first rank of this host has ended; its messages say why");
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 }
@@ -116,6 +121,7 @@ MemoryFile MpiRanks::file_of_host(bool& mine) {
     if (here_ == 0) address = file.emplace().address();
     check(module_->tell_host(&address, sizeof address), "sharing memory");
     if (here_ > 0) file = MemoryFile::open(address);
+    first_of_host_ = address.process;
     mine = here_ == 0 || !file;
     if (!file) file.emplace();
     gather(0);  // the first rank does not close its file before the others have opened it
@@ -141,7 +147,7 @@ Scene MpiRanks::share_scene(const PluginRegistry& plugins, const std::function<S
         }
         file.seal();
     }
-    wait_for(file, progress);
+    wait_for(file, first_of_host_, progress);
     Scene scene;
     check_scene(import::map_scene(file, scene));
     const std::string why = import::complete_scene(plugins, scene);
@@ -156,7 +162,7 @@ std::shared_ptr<const AccelData> MpiRanks::share_structure(const PluginRegistry&
     MemoryFile file = file_of_host(fills);
     if (here_count_ == 1 || (fills && here_ > 0)) return nullptr;
     if (fills) write_accel(file, *build(scene, progress));
-    wait_for(file, progress);
+    wait_for(file, first_of_host_, progress);
     return map_accel(file, plugins);
 }
 

@@ -48,6 +48,7 @@ class MpiRanks : public Ranks {
 
     const clarity_mpi_module* module_ = nullptr;
     unsigned rank_ = 0, count_ = 1, here_ = 0, here_count_ = 1;
+    int64_t first_of_host_ = 0;  // the process of this host's first rank
 };
 
 }  // namespace clarity
