@@ -161,7 +161,8 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     HitsOptions options;
     options.quick = arguments.quick;
     options.report_folder = arguments.report;
-    if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
+    options.lanes_are_named = !arguments.lanes.empty();
+    if (options.lanes_are_named) options.lanes = arguments.lanes;
     const std::string device = arguments.device;
     const auto open = [device] { return std::make_shared<Device>(choose_device(device)); };
     if (record.plugin->primitive && arguments.lanes.empty() && arguments.quick) options.lanes = {1, 16};

@@ -13,9 +13,13 @@ namespace clarity::check {
 struct HitsOptions {
     bool quick = false;
     std::vector<int> lanes = {1, 4, 8, 16};
-    size_t rays = 0;            // of a set; 0: as `quick` says
-    std::string report_folder;  // where wrong rays are written; "": nowhere
+    bool lanes_are_named = false;  // by the user; otherwise those that the device cannot have are left out
+    size_t rays = 0;               // of a set; 0: as `quick` says
+    std::string report_folder;     // where wrong rays are written; "": nowhere
 };
+
+// Leaves out numbers of lanes that the device cannot have, if the user has not named them.
+void fit_lanes(HitsOptions& options, const DeviceInfo& info);
 
 // The checks of one structure's kernels. layout: what traces the tree if the plugin builds a topology, otherwise nullptr. open:
 // opens the device on first use.

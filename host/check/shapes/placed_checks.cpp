@@ -124,7 +124,7 @@ Outcome hits_placed(ShapeBench& bench, const Step& step) {
         build_accel(*scene, *bench.accel(), default_parameters(*bench.accel()), progress, target));
     RayQueries queries(device);
     size_t asked = 0;
-    for (const Variant& variant : bench.variants()) {
+    for (const Variant& variant : bench.variants(step)) {
         Settings settings;
         settings.lanes = variant.lanes;
         settings.portable = variant.portable;

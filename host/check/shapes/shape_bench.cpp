@@ -20,7 +20,8 @@ std::string signs_of(const rt_ray& ray) {
 
 }  // namespace
 
-std::vector<Variant> ShapeBench::variants() const {
+std::vector<Variant> ShapeBench::variants(const Step& step) {
+    device(step);
     std::vector<Variant> list;
     for (const int lanes : options_.lanes) list.push_back({lanes, false, false});
     if (!options_.quick) list.push_back({options_.lanes.back(), false, true});
@@ -31,6 +32,7 @@ std::shared_ptr<Device> ShapeBench::device(const Step& step) {
     if (!device_) {
         step("opening the device", kShapeCompile_s);
         device_ = open_();
+        fit_lanes(options_, device_->info());
     }
     return device_;
 }

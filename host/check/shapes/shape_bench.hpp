@@ -29,10 +29,10 @@ class ShapeBench {
     const rt_plugin& plugin() const { return plugin_; }
     const rt_plugin* accel() const { return accel_; }
     const HitsOptions& options() const { return options_; }
-    std::vector<Variant> variants() const;
+    std::vector<Variant> variants(const Step& step);
     std::shared_ptr<Device> device(const Step& step);
     ShapeProbe& probe(const Variant& variant, const Step& step);
-    ShapeProbe& first_probe(const Step& step) { return probe(variants().front(), step); }
+    ShapeProbe& first_probe(const Step& step) { return probe(variants(step).front(), step); }
     // Shapes with usual values. Throws Error if the plugin accepts none.
     const std::vector<ShapeTrial>& trials(const Step& step);
     const std::vector<TouchedPart>& parts(const Step& step);
@@ -41,7 +41,7 @@ class ShapeBench {
     const rt_plugin& plugin_;
     const rt_plugin* const accel_;
     const std::function<std::shared_ptr<Device>()> open_;
-    const HitsOptions options_;
+    HitsOptions options_;
     std::shared_ptr<Device> device_;
     std::map<std::string, std::unique_ptr<ShapeProbe>> probes_;
     std::vector<ShapeTrial> trials_;

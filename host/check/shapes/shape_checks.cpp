@@ -26,14 +26,14 @@ bool from_behind(const TouchedPart& part, size_t touch) {
 }
 
 Outcome kernels_compile(ShapeBench& bench, const Step& step) {
-    for (const Variant& variant : bench.variants()) try {
+    for (const Variant& variant : bench.variants(step)) try {
             bench.probe(variant, step);
         } catch (const Error& e) {
             std::string log = e.details().substr(0, 400);
             std::replace(log.begin(), log.end(), '\n', ' ');
             return Outcome::failed("for " + variant.text() + ": " + e.what() + (log.empty() ? "" : ": " + log));
         }
-    return Outcome::passed(std::to_string(bench.variants().size()) + " programs compiled");
+    return Outcome::passed(std::to_string(bench.variants(step).size()) + " programs compiled");
 }
 
 // All answers are hits within t_min and the box, or none.
@@ -171,7 +171,7 @@ Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
         const ShapeSubject& subject = part.subject;
         step("tracing rays at " + subject.what, kShapeTrace_s);
         const std::vector<ProbeHit> expected = bench.first_probe(step).hits(subject, part.rays);
-        for (const Variant& variant : bench.variants()) {
+        for (const Variant& variant : bench.variants(step)) {
             ShapeProbe& probe = bench.probe(variant, step);
             // Each fifth is strange, the others in another order.
             std::vector<rt_ray> asked;
@@ -205,7 +205,7 @@ Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
                                        (strange ? " and rays that are no numbers in other lanes" : "") + ", in lane " +
                                        std::to_string(i % static_cast<size_t>(variant.lanes)) + ", ray " + ray_text(asked[i]) +
                                        " at " + subject.what + " finds " + t_text(asked[i], answers[i]) + ", with " +
-                                       bench.variants().front().text() + " " + t_text(asked[i], expected[of[i]]) +
+                                       bench.variants(step).front().text() + " " + t_text(asked[i], expected[of[i]]) +
                                        ": every lane must be computed by itself (branches on one lane, or `#pragma OPENCL "
                                        "FP_CONTRACT OFF` left out)");
             }
