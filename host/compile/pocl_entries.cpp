@@ -9,7 +9,6 @@
 #include <list>
 #include <mutex>
 
-#include "base/log.hpp"
 #include "compile/program_store.hpp"
 #include "device/pocl_cache.hpp"
 

@@ -11,7 +11,7 @@ typedef struct clarity_mpi_module {
     const char *(*end)(void); /* waits for all ranks */
     /* The bytes of the first process of each host go to the others of that host. */
     const char *(*tell_host)(void *bytes, uint64_t size);
-    /* Says who takes part in broadcasts from now on: all ranks call it, rank 0 with 1. */
+    /* Chooses the ranks that take part in later broadcasts. All ranks call it: with 1 to take part, else with 0. Rank 0 gives 1. */
     const char *(*receivers)(int takes_part);
     /* The bytes of rank 0 go to all that take part, which alone call it. Any size. */
     const char *(*broadcast)(void *bytes, uint64_t size);

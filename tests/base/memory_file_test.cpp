@@ -49,7 +49,7 @@ TEST(MemoryFile, NobodyChangesItOnceItIsSealed) {
     EXPECT_FALSE(file.sealed());
     void* const writable = mmap(nullptr, 3, PROT_READ | PROT_WRITE, MAP_SHARED, file.fd(), 0);
     ASSERT_NE(writable, MAP_FAILED);
-    EXPECT_THROW(file.seal(), Error) << "who has mapped it could still write";
+    EXPECT_THROW(file.seal(), Error) << "the mapping could still change it";
     munmap(writable, 3);
     file.seal();
     EXPECT_TRUE(file.sealed());

@@ -88,7 +88,7 @@ TEST_F(Faults, NoneRendersAndTheSecondStartCompilesNothing) {
     EXPECT_TRUE(has_picture());
 }
 
-// What the store holds is enough for PoCL, whose cache begins empty.
+// PoCL's cache is empty at each start. The binaries in the store are enough to render without a compilation.
 TEST_F(Faults, PoclLoadsItsBinariesToo) {
     ASSERT_EQ(render("").exit_code, 0);
     fs::remove(scratch_.path("out/a.png"));

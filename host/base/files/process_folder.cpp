@@ -40,7 +40,7 @@ void remove_with_parent(const fs::path& folder) {
     rmdir(folder.parent_path().c_str());  // fails if others have folders there
 }
 
-// Removes a folder whose process is gone.
+// Removes a folder if its process has ended.
 void remove_if_left(const fs::path& folder) {
     if (!is_own(folder)) return;
     std::error_code error;

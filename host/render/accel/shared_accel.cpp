@@ -1,5 +1,5 @@
-// Layout: arrays one behind the other, in the order of `visit`. Each begins at a multiple of 128 bytes, as the buffers of
-// devices do, with the number of its bytes in the 128 bytes before it.
+// Layout: arrays one behind the other, in the order of write_accel() and visit_scene(). Each begins at a multiple of 128 bytes,
+// as the buffers of devices do, with the number of its bytes in the 128 bytes before it.
 #include "render/accel/shared_accel.hpp"
 
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kAlignment = 128;
 
-// PlainMembers members, in one array of one element.
+// The members that are no arrays. They are written as an array of one element.
 struct PlainMembers {
     uint64_t leaf_count, bytes;
     double build_ms, pack_ms;
