@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <vector>
 
 #include "support/scratch.hpp"
 
@@ -76,6 +77,28 @@ TEST_F(ProcessFolders, AProcessMayLeaveItsFoldersToBeRemoved) {
     in_child(leave_process_folders);
     for (int i = 0; i < 500 && count() > 0; ++i) usleep(10000);
     EXPECT_EQ(count(), 0u);
+}
+
+// Each looks for what others left, and removes the parent when it is empty.
+TEST_F(ProcessFolders, ProcessesThatStartAndEndTogetherKeepTheirs) {
+    constexpr int kProcesses = 4, kRounds = 300;
+    std::vector<pid_t> children;
+    for (int i = 0; i < kProcesses; ++i) {
+        children.push_back(fork());
+        if (children.back() != 0) continue;
+        int failed = 0;
+        for (int round = 0; round < kRounds; ++round) {
+            const auto folder = ProcessFolder::make(parent(), "one");
+            failed += !folder || !fs::exists(folder->path() / "lock");
+        }
+        _exit(failed > 0);
+    }
+    for (const pid_t child : children) {
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    }
+    EXPECT_FALSE(fs::exists(parent()));
 }
 
 TEST_F(ProcessFolders, ThereMayBeNoPlace) {

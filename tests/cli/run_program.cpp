@@ -77,16 +77,19 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
     close(err.write);
 
     ProgramResult result;
-    bool out_open = true, err_open = true, signalled = options.signal == 0;
+    double signal_s = 0;
+    bool out_open = true, err_open = true, signalled = false;
     while (out_open || err_open) {
         pollfd waits[2] = {{out_open ? out.read : -1, POLLIN, 0}, {err_open ? err.read : -1, POLLIN, 0}};
         poll(waits, 2, 10);
         if (waits[0].revents) out_open = drain(out.read, result.out);
         if (waits[1].revents) err_open = drain(err.read, result.err);
         const bool due = (options.signal_after_s >= 0 && elapsed() >= options.signal_after_s) ||
-                         (!options.signal_when.empty() && result.err.find(options.signal_when) != std::string::npos);
+                         (!options.signal_when.empty() && result.err.find(options.signal_when) != std::string::npos) ||
+                         (!options.signal_when_made.empty() && access(options.signal_when_made.c_str(), F_OK) == 0);
         if (!signalled && due) {
-            kill(child, options.signal);
+            if (options.signal != 0) kill(child, options.signal);
+            signal_s = elapsed();
             signalled = true;
         }
         if (elapsed() > options.limit_s) kill(child, SIGKILL);
@@ -96,6 +99,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
     close(out.read);
     close(err.read);
     result.seconds = elapsed();
+    result.seconds_after_signal = signalled ? result.seconds - signal_s : 0;
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return result;
 }

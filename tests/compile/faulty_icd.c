@@ -12,7 +12,8 @@
  *   launch-hangs       launches take for ever: the call does not return
  *   gpu                the device says that it is a GPU
  *   launch-endless=N   the N-th launch and all after it return, but their events never complete, and neither does their queue
- *   read-short         read-backs leave the second half as it was */
+ *   read-short         read-backs leave the second half as it was
+ * When something begins that takes for ever, the file that CLARITY_FAULT_MARK names is made. */
 #define _GNU_SOURCE
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -68,8 +69,16 @@ static cl_int counted(const char *word, int *calls)
     return ++*calls >= from ? code : CL_SUCCESS;
 }
 
+static void mark_begin(void)
+{
+    const char *path = getenv("CLARITY_FAULT_MARK");
+    FILE *file = path ? fopen(path, "w") : NULL;
+    if (file) fclose(file);
+}
+
 static void hang(void)
 {
+    mark_begin();
     for (;;) sleep(1000);
 }
 
@@ -157,6 +166,7 @@ static cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_ui
         cl_context context = NULL;
         cl_int made = real.clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, NULL);
         if (made) return made;
+        mark_begin();
         const cl_event never = real.clCreateUserEvent(context, &made);
         return made ? made : real.clEnqueueMarkerWithWaitList(queue, 1, &never, event);
     }

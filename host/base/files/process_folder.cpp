@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 
@@ -14,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kLock = "lock";
+constexpr const char *kLock = "lock", *kNewLock = "new-lock";
+constexpr int kMostTries = 100;
 
 // The paths of all folders, for a signal handler.
 constexpr size_t kMostFolders = 4;
@@ -59,14 +61,25 @@ std::unique_ptr<ProcessFolder> ProcessFolder::make(const fs::path& parent, const
     fs::create_directories(parent, error);
     for (fs::directory_iterator at(parent, error), end; !error && at != end; at.increment(error))
         if (at->path().filename().string().compare(0, name.size() + 1, name + "-") == 0) remove_if_left(at->path());
-    std::string path = (parent / (name + "-XXXXXX")).string();
-    if (!mkdtemp(path.data())) return nullptr;
-    const int lock = locked(fs::path(path) / kLock, O_CREAT);
-    if (lock < 0) {
-        fs::remove_all(path, error);
-        return nullptr;
+    std::string path;
+    // A process that ends may remove the parent in between.
+    for (int i = 0; i < kMostTries; ++i) {
+        fs::create_directories(parent, error);
+        path = (parent / (name + "-XXXXXX")).string();
+        if (mkdtemp(path.data())) break;
+        if (errno != ENOENT) return nullptr;
+        path.clear();
     }
-    return std::unique_ptr<ProcessFolder>(new ProcessFolder(path, lock));
+    if (path.empty()) return nullptr;
+    // The file gets its name when it is locked, so that no other process can lock it first.
+    const int lock = locked(fs::path(path) / kNewLock, O_CREAT);
+    if (lock >= 0) {
+        fs::rename(fs::path(path) / kNewLock, fs::path(path) / kLock, error);
+        if (!error) return std::unique_ptr<ProcessFolder>(new ProcessFolder(path, lock));
+        close(lock);
+    }
+    fs::remove_all(path, error);
+    return nullptr;
 }
 
 ProcessFolder::ProcessFolder(fs::path path, int lock) : path_(std::move(path)), lock_(lock) {
