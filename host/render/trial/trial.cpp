@@ -40,13 +40,14 @@ std::vector<const rt_plugin*> plugins_with_kernels(const Prepared& prepared) {
     return plugins;
 }
 
-// What has to be tried: "cl/tracers/iterative.cl, changed from line 12 on". Empty: these kernels are the program's own.
+// What has to be tried: "cl/tracers/iterative.cl, changed from line 12 on". Empty: these kernels are the program's own, and the
+// driver is trusted.
 struct Suspects {
     std::string text;
     SourceLocation first;  // of what was edited; without a message
 };
 
-Suspects suspects_of(const std::string& source, const std::vector<const rt_plugin*>& plugins) {
+Suspects suspects_of(const DeviceInfo& info, const std::string& source, const std::vector<const rt_plugin*>& plugins) {
     Suspects found;
     const auto add = [&](const std::string& text) { found.text += (found.text.empty() ? "" : ", ") + text; };
     for (const EditedKernel& edited : edited_kernels()) {
@@ -58,6 +59,9 @@ Suspects suspects_of(const std::string& source, const std::vector<const rt_plugi
         const std::string library = library_of(*plugin);
         if (!library.empty() && !is_own_library(original_of(library))) add("the kernels of " + original_of(library));
     }
+    // It makes wrong code of some kernels: those of bvh4 pop more from their stack than they have pushed (Mesa 22.3).
+    if (info.llvmpipe && found.text.empty())
+        add("these are the program's own, so the driver " + info.platform + " may be at fault: take another structure");
     return found;
 }
 
@@ -71,7 +75,7 @@ struct Subject {
 };
 
 void try_subject(const Subject& subject, const std::function<TrialArguments()>& arguments, Progress& progress) {
-    const Suspects suspects = suspects_of(subject.source, subject.plugins);
+    const Suspects suspects = suspects_of(subject.info, subject.source, subject.plugins);
     if (suspects.text.empty()) return;
     const PassedProgram passed(subject.options + '\n' + subject.info.name + '\n' + subject.info.driver + '\n' +
                                subject.depends_on + '\n' + subject.source);
