@@ -16,9 +16,10 @@ namespace clarity {
 // A Preparer's stage in which a program is launched for the first time, on one pixel.
 inline constexpr const char* kFirstLaunchStage = "launching kernels for the first time";
 
-// Compiles a program for `prepared`, which needs none yet, and tries its kernels if they have not passed before, and are not the
-// program's own or are compiled by Mesa's llvmpipe. The setting `trial` is `off` (never), `on` (on all devices) or `auto`: on CPUs, if programs are compiled in a
-// worker (compile.hpp); what runs for too long on a GPU is given up there (launch_limit.hpp). Never inside a worker.
+// Compiles a program for `prepared`, which needs none yet, and tries its kernels if they have not passed before, and are not
+// the program's own or are compiled by Mesa's llvmpipe. The setting `trial` is `off` (never), `on` (on all devices) or `auto`:
+// on CPUs, if programs are compiled in a worker (compile.hpp); what runs for too long on a GPU is given up there
+// (launch_limit.hpp). Never inside a worker.
 // fresh: as ProgramCache::get(). Throws Error(kernel_build_failed), which says what failed and in which files, and Cancelled.
 std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepared& prepared, KernelKind kind,
                                             Progress& progress, bool* fresh = nullptr);
