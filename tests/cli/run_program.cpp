@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 
 namespace {
@@ -77,8 +78,8 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
     close(err.write);
 
     ProgramResult result;
-    double signal_s = 0;
-    bool out_open = true, err_open = true, signalled = false;
+    std::optional<double> signalled_s;
+    bool out_open = true, err_open = true;
     while (out_open || err_open) {
         pollfd waits[2] = {{out_open ? out.read : -1, POLLIN, 0}, {err_open ? err.read : -1, POLLIN, 0}};
         poll(waits, 2, 10);
@@ -87,10 +88,9 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
         const bool due = (options.signal_after_s >= 0 && elapsed() >= options.signal_after_s) ||
                          (!options.signal_when.empty() && result.err.find(options.signal_when) != std::string::npos) ||
                          (!options.signal_when_made.empty() && access(options.signal_when_made.c_str(), F_OK) == 0);
-        if (!signalled && due) {
-            if (options.signal != 0) kill(child, options.signal);
-            signal_s = elapsed();
-            signalled = true;
+        if (!signalled_s && due) {
+            kill(child, options.signal);
+            signalled_s = elapsed();
         }
         if (elapsed() > options.limit_s) kill(child, SIGKILL);
     }
@@ -99,7 +99,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
     close(out.read);
     close(err.read);
     result.seconds = elapsed();
-    result.seconds_after_signal = signalled ? result.seconds - signal_s : 0;
+    result.seconds_after_signal = result.seconds - signalled_s.value_or(result.seconds);
     result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return result;
 }

@@ -8,7 +8,7 @@ struct ProgramResult {
     int exit_code = -1;  // 128 + signal if a signal killed it
     std::string out, err;
     double seconds = 0;
-    double seconds_after_signal = 0;  // of `seconds`, those since the time of the signal, also if that is 0
+    double seconds_after_signal = 0;  // of `seconds`, those since the signal was due; 0: it never was
 };
 
 struct RunOptions {
@@ -16,7 +16,7 @@ struct RunOptions {
     double signal_after_s = -1;                      // when `signal` is sent, seconds after the start; -1: never
     std::string signal_when;                         // or: send it as soon as stderr contains this text
     std::string signal_when_made;                    // or: as soon as this file is there
-    int signal = 0;                                  // 0: none
+    int signal = 0;                                  // 0: none is sent, but its time is taken
     bool terminal = false;                           // make stderr a terminal (its text then has CR LF)
     double limit_s = 120;                            // then the program is killed, and the exit code is 137
     std::vector<std::string> wrapper;                // words before the program: a tool which runs it

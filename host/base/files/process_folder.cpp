@@ -36,6 +36,18 @@ int locked(const fs::path& file, int flags) {
     return -1;
 }
 
+// PARENT/NAME-XXXXXX; empty: it cannot be made.
+std::string made_below(const fs::path& parent, const std::string& name) {
+    for (int i = 0; i < kMostTries; ++i) {
+        std::error_code ignored;
+        fs::create_directories(parent, ignored);
+        std::string path = (parent / (name + "-XXXXXX")).string();
+        if (mkdtemp(path.data())) return path;
+        if (errno != ENOENT) break;  // else a process that ended has just removed the parent
+    }
+    return {};
+}
+
 void remove_with_parent(const fs::path& folder) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
@@ -58,18 +70,9 @@ void remove_if_left(const fs::path& folder) {
 
 std::unique_ptr<ProcessFolder> ProcessFolder::make(const fs::path& parent, const std::string& name) {
     std::error_code error;
-    fs::create_directories(parent, error);
     for (fs::directory_iterator at(parent, error), end; !error && at != end; at.increment(error))
         if (at->path().filename().string().compare(0, name.size() + 1, name + "-") == 0) remove_if_left(at->path());
-    std::string path;
-    // A process that ends may remove the parent in between.
-    for (int i = 0; i < kMostTries; ++i) {
-        fs::create_directories(parent, error);
-        path = (parent / (name + "-XXXXXX")).string();
-        if (mkdtemp(path.data())) break;
-        if (errno != ENOENT) return nullptr;
-        path.clear();
-    }
+    const std::string path = made_below(parent, name);
     if (path.empty()) return nullptr;
     // The file gets its name when it is locked, so that no other process can lock it first.
     const int lock = locked(fs::path(path) / kNewLock, O_CREAT);

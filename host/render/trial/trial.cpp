@@ -61,7 +61,7 @@ Suspects suspects_of(const DeviceInfo& info, const std::string& source, const st
     }
     // It makes wrong code of some kernels: those of bvh4 pop more from their stack than they have pushed (Mesa 22.3).
     if (info.llvmpipe && found.text.empty())
-        add("these are the program's own, so the driver " + info.platform + " may be at fault: take another structure");
+        add("they are the program's own, so the driver " + info.platform + " may be at fault");
     return found;
 }
 
@@ -159,7 +159,8 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
         if (!library_of(layout).empty())
             try_subject(
                 {info, source.what, source.text, source.options, prepared.accel->plugin->id,
-                 std::string("; `clarity check ") + layout.id + "` looks closer, with oclgrind if that is installed",
+                 std::string(info.llvmpipe ? "; take another structure" : "") + "; `clarity check " + layout.id +
+                     "` looks closer, with oclgrind if that is installed",
                  plugins_with_kernels(prepared)},
                 [&] { return arguments_of(prepared, info, kind); }, progress);
     } catch (const Cancelled&) {
