@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
     // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them.
     if (code != 0) {
         std::fflush(nullptr);
-        clarity::remove_process_folders();
+        clarity::leave_process_folders();
         std::_Exit(code);
     }
     return code;

@@ -23,9 +23,9 @@ class ProcessFolders : public ::testing::Test {
         std::error_code none;
         return size_t(std::distance(fs::directory_iterator(parent(), none), fs::directory_iterator()));
     }
-    // Makes a folder in another process and runs `end` there. Returns when that process is gone.
+    // Makes a folder in another process and runs `end` there. Returns the status of that process when it is gone.
     template <class End>
-    void in_child(End&& end) {
+    int in_child(End&& end) {
         const pid_t child = fork();
         if (child == 0) {
             const auto folder = ProcessFolder::make(parent(), "one");
@@ -35,6 +35,7 @@ class ProcessFolders : public ::testing::Test {
         }
         int status = 0;
         waitpid(child, &status, 0);
+        return status;
     }
     Scratch scratch_;
 };
@@ -73,8 +74,14 @@ TEST_F(ProcessFolders, OneThatIsInTheMakingStays) {
     EXPECT_FALSE(fs::exists(parent() / "one-ABCDEF")) << "not for ever";
 }
 
-TEST_F(ProcessFolders, AProcessMayLeaveItsFoldersToBeRemoved) {
-    in_child(leave_process_folders);
+// A driver's threads work on until the process has ended.
+TEST_F(ProcessFolders, FoldersThatAreLeftStayUntilTheProcessHasEnded) {
+    const int status = in_child([this] {
+        leave_process_folders();
+        for (int i = 0; i < 30; ++i, usleep(10000))
+            if (count() == 0) _exit(1);
+    });
+    EXPECT_EQ(status, 0) << "it was gone before";
     for (int i = 0; i < 500 && count() > 0; ++i) usleep(10000);
     EXPECT_EQ(count(), 0u);
 }

@@ -31,7 +31,7 @@ void CloseLimit::run(double seconds) {
     log(LogLevel::warning, "the OpenCL driver did not stop within " + std::to_string(static_cast<int>(seconds)) +
                                " s after the window was closed, so the program was ended");
     std::fflush(nullptr);
-    remove_process_folders();
+    leave_process_folders();
     _exit(0);
 }
 

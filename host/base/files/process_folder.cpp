@@ -101,21 +101,20 @@ ProcessFolder::~ProcessFolder() {
     close(lock_);
 }
 
-void remove_process_folders() {
-    for (auto& folder : folders_of_process)
-        if (const char* const path = folder) remove_with_parent(path);
-}
-
 void leave_process_folders() {
+    // Its input ends when this process has ended. A second Ctrl+C is not meant for it.
+    constexpr const char* kScript = "trap '' INT TERM HUP; read -r nothing; rm -rf -- \"$0\"; rmdir -- \"${0%/*}\" 2>/dev/null";
     for (auto& folder : folders_of_process) {
         const char* const path = folder;
-        if (!path) continue;
+        int ends[2];
+        if (!path || pipe2(ends, O_CLOEXEC) != 0) continue;
         // vfork(), because a copy of a large process takes long.
         if (vfork() == 0) {
-            execl("/bin/sh", "sh", "-c", "rm -rf -- \"$0\"; rmdir -- \"${0%/*}\" 2>/dev/null", path,
-                  static_cast<char*>(nullptr));
+            if (dup2(ends[0], STDIN_FILENO) == STDIN_FILENO)
+                execl("/bin/sh", "sh", "-c", kScript, path, static_cast<char*>(nullptr));
             _exit(1);
         }
+        close(ends[0]);  // ends[1] stays open
     }
 }
 

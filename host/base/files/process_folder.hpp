@@ -24,9 +24,8 @@ class ProcessFolder {
     const int lock_;  // descriptor
 };
 
-// For a process that is about to end by _exit(): removes all its folders.
-void remove_process_folders();
-// The same for a signal handler: starts another process that removes them.
+// For a process that is about to end by _exit(), also in a signal handler: starts a process that removes all its folders after
+// that. Not before, because threads of a driver may still work in them: PoCL aborts if its folder is gone.
 void leave_process_folders();
 
 }  // namespace clarity
