@@ -198,19 +198,20 @@ Outcome refit(Bench& bench, const Step& step) {
 
 Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
     const RaySet& set = bench.set(name, step);
-    std::vector<rt_ray> sane;
     const auto is_strange = [](size_t i) { return i % 5 == 2; };
-    for (size_t i = 0; i < set.rays.size(); ++i)
-        if (!is_strange(i)) sane.push_back(set.rays[i]);
     const BruteForce force(bench.scene(step).build_scene());
-    const std::vector<Truth> truths = force.trace(sane);
+    std::vector<Truth> truths;  // of strange rays none
+    for (size_t i = 0; i < set.rays.size(); ++i) truths.push_back(is_strange(i) ? Truth() : force.trace(set.rays[i]));
     for (const bool any_hit : {false, true})
         for (const Variant& variant : bench.variants(step)) {
             CheckedScene& scene = bench.compiled(variant, step);
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
             step("tracing rays that are no numbers, " + what, kTraceLimit_s);
             const Traced traced = scene.trace(variant, set.rays, any_hit);
-            for (size_t i = 0, k = 0; i < set.rays.size(); ++i) {
+            Faults faults;
+            faults.any_hit = any_hit;
+            faults.rays = set.rays.size();
+            for (size_t i = 0; i < set.rays.size(); ++i) {
                 const rt_hit& hit = traced.hits[i];
                 if (is_strange(i)) {
                     if (std::isnan(hit.t) || hit.prim < -1 || hit.prim >= static_cast<rt_i32>(kTrapPrim))
@@ -218,13 +219,16 @@ Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
                                                std::to_string(hit.t) + ", prim " + std::to_string(hit.prim));
                     continue;
                 }
-                const Fault fault = any_hit ? judge_any(truths[k], hit) : judge_nearest(set.rays[i], truths[k], hit);
-                ++k;
-                if (fault != Fault::none)
-                    return Outcome::failed(what + ": the sound ray " + ray_text(set.rays[i]) +
-                                           " has a wrong answer beside rays that are no numbers (`--only hits.random` tells "
-                                           "whether it is right without them)");
+                const Fault fault = any_hit ? judge_any(truths[i], hit) : judge_nearest(set.rays[i], truths[i], hit);
+                if (fault != Fault::none) faults.wrong.push_back({i, fault});
             }
+            if (faults.wrong.empty()) continue;
+            Outcome outcome = Outcome::failed(what +
+                                              ", beside rays that are no numbers (`--only hits.random` tells whether it "
+                                              "is right without them): " +
+                                              faults.text(set.rays, truths, traced.hits, variant.lanes));
+            outcome.repeat = write_report(bench, name, faults, set.rays, traced.hits, what);
+            return outcome;
         }
     return Outcome::passed("all have an answer, and sound rays beside them are right");
 }

@@ -39,8 +39,9 @@ class RayMaker {
         return ray;
     }
     // A ray from `away` radii outside to a point of the region.
-    rt_ray into(const Region& region, float away) {
-        const Point to = within(region, 0.8f), d = direction();
+    rt_ray into(const Region& region, float away) { return along(direction(), region, away); }
+    rt_ray along(const Point& d, const Region& region, float away) {
+        const Point to = within(region, 0.8f);
         Point from = to;
         for (int k = 0; k < 3; ++k) from[k] -= away * region.radius * d[k];
         return from_to(from, to);
@@ -211,6 +212,8 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
                 {{0, 0, 5}, 0, {kNan, 0, -1}, kFar},
                 {{0, 0, 5}, 0, {kNan, kNan, kNan}, kFar},
                 {{kNan, 0, 5}, 0, {0, 0, -1}, kFar},
+                {{0, kNan, 5}, 0, {0, 0, -1}, kFar},
+                {{0, 0, kNan}, 0, {0, 0, -1}, kFar},
                 {{kFar, 0, 5}, 0, {0, 0, -1}, kFar},
                 {{0, 0, 5}, 0, {kFar, 0, -1}, kFar},
                 {{0, 0, 5}, 0, {0, -kFar, kFar}, kFar},
@@ -223,9 +226,16 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
                 {{0, 0, 5}, 10, {0, 0, -1}, 1},
                 {{0, 0, 5}, 0, {0, 0, -1}, -1},
             };
-            for (size_t i = 0; i < count; ++i)
-                rays.push_back(i % 5 == 2 ? strange[i / 5 % (sizeof strange / sizeof *strange)]
-                                          : make.into(region(i % 2 ? "instanced" : "random"), 2));
+            // Sound rays: sixteen in random directions, then sixteen in one, and so on. That one has the signs of most strange
+            // rays, so that a structure may bound them together.
+            for (size_t i = 0; i < count; ++i) {
+                if (i % 5 == 2) {
+                    rays.push_back(strange[i / 5 % (sizeof strange / sizeof *strange)]);
+                    continue;
+                }
+                const Region& at = region(i % 2 ? "instanced" : "random");
+                rays.push_back(i / 16 % 2 ? make.along({0.1f, 0.2f, -1}, at, 2) : make.into(at, 2));
+            }
         },
         true);
     return sets;

@@ -25,6 +25,13 @@ RT_INLINE uint bvh8_octant_bits(const rt_rays *ray, vint octants, vfloat t)
     return bits;
 }
 
+/* The lanes whose rays an interval bounds: active ones with finite origins. One at NaN or infinity hits nothing, and would spoil
+ * the bounds of the others. Such an origin times zero is NaN, which no comparison holds for. */
+RT_INLINE vmask bvh8_bounded(const rt_rays *ray, vfloat t)
+{
+    return RT_MASK(fma(ray->ox + ray->oy + ray->oz, rt_vfloat(0.0f), t) >= rt_vfloat(0.0f));
+}
+
 RT_INLINE bvh8_rows bvh8_octant_rows(uint octant)
 {
     return bvh8_rows_of((octant & 1u) != 0u, (octant & 2u) != 0u, (octant & 4u) != 0u);

@@ -5,7 +5,7 @@
  * its box, and before a node too where the interval is wide. */
 RT_INLINE void BVH8_INTERVAL_PACKET(const rt_ctx *ctx, uint ref, uint octant, const rt_rays *ray, rt_hits *hit)
 {
-    const vmask active = RT_MASK(hit->t >= rt_vfloat(0.0f));
+    const vmask active = bvh8_bounded(ray, hit->t);
     float t_far = rt_greatest(hit->t);
     const bvh8_rows rows = bvh8_octant_rows(octant);
     /* A ray meets the plane p at (p - origin) / direction. No ray meets a near plane ahead of it earlier than the slowest ray

@@ -15,7 +15,7 @@ RT_INLINE void BVH8_INTERVAL_STREAM(const rt_ctx *ctx, uint ref, uint octant, co
         const uint which = is_member ? p : rt_lowest(members);
         const vfloat t = rt_select(rt_vint(is_member ? -1 : 0), hits[which].t, rt_vfloat(-1.0f));
         member[p] = rays + which;
-        active[p] = RT_MASK(t >= rt_vfloat(0.0f));
+        active[p] = bvh8_bounded(member[p], t);
         each[p] = t;
     }
     vfloat t_far = rt_greatest_each(each);
