@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/files/cache_folder.hpp"
+#include "base/files/own_folder.hpp"
 #include "base/files/process_folder.hpp"
 #include "worker/channel.hpp"
 
@@ -55,14 +56,12 @@ std::string why_unwritable(const fs::path& folder) {
     return why;
 }
 
-// Programs are loaded from the folder, so nobody else may write there.
-bool is_own_folder(const fs::path& folder) {
+// Programs are loaded from the folder, so it must be safe.
+bool make_own_folder(const fs::path& folder) {
     std::error_code ignored;
     fs::create_directories(folder.parent_path(), ignored);
     mkdir(folder.c_str(), 0700);
-    struct stat status {};
-    return lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid() &&
-           (status.st_mode & 022) == 0;
+    return is_own_folder(folder);
 }
 
 // Below the folders that others may write to, too.
@@ -91,7 +90,7 @@ bool take_own_folder() {
     const char* named = std::getenv("POCL_CACHE_DIR");
     const fs::path candidates[] = {named && *named ? folder_of_user(named) : fs::path(), temporary_folder(), folder_in_cache()};
     for (const fs::path& parent : candidates) {
-        if (parent.empty() || !is_own_folder(parent) || !why_unwritable(parent).empty()) continue;
+        if (parent.empty() || !make_own_folder(parent) || !why_unwritable(parent).empty()) continue;
         own_folder() = ProcessFolder::make(parent, "process");
         if (!own_folder()) continue;
         setenv("POCL_CACHE_DIR", own_folder()->path().c_str(), 1);
@@ -107,7 +106,7 @@ std::string use_writable_folder() {
     if (why.empty()) return {};
     const std::string what = "PoCL's cache " + folder.string() + " cannot be written: " + why;
     for (const fs::path& other : {folder_in_cache(), temporary_folder()}) {
-        if (other.empty() || !is_own_folder(other) || !why_unwritable(other).empty()) continue;
+        if (other.empty() || !make_own_folder(other) || !why_unwritable(other).empty()) continue;
         setenv("POCL_CACHE_DIR", other.c_str(), 1);
         return what + "; " + other.string() + " is used instead";
     }

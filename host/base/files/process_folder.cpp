@@ -2,13 +2,14 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+
+#include "base/files/own_folder.hpp"
 
 namespace clarity {
 namespace {
@@ -22,11 +23,6 @@ constexpr int kMostTries = 100;
 constexpr size_t kMostFolders = 4;
 std::atomic<const char*> folders_of_process[kMostFolders];
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may touch nothing that locks");
-
-bool is_own(const fs::path& folder) {
-    struct stat status {};
-    return lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid();
-}
 
 // Locks the file, and makes it if that is asked for. Returns its descriptor; -1: another process has it, or it is not there.
 int locked(const fs::path& file, int flags) {
@@ -56,7 +52,7 @@ void remove_with_parent(const fs::path& folder) {
 
 // Removes a folder if its process has ended.
 void remove_if_left(const fs::path& folder) {
-    if (!is_own(folder)) return;
+    if (!is_own_folder(folder)) return;
     std::error_code error;
     const int lock = locked(folder / kLock, 0);
     // A folder without the file may just be in the making.

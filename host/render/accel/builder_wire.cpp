@@ -1,12 +1,15 @@
 #include "render/accel/builder_wire.hpp"
 
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+
+#include "base/error.hpp"
+#include "base/files/memory_file.hpp"
 
 namespace clarity {
 namespace {
@@ -35,29 +38,22 @@ std::string write_all(int fd, const void* data, uint64_t bytes) {
     return {};
 }
 
-// The whole file in memory, read-only.
-class Mapping {
- public:
-    explicit Mapping(int fd) {
-        struct stat status {};
-        if (fstat(fd, &status) != 0 || status.st_size <= 0) return;
-        void* map = mmap(nullptr, static_cast<size_t>(status.st_size), PROT_READ, MAP_PRIVATE, fd, 0);
-        if (map == MAP_FAILED) return;
-        data_ = static_cast<const char*>(map);
-        bytes_ = static_cast<uint64_t>(status.st_size);
-    }
-    ~Mapping() {
-        if (data_) munmap(const_cast<char*>(data_), bytes_);
-    }
-    Mapping(const Mapping&) = delete;
-    Mapping& operator=(const Mapping&) = delete;
-    const char* data() const { return data_; }
-    uint64_t bytes() const { return bytes_; }
-
- private:
-    const char* data_ = nullptr;
-    uint64_t bytes_ = 0;
+// A whole file in memory. No data: it is empty, or cannot be mapped.
+struct Mapped {
+    std::shared_ptr<const char> data;
+    uint64_t bytes = 0;
 };
+
+Mapped map_whole(int fd) {
+    struct stat status {};
+    if (fstat(fd, &status) != 0 || status.st_size <= 0) return {};
+    const auto bytes = static_cast<uint64_t>(status.st_size);
+    try {
+        return {map_file(fd, bytes), bytes};
+    } catch (const Error&) {
+        return {};
+    }
+}
 
 // Takes pieces from a range of memory, and never more than there is.
 class Reader {
@@ -135,9 +131,9 @@ std::string write_builder_input(int fd, const rt_build_input& input, uint64_t pr
 }
 
 std::string read_builder_input(int fd, std::unique_ptr<BuilderInput>& input) {
-    const Mapping map(fd);
-    if (!map.data()) return "the input is not there";
-    Reader reader(map.data(), map.bytes());
+    const Mapped map = map_whole(fd);
+    if (!map.data) return "the input is not there";
+    Reader reader(map.data.get(), map.bytes);
     const auto head = reader.number<InputHead>();
     const auto* params = static_cast<const char*>(reader.take(head.param_count * sizeof(double)));
     const void* groups = reader.take(head.group_count * sizeof(rt_group));
@@ -189,13 +185,13 @@ std::string write_builder_result(int fd, const BuilderResult& result) {
 }
 
 std::string replay_builder_result(int fd, const rt_accel& accel, rt_u32 group_count, const rt_build_output& out) {
-    const Mapping map(fd);
+    const Mapped map = map_whole(fd);
     const std::string incomplete = "the build worker's result is incomplete";
-    if (!map.data()) return incomplete;
-    Reader input(map.data(), map.bytes());
+    if (!map.data) return incomplete;
+    Reader input(map.data.get(), map.bytes);
     const auto input_head = input.number<InputHead>();
-    if (input.failed() || input_head.bytes > map.bytes()) return incomplete;
-    Reader reader(map.data() + input_head.bytes, map.bytes() - input_head.bytes);
+    if (input.failed() || input_head.bytes > map.bytes) return incomplete;
+    Reader reader(map.data.get() + input_head.bytes, map.bytes - input_head.bytes);
     const auto head = reader.number<ResultHead>();
     if (reader.failed() || head.slot_count != accel.slot_count || head.group_count != group_count) return incomplete;
     struct Slot {
@@ -225,7 +221,7 @@ std::string replay_builder_result(int fd, const rt_accel& accel, rt_u32 group_co
     // Counts are compared with the bytes that are there before memory is asked for.
     for (uint32_t s = 0; s < head.slot_count; ++s) {
         if (!slots[s].allocated) continue;
-        if (slots[s].count > map.bytes() / accel.slots[s].elem_bytes) return incomplete;
+        if (slots[s].count > map.bytes / accel.slots[s].elem_bytes) return incomplete;
         const void* content = reader.take(slots[s].count * accel.slots[s].elem_bytes);
         if (!content) return incomplete;
         void* memory = out.alloc(out.ctx, s, slots[s].count);
@@ -233,7 +229,7 @@ std::string replay_builder_result(int fd, const rt_accel& accel, rt_u32 group_co
         std::memcpy(memory, content, slots[s].count * accel.slots[s].elem_bytes);
     }
     if (head.leaves_given != 0) {
-        if (head.leaf_count > map.bytes() / sizeof(rt_u32)) return incomplete;
+        if (head.leaf_count > map.bytes / sizeof(rt_u32)) return incomplete;
         const void* content = reader.take(head.leaf_count * sizeof(rt_u32));
         if (!content) return incomplete;
         rt_u32* refs = out.leaves(out.ctx, head.leaf_count);
