@@ -269,8 +269,7 @@ Outcome accesses(Bench& bench, const Step& step) {
 }  // namespace
 
 void fit_lanes(HitsOptions& options, const DeviceInfo& info) {
-    // Mesa's compiler does not come to an end with kernels of several lanes: see resolve_packet().
-    if (info.llvmpipe && !options.lanes_are_named) options.lanes = {1};
+    if (!info.traces_packets() && !options.lanes_are_named) options.lanes = {1};  // as resolve_packet()
 }
 
 std::vector<Check> access_checks(const rt_plugin& plugin, const rt_plugin* layout,

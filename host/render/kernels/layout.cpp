@@ -14,10 +14,11 @@ constexpr unsigned kDefaultRays = 8192;
 
 void resolve_packet(Settings& settings, const DeviceInfo& info) {
     if (settings.lanes == 0) settings.lanes = static_cast<int>(info.preferred_lanes());
-    // Mesa 22.3: the simplest kernel of four lanes was still being compiled after 100 s, with 1.3 GiB of memory.
-    if (info.llvmpipe && settings.lanes > 1)
-        throw Error(Exit::usage, "--lanes " + std::to_string(settings.lanes) + ": the compiler of " + info.name +
-                                     " does not come to an end with kernels of several lanes: take --lanes 1");
+    // The kernels of several lanes are for CPUs whose work-items run one after the other (cl/lanes/lanes.h); elsewhere they do
+    // not compile, or (Mesa 22.3) were still being compiled after 100 s, with 1.3 GiB of memory.
+    if (!info.traces_packets() && settings.lanes > 1)
+        throw Error(Exit::usage, "--lanes " + std::to_string(settings.lanes) + ": " + info.name +
+                                     " computes work-items side by side, so each traces one ray: take --lanes 1");
     if (settings.packet_w == 0)  // on a CPU a packet stream: cl/lanes/packet_stream.h
         settings.packet_w = settings.packet_h = info.traces_packets() ? std::max(4, settings.lanes) : 1;
 }

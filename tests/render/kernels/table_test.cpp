@@ -1,6 +1,7 @@
 // The table of kernels: every row is complete, and every kind of kernel has one.
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "device/kernel_files.hpp"
 #include "render/kernels/kernel_table.hpp"
 
@@ -46,6 +47,32 @@ TEST(KernelTable, ColorsByPartTracerAndLayout) {
     };
     EXPECT_EQ(headers(gpu), "tracers/iterative_single.h") << "one pixel a work-item";
     EXPECT_EQ(headers(cpu), "tracers/generations.h");
+}
+
+// Kernels of several lanes do not compile for GPUs.
+TEST(Layout, OnlyCpusTakeSeveralLanes) {
+    DeviceInfo cpu, gpu;
+    cpu.cpu = gpu.gpu = true;
+    gpu.name = "a GPU";
+    for (const int lanes : {0, 1, 4, 16}) {
+        Settings settings;
+        settings.lanes = lanes;
+        EXPECT_NO_THROW(resolve_packet(settings, cpu)) << lanes;
+        settings.lanes = lanes;
+        if (lanes <= 1) {
+            resolve_packet(settings, gpu);
+            EXPECT_EQ(settings.lanes, 1);
+            continue;
+        }
+        try {
+            resolve_packet(settings, gpu);
+            ADD_FAILURE() << lanes << " lanes on a GPU";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), Exit::usage);
+            EXPECT_NE(std::string(error.what()).find("a GPU computes work-items side by side"), std::string::npos)
+                << error.what();
+        }
+    }
 }
 
 }  // namespace
