@@ -13,6 +13,7 @@
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
 #include "compile/compile.hpp"
+#include "device/device_loss.hpp"
 #include "import/import.hpp"
 #include "plugin/load_trial.hpp"
 #include "render/accel/build_in_worker.hpp"
@@ -85,8 +86,9 @@ int main(int argc, char** argv) {
         clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
         return code ? code : static_cast<int>(clarity::Exit::failed);
     }
-    // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them.
-    if (code != 0) {
+    // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them; other
+    // drivers may wait for a launch that never ends.
+    if (code != 0 || clarity::any_never_released()) {
         std::fflush(nullptr);
         clarity::leave_process_folders();
         std::_Exit(code);

@@ -33,5 +33,7 @@ class DeviceLoss {
 
 // Keeps an object until the process ends, for destructors of objects on a device that is stuck. For any thread.
 void never_release(std::shared_ptr<const void> object);
+// Whether there is such an object: a launch may then run for ever, and the driver may wait for it when it is unloaded.
+bool any_never_released();
 
 }  // namespace clarity

@@ -11,7 +11,8 @@
  *   enqueue=CODE@N, buffer=CODE@N, read=CODE@N     the N-th launch, buffer, read-back and all after it fail with CODE
  *   launch-hangs       launches take for ever: the call does not return
  *   gpu                the device says that it is a GPU
- *   launch-endless=N   the N-th launch and all after it return, but their events never complete, and neither does their queue
+ *   launch-endless=N   the N-th launch and all after it return, but their events never complete, and neither does their queue;
+ *                      the driver waits for them when the program ends
  *   read-short         read-backs leave the second half as it was
  * When something begins that takes for ever, the file that CLARITY_FAULT_MARK names is made. */
 #define _GNU_SOURCE
@@ -80,6 +81,13 @@ static void hang(void)
 {
     mark_begin();
     for (;;) sleep(1000);
+}
+
+static int endless; /* whether a launch runs for ever */
+
+__attribute__((destructor)) static void unload(void)
+{
+    if (endless) hang();
 }
 
 static cl_int CL_API_CALL platform_info(cl_platform_id id, cl_platform_info what, size_t bytes, void *value, size_t *needed)
@@ -163,6 +171,7 @@ static cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_ui
     const char *from = NULL;
     static int launches;
     if (fault("launch-endless", &from) && ++launches >= (from ? atoi(from) : 1)) {
+        endless = 1;
         cl_context context = NULL;
         cl_int made = real.clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, NULL);
         if (made) return made;
