@@ -67,6 +67,7 @@ TEST_F(ProcessFolders, TheNextOneRemovesWhatAKilledProcessLeft) {
 
 TEST_F(ProcessFolders, OneThatIsInTheMakingStays) {
     fs::create_directories(parent() / "one-ABCDEF");
+    fs::permissions(parent() / "one-ABCDEF", fs::perms::owner_all);  // whatever the umask
     const auto folder = ProcessFolder::make(parent(), "one");
     EXPECT_TRUE(fs::exists(parent() / "one-ABCDEF"));
     fs::last_write_time(parent() / "one-ABCDEF", fs::file_time_type::clock::now() - std::chrono::hours(1));

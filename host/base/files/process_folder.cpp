@@ -44,12 +44,6 @@ std::string made_below(const fs::path& parent, const std::string& name) {
     return {};
 }
 
-void remove_with_parent(const fs::path& folder) {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-    rmdir(folder.parent_path().c_str());  // fails if others have folders there
-}
-
 // Removes a folder if its process has ended.
 void remove_if_left(const fs::path& folder) {
     if (!is_own_folder(folder)) return;
@@ -93,12 +87,14 @@ ProcessFolder::~ProcessFolder() {
         const char* own = path_.c_str();
         folder.compare_exchange_strong(own, nullptr);
     }
-    remove_with_parent(path_);
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    rmdir(path_.parent_path().c_str());  // fails if others have folders there
     close(lock_);
 }
 
 void leave_process_folders() {
-    // Its input ends when this process has ended. A second Ctrl+C is not meant for it.
+    // It reads until this process has ended, because the pipe is closed then. It ignores a second Ctrl+C.
     constexpr const char* kScript = "trap '' INT TERM HUP; read -r nothing; rm -rf -- \"$0\"; rmdir -- \"${0%/*}\" 2>/dev/null";
     for (auto& folder : folders_of_process) {
         const char* const path = folder;
@@ -106,7 +102,8 @@ void leave_process_folders() {
         if (!path || pipe2(ends, O_CLOEXEC) != 0) continue;
         // vfork(), because a copy of a large process takes long.
         if (vfork() == 0) {
-            if (dup2(ends[0], STDIN_FILENO) == STDIN_FILENO)
+            // Its input stays open, also where the pipe itself has that number.
+            if (dup2(ends[0], STDIN_FILENO) == STDIN_FILENO && fcntl(STDIN_FILENO, F_SETFD, 0) == 0)
                 execl("/bin/sh", "sh", "-c", kScript, path, static_cast<char*>(nullptr));
             _exit(1);
         }

@@ -54,14 +54,7 @@ struct PosedRays {
 std::string hits_fault(CheckedScene& scene, const Prepared& moved, const PosedRays& at) {
     for (const bool any_hit : {false, true}) {
         const Traced traced = scene.trace(moved, at.rays, any_hit);
-        Faults faults;
-        faults.any_hit = any_hit;
-        faults.rays = at.rays.size();
-        for (size_t i = 0; i < at.rays.size(); ++i) {
-            const Fault fault =
-                any_hit ? judge_any(at.truths[i], traced.hits[i]) : judge_nearest(at.rays[i], at.truths[i], traced.hits[i]);
-            if (fault != Fault::none) faults.wrong.push_back({i, fault});
-        }
+        const Faults faults = Faults::of(at.rays, at.truths, traced.hits, any_hit);
         if (!faults.wrong.empty())
             return std::string(any_hit ? "any-hit queries: " : "nearest hits: ") +
                    faults.text(at.rays, at.truths, traced.hits, 1);

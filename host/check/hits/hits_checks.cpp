@@ -149,14 +149,7 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
             step("tracing " + std::to_string(set.rays.size()) + " rays, " + what, kTraceLimit_s);
             const Traced traced = scene.trace(variant, set.rays, any_hit);
-            Faults faults;
-            faults.any_hit = any_hit;
-            faults.rays = set.rays.size();
-            for (size_t i = 0; i < set.rays.size(); ++i) {
-                const Fault fault =
-                    any_hit ? judge_any(truths[i], traced.hits[i]) : judge_nearest(set.rays[i], truths[i], traced.hits[i]);
-                if (fault != Fault::none) faults.wrong.push_back({i, fault});
-            }
+            const Faults faults = Faults::of(set.rays, truths, traced.hits, any_hit);
             if (faults.wrong.empty()) {
                 right_variants.push_back(what);
                 continue;
@@ -200,28 +193,23 @@ Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
     const RaySet& set = bench.set(name, step);
     const auto is_strange = [](size_t i) { return i % 5 == 2; };
     const BruteForce force(bench.scene(step).build_scene());
-    std::vector<Truth> truths;  // of strange rays none
+    std::vector<Truth> truths;  // strange rays hit nothing
     for (size_t i = 0; i < set.rays.size(); ++i) truths.push_back(is_strange(i) ? Truth() : force.trace(set.rays[i]));
     for (const bool any_hit : {false, true})
         for (const Variant& variant : bench.variants(step)) {
             CheckedScene& scene = bench.compiled(variant, step);
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
             step("tracing rays that are no numbers, " + what, kTraceLimit_s);
-            const Traced traced = scene.trace(variant, set.rays, any_hit);
-            Faults faults;
-            faults.any_hit = any_hit;
-            faults.rays = set.rays.size();
+            Traced traced = scene.trace(variant, set.rays, any_hit);
             for (size_t i = 0; i < set.rays.size(); ++i) {
-                const rt_hit& hit = traced.hits[i];
-                if (is_strange(i)) {
-                    if (std::isnan(hit.t) || hit.prim < -1 || hit.prim >= static_cast<rt_i32>(kTrapPrim))
-                        return Outcome::failed(what + ": the ray " + ray_text(set.rays[i]) + " has an answer that is none: t " +
-                                               std::to_string(hit.t) + ", prim " + std::to_string(hit.prim));
-                    continue;
-                }
-                const Fault fault = any_hit ? judge_any(truths[i], hit) : judge_nearest(set.rays[i], truths[i], hit);
-                if (fault != Fault::none) faults.wrong.push_back({i, fault});
+                if (!is_strange(i)) continue;
+                rt_hit& hit = traced.hits[i];
+                if (std::isnan(hit.t) || hit.prim < -1 || hit.prim >= static_cast<rt_i32>(kTrapPrim))
+                    return Outcome::failed(what + ": the ray " + ray_text(set.rays[i]) + " has an answer that is none: t " +
+                                           std::to_string(hit.t) + ", prim " + std::to_string(hit.prim));
+                hit.t = INFINITY, hit.prim = -1;  // no answer of a strange ray is wrong: it counts as a miss
             }
+            const Faults faults = Faults::of(set.rays, truths, traced.hits, any_hit);
             if (faults.wrong.empty()) continue;
             Outcome outcome = Outcome::failed(what +
                                               ", beside rays that are no numbers (`--only hits.random` tells whether it "

@@ -68,8 +68,6 @@ std::string truth_text(const Truth& truth, bool any_hit) {
            (c->instance >= 0 ? ", instance " + std::to_string(c->instance) : "");
 }
 
-}  // namespace
-
 Fault judge_nearest(const rt_ray& ray, const Truth& truth, const rt_hit& hit) {
     const Contact* certain = truth.nearest_certain();
     if (std::isnan(hit.t)) return Fault::not_a_number;
@@ -91,6 +89,24 @@ Fault judge_any(const Truth& truth, const rt_hit& hit) {
     const bool occluded = hit.t == 0;
     if (!occluded && truth.nearest_certain()) return Fault::missed;
     return occluded && truth.contacts.empty() ? Fault::not_there : Fault::none;
+}
+
+}  // namespace
+
+Fault judge(const rt_ray& ray, const Truth& truth, const rt_hit& hit, bool any_hit) {
+    return any_hit ? judge_any(truth, hit) : judge_nearest(ray, truth, hit);
+}
+
+Faults Faults::of(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,
+                  bool any_hit) {
+    Faults faults;
+    faults.rays = set.size();
+    faults.any_hit = any_hit;
+    for (size_t i = 0; i < set.size(); ++i) {
+        const Fault fault = judge(set[i], truths[i], hits[i], any_hit);
+        if (fault != Fault::none) faults.wrong.push_back({i, fault});
+    }
+    return faults;
 }
 
 std::string Faults::text(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,

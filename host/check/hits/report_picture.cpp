@@ -48,7 +48,7 @@ ReportPicture write_report_picture(const std::string& path, CheckedScene& scene,
     report.pixels = rays.size();
     std::vector<uint8_t> bytes;
     for (size_t i = 0; i < rays.size(); ++i) {
-        const Fault fault = any_hit ? judge_any(truths[i], traced.hits[i]) : judge_nearest(rays[i], truths[i], traced.hits[i]);
+        const Fault fault = judge(rays[i], truths[i], traced.hits[i], any_hit);
         uint8_t grey = 24;  // nothing is hit
         if (!truths[i].contacts.empty()) {
             const Contact& contact = truths[i].contacts.front();

@@ -14,8 +14,8 @@ constexpr unsigned kDefaultRays = 8192;
 
 void resolve_packet(Settings& settings, const DeviceInfo& info) {
     if (settings.lanes == 0) settings.lanes = static_cast<int>(info.preferred_lanes());
-    // The kernels of several lanes are for CPUs whose work-items run one after the other (cl/lanes/lanes.h); elsewhere they do
-    // not compile, or (Mesa 22.3) were still being compiled after 100 s, with 1.3 GiB of memory.
+    // Several lanes need a CPU that runs one work-item after the other (cl/lanes/lanes.h). Kernels of several lanes do not
+    // compile for a GPU. Mesa 22.3 was still compiling one after 100 s, with 1.3 GiB of memory.
     if (!info.traces_packets() && settings.lanes > 1)
         throw Error(Exit::usage, "--lanes " + std::to_string(settings.lanes) + ": " + info.name +
                                      " computes work-items side by side, so each traces one ray: take --lanes 1");

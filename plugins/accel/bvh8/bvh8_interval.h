@@ -25,8 +25,8 @@ RT_INLINE uint bvh8_octant_bits(const rt_rays *ray, vint octants, vfloat t)
     return bits;
 }
 
-/* The lanes whose rays an interval bounds: active ones with finite origins. One at NaN or infinity hits nothing, and would spoil
- * the bounds of the others. Such an origin times zero is NaN, which no comparison holds for. */
+/* The lanes that an interval bounds: they are active, and their origins are finite. A ray that starts at NaN or infinity hits
+ * nothing, but the bounds would no longer hold for the other rays. Such an origin times zero is NaN, and NaN >= 0 is false. */
 RT_INLINE vmask bvh8_bounded(const rt_rays *ray, vfloat t)
 {
     return RT_MASK(fma(ray->ox + ray->oy + ray->oz, rt_vfloat(0.0f), t) >= rt_vfloat(0.0f));
