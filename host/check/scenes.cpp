@@ -171,8 +171,8 @@ Scene mixed_scene() {
     make.soup(kSoup, 4, 0.9f, 700);
     make.place(make.mesh());
     for (int i = 0; i < 27; ++i) {
-        const Point lo{kBoxes[0] - 3 + 2 * float(i % 3), kBoxes[1] - 3 + 2 * float(i / 3 % 3),
-                       kBoxes[2] - 3 + 2 * float(i / 9)};
+        const int x = i % 3, y = i / 3 % 3, z = i / 9;
+        const Point lo{kBoxes[0] - 3 + 2 * float(x), kBoxes[1] - 3 + 2 * float(y), kBoxes[2] - 3 + 2 * float(z)};
         make.box(lo, {lo[0] + 2 - 1.5f * float(i % 2), lo[1] + 2, lo[2] + 2});
     }
     add_faces(make);
@@ -318,9 +318,9 @@ std::vector<NamedScene> small_scenes() {
         make.place(make.mesh());
     });
     add("in one plane", [](Maker& make) {
-        for (int i = 0; i < 400; ++i)
-            make.triangle({float(i % 20), float(i / 20), 0}, {float(i % 20) + 1, float(i / 20), 0},
-                          {float(i % 20), float(i / 20) + 1, 0});
+        for (int y = 0; y < 20; ++y)
+            for (int x = 0; x < 20; ++x)
+                make.triangle({float(x), float(y), 0}, {float(x) + 1, float(y), 0}, {float(x), float(y) + 1, 0});
         make.place(make.mesh());
     });
     add("coordinates up to 1e18", [](Maker& make) {
@@ -341,7 +341,8 @@ Scene sparse_scene(unsigned count) {
     const int side = static_cast<int>(std::ceil(std::cbrt(double(count))));
     for (unsigned i = 0; i < count; ++i) {
         const int n = static_cast<int>(i);
-        const Point cell{float(n % side), float(n / side % side), float(n / side / side)};
+        const int x = n % side, y = n / side % side, z = n / side / side;
+        const Point cell{float(x), float(y), float(z)};
         const Point p = make.around({3.1f * cell[0] - 7.3f, 2.9f * cell[1] + 1.7f, 3.3f * cell[2] - 2.9f}, 0.6f);
         make.triangle(make.around(p, 0.6f), make.around(p, 0.6f), make.around(p, 0.6f));
     }

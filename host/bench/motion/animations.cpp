@@ -112,8 +112,8 @@ Pose crowded(const Scene& scene, unsigned frame) {
     for (unsigned i = 0; i < pose.instances.size(); ++i) {
         const double radius = (0.1 + 0.4 * any(random)) * size, turns = 0.5 + 2.5 * any(random), begin = any(random);
         const double angle = kFullTurn * (begin + turns * frame / kAnimationFrames);
-        const double x = (double(i % kCopiesInRow) / kCopiesInRow - 0.5) * size,
-                     z = (double(i / kCopiesInRow) / kCopiesInRow - 0.5) * size;
+        const auto column = i % kCopiesInRow, row = i / kCopiesInRow;
+        const double x = (double(column) / kCopiesInRow - 0.5) * size, z = (double(row) / kCopiesInRow - 0.5) * size;
         const double c = std::cos(angle) * scale, s = std::sin(angle) * scale;
         const double at[3] = {x + radius * std::cos(angle), 0.25 * size * std::sin(angle + 3 * begin),
                               z + radius * std::sin(angle)};

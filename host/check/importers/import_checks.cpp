@@ -228,7 +228,7 @@ Outcome leaks(const ImportInputs& inputs, const Step& step, bool quick) {
 
 }  // namespace
 
-std::vector<Check> import_checks(Inputs inputs, bool quick) {
+std::vector<Check> import_checks(const Inputs& inputs, bool quick) {
     return {
         {"imports.table", "extensions and `probe`", [=](const Step& step) { return table(*inputs, step); }},
         {"imports.read", "reads the sample files", [=](const Step& step) { return read(*inputs, step); }},

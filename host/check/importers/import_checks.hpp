@@ -21,6 +21,6 @@ struct ImportInputs {
 };
 
 // The checks of one importer, in the order in which they run. quick: fewer repetitions.
-std::vector<Check> import_checks(std::shared_ptr<const ImportInputs> inputs, bool quick);
+std::vector<Check> import_checks(const std::shared_ptr<const ImportInputs>& inputs, bool quick);
 
 }  // namespace clarity::check

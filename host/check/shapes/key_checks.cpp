@@ -192,7 +192,7 @@ std::vector<KeyInputs::Statement> write_statements(const rt_plugin& plugin, cons
     return Writer(plugin, folder).all();
 }
 
-std::vector<Check> key_checks(Inputs inputs, bool quick) {
+std::vector<Check> key_checks(const Inputs& inputs, bool quick) {
     const size_t count = quick ? 12 : 60;
     return {
         {"keys.values", "usual values of its keys become boxes and numbers, or are refused with a reason",

@@ -26,6 +26,6 @@ struct KeyInputs {
 std::vector<KeyInputs::Statement> write_statements(const rt_plugin& plugin, const std::string& folder);
 
 // In the order in which they run. quick: fewer repetitions.
-std::vector<Check> key_checks(std::shared_ptr<const KeyInputs> inputs, bool quick);
+std::vector<Check> key_checks(const std::shared_ptr<const KeyInputs>& inputs, bool quick);
 
 }  // namespace clarity::check

@@ -108,8 +108,9 @@ class Draw {
             }
         if (greatest > 1) columns = greatest;
         for (size_t i = 0; i < length; ++i) {
-            all.push_back(within(key, double(i % columns) + 0.2 * double(share())));
-            all.push_back(within(key, double(i / columns) + 0.2 * double(share())));
+            const size_t column = i % columns, row = i / columns;
+            all.push_back(within(key, double(column) + 0.2 * double(share())));
+            all.push_back(within(key, double(row) + 0.2 * double(share())));
             all.push_back(around(key, 0, 0.6));
         }
         return all;

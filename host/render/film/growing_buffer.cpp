@@ -30,7 +30,7 @@ cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, size_t by
     flags = (flags & ~cl_mem_flags{CL_MEM_ALLOC_HOST_PTR}) | CL_MEM_USE_HOST_PTR;
     cl::Buffer buffer(context, flags, bytes, memory->data());
     buffer.setDestructorCallback([](cl_mem, void* data) { delete static_cast<AlignedBytes*>(data); }, memory.get());
-    memory.release();
+    static_cast<void>(memory.release());  // the callback deletes it
     return buffer;
 }
 

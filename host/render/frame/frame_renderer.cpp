@@ -155,8 +155,8 @@ struct FrameRenderer::Impl {
         const DeviceInfo& info = device->info();
         uint64_t room = info.global_bytes / kShareOfMemory;
         if (info.max_allocation_bytes) room = std::min(room, info.max_allocation_bytes);
-        const auto fitting = double(room / film_bytes(size_t(width) * height)),
-                   most = std::min({double(kMostAtOnce), fitting, kAtOnceMs / launcher.expected_ms(groups())});
+        const uint64_t fitting = room / film_bytes(size_t(width) * height);
+        const double most = std::min({double(kMostAtOnce), double(fitting), kAtOnceMs / launcher.expected_ms(groups())});
         if (most < 2) return 1;
         const auto launches = static_cast<unsigned>(std::ceil(left / std::floor(most)));
         return (left + launches - 1) / launches;

@@ -14,7 +14,7 @@ void hold_in(Setting& s, Member Settings::*... members) {
     s.copy = [=](Settings& to, const Settings& from) { (..., (to.*members = from.*members)); };
 }
 
-Setting integer(std::string key, std::string label, std::string help, double min, double max, Effect effect,
+Setting integer(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
                 int Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}, {}, {}};
     hold_in(s, member);
@@ -28,7 +28,7 @@ Setting integer(std::string key, std::string label, std::string help, double min
     return s;
 }
 
-Setting real(std::string key, std::string label, std::string help, double min, double max, Effect effect,
+Setting real(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
              double Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}, {}, {}};
     hold_in(s, member);
@@ -42,7 +42,7 @@ Setting real(std::string key, std::string label, std::string help, double min, d
     return s;
 }
 
-Setting boolean(std::string key, std::string label, std::string help, Effect effect, bool Settings::*member) {
+Setting boolean(const std::string& key, std::string label, std::string help, Effect effect, bool Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::boolean, 0, 1, {}, effect, {}, {}, {}, {}};
     hold_in(s, member);
     s.get = [member](const Settings& settings) { return std::string(settings.*member ? "true" : "false"); };
@@ -57,8 +57,8 @@ Setting boolean(std::string key, std::string label, std::string help, Effect eff
     return s;
 }
 
-Setting choice(std::string key, std::string label, std::string help, std::vector<std::string> choices, Effect effect,
-               std::string Settings::*member) {
+Setting choice(const std::string& key, std::string label, std::string help, const std::vector<std::string>& choices,
+               Effect effect, std::string Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::choice, 0, 0, choices, effect, {}, {}, {}, {}};
     hold_in(s, member);
     s.get = [member](const Settings& settings) { return settings.*member; };
@@ -76,7 +76,7 @@ Setting choice(std::string key, std::string label, std::string help, std::vector
     return s;
 }
 
-Setting size(std::string key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
+Setting size(const std::string& key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
              int Settings::*width, int Settings::*height) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::size, double(min), double(max), {}, effect, {}, {}, {},
               {}};

@@ -27,7 +27,7 @@ T nearest(From value) {
     if constexpr (std::is_floating_point_v<T>) {
         return static_cast<T>(value);
     } else if constexpr (std::is_floating_point_v<From>) {
-        if (!(value == value)) return 0;
+        if (std::isnan(value)) return 0;
         if (value >= static_cast<From>(Limits::max())) return Limits::max();
         return value <= static_cast<From>(Limits::min()) ? Limits::min() : static_cast<T>(value);
     } else {

@@ -52,7 +52,7 @@ bool PoseFollower::wants_build_beside(const PosedFrom& from, const Pose& pose, W
 }
 
 void PoseFollower::build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
-                                AccelBuilder build) {
+                                const AccelBuilder& build) {
     beside_.reset(new Beside{from, BackgroundBuild([=](Progress& progress) -> BuiltPose {
                                  return {scene, pose, build(*scene, progress)};
                              })});
@@ -63,7 +63,7 @@ bool PoseFollower::wants_choice(const PosedFrom& from) const {
            !mover_->can_build();
 }
 
-void PoseFollower::choose_beside(const PosedFrom& from, std::shared_ptr<const Scene> rest, AccelBuilder build) {
+void PoseFollower::choose_beside(const PosedFrom& from, std::shared_ptr<const Scene> rest, const AccelBuilder& build) {
     chosen_for_ = from;
     beside_.reset(new Beside{
         from, BackgroundBuild([=](Progress& progress) { return choose_first_tree(*rest, from.clip, build, progress); })});

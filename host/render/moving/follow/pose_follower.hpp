@@ -68,11 +68,11 @@ class PoseFollower {
     // build_beside(); the structure is refitted meanwhile. A build that is done is taken, prepared, and passed to built().
     bool wants_build_beside(const PosedFrom& from, const Pose& pose, Way way) const;
     // scene: with all vertices of the pose.
-    void build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose, AccelBuilder build);
+    void build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose, const AccelBuilder& build);
     // Whether the tree of a clip should be chosen now among those of several poses; once for each clip. choose_beside() does
     // that as build_beside(). rest: the scene at rest.
     bool wants_choice(const PosedFrom& from) const;
-    void choose_beside(const PosedFrom& from, std::shared_ptr<const Scene> rest, AccelBuilder build);
+    void choose_beside(const PosedFrom& from, std::shared_ptr<const Scene> rest, const AccelBuilder& build);
     // Without `accel`: no build is done, or it is of another scene or clip. Throws what the build threw.
     BuiltPose take_build(const PosedFrom& from);
 

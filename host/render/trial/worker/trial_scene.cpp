@@ -82,9 +82,9 @@ void add_shapes(Scene& scene, const std::vector<TrialShape>& shapes) {
     for (const TrialShape& shape : shapes)
         for (rt_u32 kind = 0; kind < scene.shape_kinds.size(); ++kind) {
             if (scene.shape_kinds[kind].id != shape.id) continue;
-            const float column = static_cast<float>(number % 5), row = static_cast<float>(number / 5);
+            const size_t column = number % 5, row = number / 5;
             add_shape(scene, shape, kind, std::array{kMatt, kGlass, kMirror}[number % 3],
-                      {-2.4f + 1.2f * column, 1.5f + 0.9f * row, 0.3f}, 0.45f);
+                      {-2.4f + 1.2f * static_cast<float>(column), 1.5f + 0.9f * static_cast<float>(row), 0.3f}, 0.45f);
             ++number;
         }
 }
