@@ -38,6 +38,11 @@ clarity_require(PkgConfig::STB libstb-dev)
 # Headers only, for code that compiles stb into itself and must not be linked with the library.
 add_library(clarity_stb_headers INTERFACE)
 target_include_directories(clarity_stb_headers SYSTEM INTERFACE ${STB_INCLUDE_DIRS})
+# Draws the curves of the bench's report, which holds the script.
+find_file(CLARITY_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js)
+if(NOT CLARITY_CHART_JS)
+  message(FATAL_ERROR "chart.min.js not found: install libjs-chart.js (or pass the file's path as CLARITY_CHART_JS)")
+endif()
 
 find_package(OpenEXR CONFIG QUIET)
 if(NOT OpenEXR_FOUND)

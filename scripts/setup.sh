@@ -8,10 +8,10 @@ build_dir=build/release
 build_packages="g++ cmake ninja-build make pkg-config
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
     libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libxxhash-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
-    libgl1-mesa-dri fonts-dejavu-core"
-# The tests compare with Embree, run kernels on PoCL and oclgrind, and open the window on a virtual display.
+    libgl1-mesa-dri fonts-dejavu-core libjs-chart.js"
+# The tests compare with Embree, run kernels on PoCL and oclgrind, open the window on a virtual display, and pages in Chromium.
 test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format
-    xvfb xauth xdotool imagemagick"
+    xvfb xauth xdotool imagemagick chromium"
 
 # Additional packages for scripts/full_test.
 check_packages="clang-tidy"
