@@ -1,4 +1,4 @@
-// flatten.hpp -- meshes whose instances flatten them.
+// flatten.hpp -- meshes that an instance's transform makes flat: a scale of 0 along an axis.
 #pragma once
 #include "scene/scene.hpp"
 

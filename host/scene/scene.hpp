@@ -47,8 +47,8 @@ struct Instance {
     rt_u32 material = RT_NONE;  // replaces the materials of the whole mesh; RT_NONE: the mesh keeps its own
     Affine world_from_object = kIdentity;
     bool visible = true;  // false: in no acceleration structure, but its primitives keep their numbers
-    // Of an instance that a node moves. root: the node of its file's placement. node_from_object: where the object is in the
-    // node's space. moving_mesh: its mesh, where a transform that is flat at rest has made another mesh of it.
+    // For an instance that a node moves. `node` moves it; `root` is the node that places its file. node_from_object places the
+    // object in the node's space. If the transform at rest is flat, `mesh` is a flat copy; moving_mesh is the mesh itself.
     rt_u32 node = RT_NONE, root = RT_NONE, moving_mesh = 0;
     Affine node_from_object = kIdentity;
     bool apart = false;   // moves, so that its mesh is kept apart from the flattened world and can move alone

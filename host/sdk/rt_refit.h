@@ -54,9 +54,9 @@ typedef struct rt_refit_output {
 
 typedef struct rt_refit {
     rt_u32 struct_bytes, pad;
-    /* Returns RT_OK, RT_FAILED after host->fail, or RT_CANCELLED after host->progress said so. Unless it returns RT_OK, the host takes
-     * the volumes of the changed groups as lost: it refits these groups again, or builds. Same bytes whatever the number and order of
-     * threads. [worker thread] */
+    /* Returns RT_OK, RT_FAILED after host->fail, or RT_CANCELLED after host->progress asked for it. After any other result than RT_OK
+     * the host does not use the volumes of the changed groups: it refits these groups again, or builds. The bytes must not depend on
+     * the number and order of threads. [worker thread] */
     int32_t (*refit)(const rt_host *, const rt_refit_input *, const rt_refit_output *);
 } rt_refit;
 

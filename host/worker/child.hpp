@@ -22,9 +22,9 @@ inline constexpr const char* kTrialGreeting = "clarity trial worker 1";
 // instead: what a person should run, "to import a file, run `clarity info FILE`".
 bool begin_worker(const char* greeting, long parent, const char* instead);
 
-// Crashes are reported by us, not by a library. An OpenCL compiler (LLVM's) sets signal handlers of its own when it is loaded;
-// they let a second thread that crashes at the same moment end the process before a word is said. Call this before others' code
-// runs.
+// Sets our signal handlers again, so that we report crashes. An OpenCL compiler (LLVM's) replaces them when it is loaded. With
+// its handlers, a second thread that crashes at the same moment ends the process before anything is reported. Call this before
+// others' code runs.
 void take_crash_signals();
 
 // Forwards progress to the parent, and its cancel to us.

@@ -26,8 +26,8 @@ struct PrepareRequest {
     std::vector<rt_u32> apart;     // instances that are about to be moved: ascending
     uint64_t kernel_revision = 0;  // the kernels are read (again) when it changes
     PoseTime pose;
-    bool only_pose = false;  // differs from the request before it in nothing else, so that work in hand goes on
-    // Time of the last frame of each side, for the choice between refit and build. No part of what is asked for. 0: not known.
+    bool only_pose = false;  // only the pose differs from the last request, so that work that has begun goes on
+    // Time of the last frame of each side, which decides between refit and build. It asks for nothing by itself. 0: not known.
     std::array<double, 2> frame_ms{};
 };
 

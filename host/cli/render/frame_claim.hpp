@@ -13,10 +13,10 @@ class FrameClaim {
     // at once.
     static constexpr double kExpiresAfterS = 60;
 
-    // Returns nullptr if another process has a claim that has not expired. Where no file can be written, the claim is this
-    // process's own secret.
+    // Returns nullptr if another process has a claim that has not expired. If the claim's file cannot be written, the claim
+    // holds all the same, but no other process sees it.
     static std::unique_ptr<FrameClaim> take(const std::string& picture);
-    // Of a picture that is complete: removes what a process left that was killed just then.
+    // Removes the expired claim of a picture that is complete: its process was killed before it could remove the claim.
     static void remove_expired(const std::string& picture);
     ~FrameClaim();
     FrameClaim(const FrameClaim&) = delete;

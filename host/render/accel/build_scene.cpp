@@ -240,9 +240,9 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
     }
 }
 
-// How each mesh is placed. A mesh that is placed once is flattened into the world, because rays would only take longer
-// through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out. One that
-// moves need not be, so that its tree can move without the world's.
+// How each mesh is placed. A mesh with one instance is flattened into the world, because a tree of its own would only make rays
+// slower. There are two exceptions: a reflected mesh, whose triangles would turn inside out, and a mesh that moves, whose tree
+// can then move while the world's tree stays.
 struct Placement {
     std::vector<Affine> inverse;  // of each instance
     std::vector<bool> built;      // for each instance: it is in the structure. One that is apart may be hidden there

@@ -28,8 +28,8 @@ Layout make_layout(const Settings& settings, bool cpu) {
     layout.lanes = static_cast<unsigned>(settings.lanes);
     layout.packet_w = static_cast<unsigned>(settings.packet_w);
     layout.packet_h = static_cast<unsigned>(settings.packet_h);
-    // Blocks are as square as possible. Exception: a side of twice the packet's or more is halved, and the other side doubled,
-    // while the other side is smaller than the packet's.
+    // A block is as square as possible. But in a packet that is narrower than half a block, the block gets narrower and taller,
+    // until it fits.
     layout.block_w = layout.lanes >= 8 ? 4 : layout.lanes == 4 ? 2 : 1;
     layout.block_h = layout.lanes / layout.block_w;
     while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;

@@ -4,7 +4,8 @@
 
 namespace clarity {
 
-// memory: returns the memory of slots and leaves for that of `from`: a copy of it, or the same, borrowed.
+// Copies the structure. For each slot and for the leaves, memory(bytes of `from`) returns the bytes of the copy: its own copy
+// of them, or the same bytes, borrowed.
 template <class Memory>
 AccelData copy_of(const AccelData& from, Memory&& memory) {
     AccelData copy;

@@ -8,8 +8,8 @@
 //
 // The structure of a sample is that of the picture's time, refitted; or, where that is not possible, built for the sample. So
 // it depends on the picture and the number of the sample alone, and a picture looks the same in whatever order its samples and
-// its frames are traced. One pose is held at a time, whatever the number of samples. What a pose leaves in its place is neither
-// built nor uploaded.
+// its frames are traced. One pose is held at a time, whatever the number of samples. Groups that a pose does not move are
+// neither built nor uploaded again.
 #pragma once
 #include <functional>
 #include <memory>

@@ -15,7 +15,8 @@ double power(double base, double exponent) {
     return std::copysign(std::pow(std::abs(base), exponent), base);
 }
 
-// Values of one thing in one layer. Components without a channel keep what layers below gave, or add nothing.
+// The values that one layer gives to one property of a node. A component without a channel keeps the value of the layers below;
+// in a layer that adds, it adds nothing.
 struct Keyed {
     Vec value{};
     bool has[3] = {false, false, false};

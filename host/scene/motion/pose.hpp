@@ -62,9 +62,9 @@ Pose evaluate_without_vertices(const Scene& scene, const std::string& clip, doub
 // Computes the vertices that were left out of a pose. scene: at rest.
 void add_vertices(const Scene& scene, Pose& pose);
 
-// The scene in a pose. Its arrays keep their order; meshes may follow where a transform flattens an instance. Vertices that the
-// pose leaves out stay at rest. The result has no motion, but moving_instances() are marked to be kept apart, as are those that
-// were before.
+// Returns the scene in a pose. Its arrays keep their order. If the pose makes the transform of an instance flat, a flat copy of
+// its mesh is appended to the meshes. Vertices that the pose leaves out stay at rest. The result has no motion; the instances
+// of moving_instances(), and those that were marked before, are marked to be kept apart.
 Scene posed(Scene scene, const Pose& pose);
 
 }  // namespace clarity

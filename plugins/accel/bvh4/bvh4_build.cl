@@ -248,7 +248,7 @@ RT_BUILD_KERNEL bvh4_number(BVH4_TREES, uint count, uint each, const global bvh4
     }
 }
 
-/* Writes the wide nodes and their ranges, and of what is none an empty range. */
+/* Writes the wide nodes and their ranges of leaves. Binary nodes that became no wide node get an empty range. */
 RT_BUILD_KERNEL bvh4_write(BVH4_TREES, uint count, uint elements, uint each, const global bvh4_choice *choices, const global uint *used,
                            const global bvh4_task *tasks, const global uint *below, uint first_node, uint first_leaf, global float *to,
                            global uint2 *ranges)

@@ -19,9 +19,9 @@ RT_INLINE int lbvh_common(const global ulong *keys, uint count, ulong key, uint 
     const int common = differ ? (int)clz(differ) : 64 + (int)clz(i ^ (uint)j);
     return j < 0 || j >= (int)count ? -1 : common;
 }
-/* Of the places i + (from + k) * d, k = 0 .. first + second: the greatest k that is a sum of `first`, `second` or none whose keys have
- * more than `least` leading bits in common with that of i. It is two steps of a binary search: their three keys are fetched together, as
- * the nodes near the root wait for each in turn. */
+/* Two steps of a binary search at once. Returns the greatest k of {0, first, second, first + second} for which the key at place
+ * i + (from + k) * d has more than `least` leading bits in common with the key at place i. The three keys are fetched together, because
+ * near the root a node would wait for one fetch after the other. */
 RT_INLINE int lbvh_two_steps(const global ulong *keys, uint count, ulong key, uint i, int d, int from, int first, int second, int least)
 {
     const int low = lbvh_common(keys, count, key, i, (int)i + (from + second) * d),

@@ -30,8 +30,8 @@ namespace clarity {
 struct MovedOnDevice {
     std::shared_ptr<const DeviceScene> on_device;  // nullptr: a full build is needed
     std::string why;                               // why a build is needed; empty: it is not
-    // The greatest expected cost of a ray in any group, by that after the build; as far as the device has told it: of one of
-    // the last moves.
+    // Expected cost of a ray (SAH), divided by that after the last build: the greatest of all groups. The device reports it
+    // some moves later.
     double worst_cost_ratio = 1;
     std::vector<MovedGroup> groups;  // those that moved
     uint64_t refitted = 0;           // primitives

@@ -25,17 +25,19 @@ struct RefitCosts {
     double node, primitive;
 };
 
+// clang-format off
 // Layout has:
-//   kWidth                          children of a node, at most
-//   kBlock                          nodes of a subtree that one sweep takes
-//   subtrees(group, each)           calls each(RefitSubtree) for the trees of a group, in any order
-//   children(subtree, RefitSubtree out[kWidth])   returns how many children are nodes, ascending
-//   add_positions(node, first, end) widens the range of positions in leaf order by those of the node's own leaves; returns how
-//   many update(node, node_box, leaf_box, unit, areas) writes the boxes of the node's children, adds their areas, and returns
-//   the box
-//                                   around them. node_box(child) and leaf_box(first, count) give the boxes of its children
-//   finish(group, box)              writes what stands above the trees of a group
-//   unit(group)                     RefitUnit of a group, from its boxes before the refit
+//   kWidth                            most children of a node
+//   kBlock                            nodes of a subtree that one sweep takes
+//   subtrees(group, each)             calls each(RefitSubtree) for the trees of a group, in any order
+//   children(subtree, RefitSubtree out[kWidth])   writes the children that are nodes, ascending, and returns their number
+//   add_positions(node, first, end)   widens the range of positions in leaf order by those of the node's own leaves; returns their
+//                                     number
+//   update(node, node_box, leaf_box, unit, areas)   writes the boxes of the node's children, adds their areas, and returns the box
+//                                     around them. node_box(child) and leaf_box(first, count) give the boxes of its children
+//   finish(group, box)                writes what stands above the trees of a group
+//   unit(group)                       RefitUnit of a group, from its boxes before the refit
+// clang-format on
 template <class Layout>
 class Refit {
  public:
