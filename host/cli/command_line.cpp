@@ -23,6 +23,7 @@ struct Parsed {
     RenderOptions render;
     BenchCommand bench;
     TraceCommand rays;
+    CompareCommand compare;
     CheckCommand check;
     NewPluginCommand fresh;
     std::string key_map;
@@ -181,6 +182,15 @@ void add_rays(CLI::App& app, TraceCommand& command) {
     app.add_flag("--any", command.any_hit, "Ask only whether something is hit between t_min and t_max: 1 or 0 a ray");
 }
 
+void add_compare(CLI::App& app, CompareCommand& command) {
+    app.add_option("picture", command.test, "The picture: .pfm, .exr or .png")->type_name("A")->required();
+    app.add_option("reference", command.reference, "What it should be, of the same size")->type_name("B")->required();
+    single(app.add_option("-o,--output", command.output,
+                          "Write the signed error as .png: red where A is brighter than B, blue where it is darker"))
+        ->type_name("DIFF");
+    app.add_flag("--json", command.json, "As JSON");
+}
+
 void add_check(CLI::App& app, CheckCommand& command) {
     app.add_option("plugin", command.what,
                    "Ids as `clarity plugins` lists them, libraries, or folders of source, which are built first")
@@ -314,6 +324,7 @@ CommandLine parse_command_line(int argc, char** argv) {
     CLI::App* view = app.add_subcommand("view", "Open the window on a scene");
     CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
     CLI::App* trace = app.add_subcommand("trace", "Trace rays that are given by their numbers");
+    CLI::App* compare = app.add_subcommand("compare", "Say how much a picture differs from a reference");
     CLI::App* check = app.add_subcommand("check", "Say whether a plugin is right, in a process that it may crash");
     CLI::App* fresh = app.add_subcommand("new-plugin", "Make a folder with a plugin that builds and works, to begin with");
     CLI::App* bench = app.add_subcommand("bench", "Measure: structures, settings, devices and peers on suites or scenes");
@@ -362,6 +373,12 @@ CommandLine parse_command_line(int argc, char** argv) {
         };
     });
 
+    add_compare(*compare, p.compare);
+    compare->callback([&] {
+        line.needs_plugins = false;
+        line.command = [parsed](const PluginRegistry&) { return run_compare(parsed->compare); };
+    });
+
     add_check(*check, p.check);
     check->callback(
         [&] { line.command = [parsed](const PluginRegistry& registry) { return run_check(registry, parsed->check); }; });
@@ -403,7 +420,7 @@ CommandLine parse_command_line(int argc, char** argv) {
         line.lists_plugins = true;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
-    for (CLI::App* sub : {view, render, trace, check, fresh, bench, info, devices, plugins}) {
+    for (CLI::App* sub : {view, render, trace, compare, check, fresh, bench, info, devices, plugins}) {
         add_common(*sub, p.common);
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);

@@ -71,6 +71,14 @@ struct ViewCommand {
 };
 int run_view(const PluginRegistry& plugins, const ViewCommand& options);
 
+// A picture and its reference.
+struct CompareCommand {
+    std::string test, reference;
+    std::string output;  // picture of the signed error, .png; "": none
+    bool json = false;
+};
+int run_compare(const CompareCommand& command);
+
 // Rays by their numbers.
 struct TraceCommand {
     SceneOptions scene;
