@@ -310,6 +310,7 @@ typedef struct rt_mesh {
     const rt_u32 *face_sizes; /* corners of each face; NULL: all triangles */
     uint64_t face_count;
     const rt_u32 *face_materials; /* per face, ids that the sink's `material` returned; NULL: all have `material` */
+    double origin[3]; /* appended: what was subtracted from positions in double precision, so that floats keep their details */
 } rt_mesh;
 
 typedef struct rt_instance_desc {
@@ -320,6 +321,7 @@ typedef struct rt_instance_desc {
     float world_from_object[12]; /* row-major 3x4; with a node: from the object into the node's space */
     rt_u32 node;                 /* appended: id of the node that moves it; 0: none */
     rt_u32 pad;                  /* 0 */
+    const double *translation;   /* appended: x, y, z, in place of numbers 3, 7 and 11 of world_from_object; NULL: those */
 } rt_instance_desc;
 
 /* Whitted's material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */

@@ -279,6 +279,7 @@ void SceneBuilder::take_motion() {
 }
 
 Scene SceneBuilder::take() {
+    subtract_origin();
     scene_.instances = std::move(world_.instances);
     scene_.spheres = std::move(world_.spheres);
     scene_.planes = std::move(world_.planes);
