@@ -72,7 +72,7 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 constexpr const char* kExtensions[] = {"tri", nullptr};
-constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>, 0, 0};
 
 }  // namespace
 
