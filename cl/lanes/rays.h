@@ -235,6 +235,13 @@ RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt
                            rt_vfloat(box[5]), r, h, entry);
 }
 
+/* How far the coordinate o + d * t of a point of a ray may be from where the tests of primitives see it: the slack of boxes as a
+ * length. For structures that turn a distance into a place, such as grids. */
+RT_INLINE vfloat rt_position_slack(vfloat o, vfloat d, vfloat t)
+{
+    return fma(fabs(o), rt_vfloat(8.0f * RT_EPS), fma(fabs(d * t), rt_vfloat(16.0f * RT_EPS), rt_vfloat(RT_FAR_SLACK)));
+}
+
 /* Returns the lanes with rays that enter the bounds of all primitives but planes before t_max. */
 RT_INLINE vmask rt_enter_scene(const constant rt_frame *frame, const rt_rays *r, vfloat t_max)
 {

@@ -38,7 +38,7 @@ Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
 // For scenes without lights: a key light from the upper left behind the camera, and a weaker one from the right.
 std::vector<rt_light> default_lights(const Scene& scene, const Camera& camera) {
     const Bounds bounds = scene.bounds();
-    const float size = std::max(bounds.empty ? 1.0f : bounds.diagonal(), 1e-6f);
+    const float diagonal = bounds.empty ? 0 : bounds.diagonal(), size = diagonal > 0 ? diagonal : 1;
     std::array<float, 3> forward, right, up = camera.up;
     for (int k = 0; k < 3; ++k) forward[k] = camera.target[k] - camera.eye[k];
     right = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],

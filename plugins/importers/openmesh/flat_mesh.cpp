@@ -5,20 +5,54 @@
 
 namespace openmesh_import {
 
-void FlatMesh::add_vertex(float x, float y, float z) {
+namespace {
+
+constexpr double kFar = 16;  // how many times as far from 0 as it is large a mesh has to be
+
+}  // namespace
+
+void FlatMesh::add_vertex(double x, double y, double z) {
     positions.insert(positions.end(), 3, 0.0f);
     set_vertex(vertex_count() - 1, x, y, z);
 }
 
-void FlatMesh::set_vertex(size_t vertex, float x, float y, float z) {
+void FlatMesh::set_vertex(size_t vertex, double x, double y, double z) {
     if (vertex >= vertex_count()) return;
-    const bool finite = std::isfinite(x) && std::isfinite(y) && std::isfinite(z);
+    float* const to = &positions[3 * vertex];
+    to[0] = static_cast<float>(x);
+    to[1] = static_cast<float>(y);
+    to[2] = static_cast<float>(z);
+    const bool finite = std::isfinite(to[0]) && std::isfinite(to[1]) && std::isfinite(to[2]);
     if (!finite) unusable_.resize(vertex_count(), false);
     if (vertex < unusable_.size()) unusable_[vertex] = !finite;
-    float* const to = &positions[3 * vertex];
-    to[0] = finite ? x : 0;
-    to[1] = finite ? y : 0;
-    to[2] = finite ? z : 0;
+    if (!finite) std::fill_n(to, 3, 0.0f);
+    if (keeps_digits_) keep_digits(vertex, {finite ? x : 0, finite ? y : 0, finite ? z : 0});
+}
+
+void FlatMesh::keep_digits(size_t vertex, const double (&at)[3]) {
+    digits_.resize(positions.size());
+    const bool is_used = vertex >= unusable_.size() || !unusable_[vertex];
+    double size = 0, farthest = 0;
+    for (int k = 0; k < 3; ++k) {
+        digits_[3 * vertex + size_t(k)] = static_cast<float>(at[k] - double(positions[3 * vertex + size_t(k)]));
+        has_digits_ = has_digits_ || digits_[3 * vertex + size_t(k)] != 0;
+        if (is_used) lo_[k] = std::min(lo_[k], at[k]), hi_[k] = std::max(hi_[k], at[k]);
+        size = std::max(size, hi_[k] - lo_[k]);
+        farthest = std::max({farthest, std::fabs(lo_[k]), std::fabs(hi_[k])});
+    }
+    keeps_digits_ = !is_used || farthest >= kFar * size;
+    if (!keeps_digits_) digits_ = {};
+}
+
+void FlatMesh::subtract_origin() {
+    const double size = std::max({hi_[0] - lo_[0], hi_[1] - lo_[1], hi_[2] - lo_[2]});
+    if (!keeps_digits_ || !has_digits_ || !(size > 0)) return;
+    // A multiple of a power of two as large as the mesh: it has few digits, so that a float holds it.
+    const double grid = std::ldexp(1.0, std::ilogb(size));
+    for (size_t k = 0; k < 3; ++k) origin[k] = std::round((lo_[k] + hi_[k]) / 2 / grid) * grid;
+    for (size_t i = 0; i < positions.size(); ++i)
+        positions[i] = static_cast<float>(double(positions[i]) - origin[i % 3] + double(digits_[i]));
+    digits_ = {};
 }
 
 void FlatMesh::leave_out_broken() {
@@ -75,6 +109,7 @@ void FlatMesh::copy_vertices() {
 }
 
 void FlatMesh::finish() {
+    subtract_origin();
     leave_out_broken();
     // A normal or uv that is not finite becomes 0 as a whole.
     const auto clean = [](std::vector<float>& values, size_t width) {

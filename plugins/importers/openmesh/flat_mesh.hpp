@@ -1,6 +1,7 @@
 // flat_mesh.hpp -- the vertices and faces of a file in flat arrays. Every face is kept: also those of area zero, and several
 // at one edge.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -21,9 +22,9 @@ class FlatMesh : public importers::MeshArrays {
     std::vector<float> corner_normals, corner_uvs;  // the values, 3 and 2 for each number
 
     // Adds a vertex. One that is not finite keeps its number, but faces must not use it.
-    void add_vertex(float x, float y, float z);
+    void add_vertex(double x, double y, double z);
     // Gives a vertex that was added another position.
-    void set_vertex(size_t vertex, float x, float y, float z);
+    void set_vertex(size_t vertex, double x, double y, double z);
     size_t vertex_count() const { return positions.size() / 3; }
     void add_face(size_t corner_count) { sizes.push_back(static_cast<rt_u32>(corner_count)); }
     // A vertex with a number from a file, as it stands in `corners`.
@@ -43,8 +44,16 @@ class FlatMesh : public importers::MeshArrays {
     bool is_usable(rt_u32 vertex) const {
         return vertex < vertex_count() && (unusable_.size() <= vertex || !unusable_[vertex]);
     }
+    void keep_digits(size_t vertex, const double (&at)[3]);
+    void subtract_origin();
     void leave_out_broken();
     void copy_vertices();
+
+    // Digits that floats do not hold, one number for each of `positions`, while all vertices together are far from 0: floats
+    // near 5e6, as UTM has them, lie half a unit apart. Nearly all files end that with their first vertices.
+    bool keeps_digits_ = true, has_digits_ = false;
+    std::vector<float> digits_;
+    double lo_[3] = {INFINITY, INFINITY, INFINITY}, hi_[3] = {-INFINITY, -INFINITY, -INFINITY};
 
     std::vector<bool> unusable_;  // may be shorter than the vertices
 };

@@ -88,9 +88,9 @@ class ObjReader {
 
  private:
     void vertex(std::string_view rest) {
-        float xyz[3];
+        double xyz[3];
         bool good = true;
-        for (float& x : xyz) good = parse_float(next_word(rest), x) && good;
+        for (double& x : xyz) good = parse_float(next_word(rest), x) && good;
         mesh_.add_vertex(good ? xyz[0] : NAN, xyz[1], xyz[2]);
         if (has_colors || rest.empty()) return;
         int more = 0;

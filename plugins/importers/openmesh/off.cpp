@@ -78,8 +78,8 @@ class OffReader {
         if (line.empty())
             throw std::runtime_error(where() + "found the end of the file after " + std::to_string(index) + " of " +
                                      std::to_string(count) + " vertices, expected x y z of the next one");
-        float xyz[3];
-        for (float& x : xyz) {
+        double xyz[3];
+        for (double& x : xyz) {
             const std::string_view word = next_word(line);
             if (word.empty()) throw std::runtime_error(where() + "a vertex has fewer than three coordinates; expected x y z");
             if (!parse_float(word, x)) x = NAN;

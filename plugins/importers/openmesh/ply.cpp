@@ -35,7 +35,7 @@ class AsciiValues {
 
     double number(const Property&) {
         const std::string_view text = word();
-        float value = NAN;
+        double value = NAN;
         if (!parse_float(text, value) && !is_odd_number(text))
             throw std::runtime_error(where() + quoted(text) + " instead of a number");
         return value;
@@ -199,6 +199,7 @@ class ElementReader {
         values_.skip(p, count);
     }
     void vertex(const Element& element) {
+        double at[3] = {0, 0, 0};
         float numbers[8] = {};  // from Role::x to Role::v
         bool has_normal = false, has_uv = false;
         for (const Property& p : element.properties) {
@@ -206,11 +207,13 @@ class ElementReader {
                 pass_over(p);
                 continue;
             }
-            numbers[int(p.role) - int(Role::x)] = static_cast<float>(values_.number(p));
+            const double number = values_.number(p);
+            if (p.role <= Role::z) at[int(p.role) - int(Role::x)] = number;
+            numbers[int(p.role) - int(Role::x)] = static_cast<float>(number);
             has_normal = has_normal || p.role == Role::nz;
             has_uv = has_uv || p.role == Role::v;
         }
-        mesh_.add_vertex(numbers[0], numbers[1], numbers[2]);
+        mesh_.add_vertex(at[0], at[1], at[2]);
         // A file with only some of nx, ny and nz has no normals.
         if (has_normal && element.has(Role::nx) && element.has(Role::ny))
             mesh_.normals.insert(mesh_.normals.end(), numbers + 3, numbers + 6);

@@ -18,13 +18,14 @@ uint32_t declared_count(std::string_view bytes) {
     return importers::load<uint32_t>(bytes.data() + 80, false);
 }
 
-// Gives equal corners one vertex: a hash table with open addressing.
+// Gives equal corners one vertex: a hash table with open addressing. Number: as the file has them.
+template <class Number>
 class Welder {
  public:
     explicit Welder(FlatMesh& mesh) : mesh_(mesh), slots_(1024, RT_NONE) {}
-    void corner(const float (&xyz)[3]) {
-        float key[3];
-        for (int k = 0; k < 3; ++k) key[k] = xyz[k] + 0.0f;  // -0 becomes 0
+    void corner(const Number (&xyz)[3]) {
+        Number key[3];
+        for (int k = 0; k < 3; ++k) key[k] = xyz[k] + Number(0);  // -0 becomes 0
         size_t at = hash(key);
         while (slots_[at] != RT_NONE && std::memcmp(&keys_[3 * size_t(slots_[at])], key, sizeof key) != 0)
             at = (at + 1) & (slots_.size() - 1);
@@ -39,8 +40,8 @@ class Welder {
     }
 
  private:
-    size_t hash(const float* key) const {
-        uint32_t bits[3];
+    size_t hash(const Number* key) const {
+        std::conditional_t<sizeof(Number) == 4, uint32_t, uint64_t> bits[3];
         std::memcpy(bits, key, sizeof bits);
         uint64_t h = bits[0] * 0x9E3779B97F4A7C15u;
         h = (h ^ bits[1]) * 0xC2B2AE3D27D4EB4Fu;
@@ -57,7 +58,7 @@ class Welder {
     }
     FlatMesh& mesh_;
     std::vector<rt_u32> slots_;  // vertices by their hash; a power of two of them
-    std::vector<float> keys_;    // the positions as in the file, also those that are not finite
+    std::vector<Number> keys_;   // the positions as in the file, also those that are not finite
 };
 
 // A binary file may start with "solid", too. So the file is ASCII only if it has the words that ASCII needs, and not the exact
@@ -86,7 +87,7 @@ void read_binary(const Source& source, FlatMesh& mesh) {
     }
     if (count == 0) throw std::runtime_error("byte 80: found 0 facets, expected one at least");
     mesh.corners.reserve(3 * size_t(count));
-    Welder welder(mesh);
+    Welder<float> welder(mesh);
     Steps steps(source);
     for (uint32_t facet = 0; facet < count; ++facet) {
         const char* at = source.bytes.data() + kHeaderBytes + kFacetBytes * size_t(facet) + kNormalBytes;
@@ -157,8 +158,8 @@ class AsciiReader {
         return false;
     }
     void vertex() {
-        float xyz[3];
-        for (float& x : xyz) {
+        double xyz[3];
+        for (double& x : xyz) {
             const std::string_view number = next_word(line_);
             if (parse_float(number, x)) continue;
             if (!is_odd_number(number))
@@ -183,7 +184,7 @@ class AsciiReader {
     FlatMesh& mesh_;
     Lines lines_;
     std::string_view line_;  // what is left of it
-    Welder welder_;
+    Welder<double> welder_;
     uint64_t corners_ = 0;  // of the facet so far
     bool is_open_ = false;
 };

@@ -62,9 +62,10 @@ inline bool is_word(std::string_view word, std::string_view lower) {
     return true;
 }
 
-// Parses the whole word as a finite float. Values too small for a float become 0. Returns false for nan, inf, 1e999 and other
-// words.
-inline bool parse_float(std::string_view word, float& value) {
+// Parses the whole word as a finite float, or as a double that is finite as a float. Values too small for a float become 0.
+// Returns false for nan, inf, 1e999 and other words.
+template <class Number>
+bool parse_float(std::string_view word, Number& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     double wide = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), wide);
@@ -75,8 +76,8 @@ inline bool parse_float(std::string_view word, float& value) {
     } else if (error != std::errc()) {
         return false;
     }
-    value = static_cast<float>(wide);
-    return std::isfinite(value);
+    value = static_cast<Number>(wide);
+    return std::isfinite(static_cast<float>(wide));
 }
 
 inline bool parse_integer(std::string_view word, long long& value) {
