@@ -249,6 +249,7 @@ rt_u32 SceneSink::mesh(const rt_mesh& d) {
     scene.meshes.back().name = clean_name(d.name);
     if (!are_usable(d.origin)) return fail("mesh '" + clean_name(d.name) + "': its origin is not a finite number");
     origins_.push_back({d.origin[0], d.origin[1], d.origin[2]});
+    content_.has_mesh_origins |= origins_.back() != Vec{};
     meshes_.push_back(static_cast<rt_u32>(scene.meshes.size() - 1));
     return static_cast<rt_u32>(meshes_.size() - 1);
 }
