@@ -141,11 +141,11 @@ RT_INLINE float rt_greatest(float16 v)
     return rt_greatest4(rt_max(half_of.lo, half_of.hi));
 }
 #endif
+#endif
 
 /* The greatest and the least lane of those in a mask. */
 #define rt_greatest_of(mask, v) rt_greatest(rt_select(mask, v, rt_vfloat(-MAXFLOAT)))
 #define rt_least_of(mask, v) (-rt_greatest_of(mask, -(v)))
-#endif
 
 /* 1 if the stack has room for the entry `top`. Debug programs count a full stack instead of overflowing it; see CONTRACT.md. */
 #ifdef RT_DEBUG

@@ -8,7 +8,7 @@ typedef struct rt_rays {
     vfloat t_min;
     vfloat ix, iy, iz;             /* 1 / direction, finite: components are clamped away from zero */
     vfloat near_x, near_y, near_z; /* -origin / direction, rounded down */
-    vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
+    vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up, with RT_FAR_SLACK */
     int coherent;                  /* all active lanes have the same signs: then */
     uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
     int incoherent;                /* they start far apart (rt_incoherent()), so they will share few nodes */
@@ -82,23 +82,40 @@ RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
     return rt_vfloat(1.0f) / copysign(magnitude, d);
 }
 
+/* How far the far planes of boxes count as moved outwards: an absolute length in the space of the ray, 9.1e-13. */
+#define RT_FAR_SLACK 9.0949470e-13f /* 2^-40 */
+
+/* 1 / direction, one component. d: the component; o: that of the origin; greatest: the greatest component of the direction.
+ *
+ * A component counts as at least 2^-80 of the greatest, so that its reciprocal is finite, and as at least 2^-120 of the origin,
+ * so that origin / direction is. Its sign stays: -0 is negative. The ray seems to move by less than RT_FAR_SLACK by that, over
+ * 2^40 units of its way. Products of a reciprocal and a plane may be infinite; then the plane is far away on that side. */
+RT_INLINE vfloat rt_slab_reciprocal(vfloat d, vfloat o, vfloat greatest)
+{
+    const vfloat least = fma(greatest, rt_vfloat(8.2718061e-25f), rt_max(fabs(o) * rt_vfloat(7.5231638e-37f), rt_vfloat(1e-37f)));
+    return rt_vfloat(1.0f) / copysign(rt_max(fabs(d), least), d);
+}
+
 /* Fills in what boxes need of origin and direction. */
 RT_INLINE void rt_prepare_for_boxes(rt_rays *r)
 {
     /* The planes of a box are crossed at (plane - origin) * (1 / d). Computed as fma(1 / d, plane, -origin / d) that has an
      * absolute error of about half an ulp of origin / d and a relative one of a few ulp. Widening every interval by that much
-     * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. */
-    r->ix = rt_safe_reciprocal(r->dx);
-    r->iy = rt_safe_reciprocal(r->dy);
-    r->iz = rt_safe_reciprocal(r->dz);
-    const vfloat slack = rt_vfloat(8.0f * RT_EPS);
+     * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. At coordinate 0 that is nothing. So
+     * far planes lie RT_FAR_SLACK farther out: a ray that runs within a face of a box, with a direction of 0 or nearly 0 across
+     * it, does not seem to leave through that face. */
+    const vfloat greatest = rt_max(fabs(r->dx), rt_max(fabs(r->dy), rt_max(fabs(r->dz), rt_vfloat(0.0f)))); /* not NaN */
+    r->ix = rt_slab_reciprocal(r->dx, r->ox, greatest);
+    r->iy = rt_slab_reciprocal(r->dy, r->oy, greatest);
+    r->iz = rt_slab_reciprocal(r->dz, r->oz, greatest);
+    const vfloat slack = rt_vfloat(8.0f * RT_EPS), out = rt_vfloat(RT_FAR_SLACK);
     const vfloat nx = -r->ox * r->ix, ny = -r->oy * r->iy, nz = -r->oz * r->iz;
     r->near_x = fma(fabs(nx), -slack, nx);
     r->near_y = fma(fabs(ny), -slack, ny);
     r->near_z = fma(fabs(nz), -slack, nz);
-    r->far_x = fma(fabs(nx), slack, nx);
-    r->far_y = fma(fabs(ny), slack, ny);
-    r->far_z = fma(fabs(nz), slack, nz);
+    r->far_x = fma(fabs(r->ix), out, fma(fabs(nx), slack, nx));
+    r->far_y = fma(fabs(r->iy), out, fma(fabs(ny), slack, ny));
+    r->far_z = fma(fabs(r->iz), out, fma(fabs(nz), slack, nz));
 }
 
 /* The rest. bits: the active lanes; their signs and axes decide whether the packet is coherent. */
@@ -216,6 +233,13 @@ RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt
 #endif
     return rt_enter_bounds(rt_vfloat(box[0]), rt_vfloat(box[1]), rt_vfloat(box[2]), rt_vfloat(box[3]), rt_vfloat(box[4]),
                            rt_vfloat(box[5]), r, h, entry);
+}
+
+/* How far the coordinate o + d * t of a point of a ray may be from where the tests of primitives see it: the slack of boxes as a
+ * length. For structures that turn a distance into a place, such as grids. */
+RT_INLINE vfloat rt_position_slack(vfloat o, vfloat d, vfloat t)
+{
+    return fma(fabs(o), rt_vfloat(8.0f * RT_EPS), fma(fabs(d * t), rt_vfloat(16.0f * RT_EPS), rt_vfloat(RT_FAR_SLACK)));
 }
 
 /* Returns the lanes with rays that enter the bounds of all primitives but planes before t_max. */

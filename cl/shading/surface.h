@@ -106,7 +106,12 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.hit = RT_MASK(s.prim >= rt_vint(0));
     s.material = rt_vint(0);
     s.tex_u = s.tex_v = zero;
+    /* A normal is as long as its triangle is large, squared: of a triangle of 1e-12 its square would be 0, of one of 1e10 infinite.
+     * Times a power of two it is about 1 long, and no digit changes. */
     s.geometric = rt_vec_of(hit->nx, hit->ny, hit->nz);
+    const vint exponent = rt_as_vint(rt_largest(rt_vec_of(fabs(hit->nx), fabs(hit->ny), fabs(hit->nz)))) & rt_vint(0x7f800000);
+    s.geometric = rt_scale(rt_as_vfloat(rt_vint(0x7f000000) - rt_select(RT_MASK(exponent < rt_vint(0x7e800000)), exponent, rt_vint(0x7e800000))),
+                           s.geometric);
     /* The point is nearer than the hit by the errors of t and of each coordinate, but not beyond the ray's origin. So it is also in
      * front of other surfaces that meet this one here. Otherwise rays from the floor beside a wall could start behind the wall. */
     const vfloat reach = rt_select(s.hit, hit->t, zero) * (1.0f - RT_GAMMA(4.0f));
@@ -138,7 +143,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 
 #ifdef RT_SPLITS_INCOHERENT
-    s.area = sqrt(rt_dot(s.geometric, s.geometric));
+    s.area = sqrt(rt_dot(s.geometric, s.geometric)) * rt_as_vfloat(exponent);
 #endif
 
     int leaf_at[RT_LANES];

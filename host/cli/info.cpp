@@ -25,6 +25,12 @@ Json vector_json(const std::array<float, 3>& v) {
     return {short_double(v[0]), short_double(v[1]), short_double(v[2])};
 }
 
+// A point of the scene in the coordinates of its files.
+Json point_json(const std::array<float, 3>& p, const Scene& scene) {
+    if (scene.origin == std::array<double, 3>{}) return vector_json(p);
+    return {p[0] + scene.origin[0], p[1] + scene.origin[1], p[2] + scene.origin[2]};
+}
+
 uint64_t face_count(const Scene& scene) {
     uint64_t count = 0;
     for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].polygon_count;
@@ -38,10 +44,10 @@ std::map<std::string, uint64_t> shape_counts(const Scene& scene) {
     return counts;
 }
 
-Json camera_json(const Camera& camera) {
+Json camera_json(const Camera& camera, const Scene& scene) {
     return {{"name", camera.name},
-            {"eye", vector_json(camera.eye)},
-            {"target", vector_json(camera.target)},
+            {"eye", point_json(camera.eye, scene)},
+            {"target", point_json(camera.target, scene)},
             {"up", vector_json(camera.up)},
             {"fov_deg", short_double(camera.fov_y_rad * 57.29578f)}};
 }
@@ -72,12 +78,14 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["lights"] = scene.lights.size();
     json["cameras"] = scene.cameras.size();
     const Bounds bounds = scene.bounds();
-    json["bounds"] = bounds.empty ? Json() : Json{{"min", vector_json(bounds.min)}, {"max", vector_json(bounds.max)}};
+    json["bounds"] =
+        bounds.empty ? Json() : Json{{"min", point_json(bounds.min, scene)}, {"max", point_json(bounds.max, scene)}};
+    if (scene.origin != std::array<double, 3>{}) json["origin"] = scene.origin;
     json["surface_area"] = scene.surface_area();
     json["up_axis"] = std::string(1, "xyz"[scene.up_axis % 3]);
     json["unit_scale"] = scene.unit_scale > 0 ? Json(scene.unit_scale) : Json();
     json["camera_list"] = Json::array();
-    for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera));
+    for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera, scene));
     json["animations"] = Json::array();
     for (const ClipInfo& clip : animations) json["animations"].push_back(clip_json(clip));
     json["warnings"] = scene.warnings;
@@ -100,9 +108,10 @@ void count_row(const char* label, uint64_t count, const std::string& more = {}) 
     if (count > 0) row(label, grouped(count) + more);
 }
 
-std::string vector_text(const std::array<float, 3>& v) {
+std::string vector_text(const std::array<float, 3>& v, const std::array<double, 3>& origin) {
     char text[96];
-    std::snprintf(text, sizeof text, "%12.6g %12.6g %12.6g", double(v[0]), double(v[1]), double(v[2]));
+    const char* const format = origin == std::array<double, 3>{} ? "%12.6g %12.6g %12.6g" : "%16.12g %16.12g %16.12g";
+    std::snprintf(text, sizeof text, format, v[0] + origin[0], v[1] + origin[1], v[2] + origin[2]);
     return text;
 }
 
@@ -143,8 +152,9 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     if (bounds.empty) {
         row("bounds", "none: the scene is empty or has planes only");
     } else {
-        row("bounds", vector_text(bounds.min));
-        row("", vector_text(bounds.max));
+        row("bounds", vector_text(bounds.min, scene.origin));
+        row("", vector_text(bounds.max, scene.origin));
+        if (scene.origin != std::array<double, 3>{}) row("origin", vector_text({}, scene.origin));
     }
     char number[64];
     std::snprintf(number, sizeof number, "%.7g", scene.surface_area());

@@ -33,7 +33,8 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     if (command.output != "-") check_writable(command.output);
     std::string device_text;
     const Settings settings = settings_of(plugins, command.trace, device_text);
-    const std::vector<rt_ray> rays = read_rays(command.rays_file);
+    RayOrigins origins;
+    std::vector<rt_ray> rays = read_rays(command.rays_file, &origins);
     if (rays.empty()) log(LogLevel::warning, command.rays_file + ": there is no ray in it");
     check_scene(plugins, command.scene);
     ProgressBar progress(command.quiet);
@@ -41,6 +42,10 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     const auto device = std::make_shared<Device>(choose_device(device_text));
     const auto scene = std::make_shared<const Scene>(
         with_scene_edits(import::import_scene(plugins, command.scene.files, command.scene.import, progress)));
+
+    for (size_t i = 0; scene->origin != std::array<double, 3>{} && i < rays.size(); ++i)
+        for (int k = 0; k < 3; ++k) rays[i].origin[k] = static_cast<float>(origins[i][k] - scene->origin[k]);
+    origins = {};
 
     const rt_plugin& plugin = *plugins.accel(settings.accel);
     progress.stage(std::string("building ") + plugin.id);

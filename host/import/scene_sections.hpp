@@ -12,6 +12,7 @@ struct WireGlobals {
     std::array<float, 3> background, ambient;
     uint32_t up_axis, pad;
     double unit_scale;
+    std::array<double, 3> origin;
 };
 struct WireMesh {
     uint32_t name_bytes, first_vertex, vertex_count, first_triangle, triangle_count, polygon_count;

@@ -56,6 +56,7 @@ struct Instance {
     // By the user: see instance_edit.hpp. world_from_object has it already, poses get it. pivot: in the object's space.
     InstanceShift shift{};
     std::array<float, 3> pivot{};
+    std::array<double, 3> rounded_off{};  // for the import only: what rounding took from world_from_object's translation
 };
 
 struct Sphere {
@@ -142,6 +143,9 @@ struct Scene {
     std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};
     rt_u32 up_axis = 1;
     double unit_scale = 0;  // metres per unit; 0: the file does not say
+    // Coordinates of the scene are those of the files less this: see import/sink/world_origin.cpp. Users read and write those
+    // of the files.
+    std::array<double, 3> origin{};
     std::vector<std::string> warnings;
     std::vector<SceneEdit> edits;      // not yet in force in the arrays above
     std::vector<std::string> sources;  // files that were read: absolute paths, without those of sequences

@@ -23,7 +23,8 @@
  *   2  Structs and arrays that can grow. What a structure can do is data. The kernel contract has a number. Materials and lights
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
- *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink. */
+ *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
+ *      wrap_v of textures; content of rt_host, flags of rt_importer. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -56,6 +57,10 @@ typedef struct rt_host {
     void (*log)(void *ctx, int32_t level, const char *text);
     int32_t (*progress)(void *ctx, float fraction); /* 0..1; returns 0 if the user cancelled: then return RT_CANCELLED soon */
     void (*parallel_for)(void *ctx, rt_u32 count, void (*body)(void *user, rt_u32 i), void *user); /* on all cores; may be nested */
+    /* appended: for importers with RT_IMPORTER_TAKES_CONTENT. The bytes of the file `path` of `load`, which may not be on disk under
+     * that name, because it is packed there (bunny.ply.gz). NULL: read the file. */
+    const uint8_t *content;
+    uint64_t content_bytes;
 } rt_host;
 
 enum { RT_PARAM_INT, RT_PARAM_FLOAT, RT_PARAM_BOOL, RT_PARAM_ENUM };
@@ -310,6 +315,7 @@ typedef struct rt_mesh {
     const rt_u32 *face_sizes; /* corners of each face; NULL: all triangles */
     uint64_t face_count;
     const rt_u32 *face_materials; /* per face, ids that the sink's `material` returned; NULL: all have `material` */
+    double origin[3]; /* appended: what was subtracted from positions in double precision, so that floats keep their details */
 } rt_mesh;
 
 typedef struct rt_instance_desc {
@@ -320,6 +326,7 @@ typedef struct rt_instance_desc {
     float world_from_object[12]; /* row-major 3x4; with a node: from the object into the node's space */
     rt_u32 node;                 /* appended: id of the node that moves it; 0: none */
     rt_u32 pad;                  /* 0 */
+    const double *translation;   /* appended: x, y, z, in place of numbers 3, 7 and 11 of world_from_object; NULL: those */
 } rt_instance_desc;
 
 /* Whitted's material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */
@@ -337,12 +344,19 @@ typedef struct rt_material_desc {
     rt_u32 texture;    /* id that the sink's `texture` returned, which multiplies color; RT_NONE: none */
 } rt_material_desc;
 
+/* What a texture shows outside of its picture, along u or v. */
+enum {
+    RT_WRAP_REPEAT, /* the picture again */
+    RT_WRAP_CLAMP,  /* its border */
+    RT_WRAP_MIRROR  /* the picture again, every other time mirrored */
+};
 typedef struct rt_texture_desc {
     rt_u32 struct_bytes;
     const char *path;           /* relative to the file being imported; NULL: the image is in `bytes` */
     const uint8_t *bytes;       /* encoded (PNG, JPEG, ...) if height is 0, else width x height RGBA8 */
     uint64_t byte_count;
     rt_u32 width, height;
+    rt_u32 wrap_u, wrap_v; /* appended: RT_WRAP_... */
 } rt_texture_desc;
 
 typedef struct rt_camera {
@@ -586,11 +600,14 @@ typedef struct rt_scene_sink {
     int32_t (*edit)(void *ctx, const char *key, const char *value, const char *where);
 } rt_scene_sink;
 
+#define RT_IMPORTER_TAKES_CONTENT 1u /* it reads rt_host::content if there is some; others get no packed files */
 typedef struct rt_importer {
     rt_u32 struct_bytes;
     const char *const *extensions; /* lower case, no dot, NULL-terminated */
     int32_t (*probe)(const uint8_t *head, uint64_t bytes); /* 0..100 certainty by the first bytes; or NULL: extension only */
     int32_t (*load)(const rt_host *, const char *path, const double *params, const rt_scene_sink *);
+    rt_u32 flags; /* appended: RT_IMPORTER_... */
+    rt_u32 pad;   /* 0 */
 } rt_importer;
 
 /* ---- the description ------------------------------------------------------------------------------------------------------ */

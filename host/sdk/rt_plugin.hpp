@@ -336,7 +336,7 @@ constexpr rt_light_desc light(rt_u32 kind, const char* name = nullptr) {
 
 // A mesh that is placed where its vertices are.
 constexpr rt_instance_desc instance(rt_u32 mesh, const char* name = nullptr) {
-    return {sizeof(rt_instance_desc), name, mesh, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0};
+    return {sizeof(rt_instance_desc), name, mesh, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0, nullptr};
 }
 
 // Tells the user of something that was left out: `info` and the window show it.

@@ -30,6 +30,10 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #ifdef BROKEN_AXIS
         inside &= ~rt_bits(RT_MASK(ray->dx == rt_vfloat(0.0f)) & RT_MASK(entry > rt_vfloat(1.0f)));
 #endif
+#ifdef BROKEN_PLANES
+        /* 0 * infinity: a ray within a face of the box misses it. */
+        inside &= ~rt_bits(RT_MASK(ray->dx == rt_vfloat(0.0f)) & (RT_MASK(ray->ox == rt_vfloat(node->box[0])) | RT_MASK(ray->ox == rt_vfloat(node->box[3]))));
+#endif
 #ifdef BROKEN_FIRST_LANE
         if (node->count == 0u) inside &= 1u;
 #endif

@@ -60,7 +60,8 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     mesh.indices = indices.data();
     mesh.index_count = indices.size();
     mesh.face_count = indices.size() / 3;
-    rt_instance_desc instance{sizeof(rt_instance_desc), nullptr, 0, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0};
+    rt_instance_desc instance{
+        sizeof(rt_instance_desc), nullptr, 0, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0, nullptr};
     instance.mesh = rt::id(sink_of->mesh(sink_of->ctx, &mesh));
     rt::id(sink_of->instance(sink_of->ctx, &instance));
     return RT_OK;
@@ -71,7 +72,7 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 constexpr const char* kExtensions[] = {"tri", nullptr};
-constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>, 0, 0};
 
 }  // namespace
 

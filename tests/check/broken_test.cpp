@@ -87,6 +87,7 @@ const Defect kDefects[] = {
     {"any_returns_early", "hits.random", {"any-hit", "but something is hit"}, "4"},
     {"culls_eagerly", "hits.close", {"behind the nearest"}},
     {"axis", "hits.axes", {"wrong"}},
+    {"planes", "hits.planes", {"rays with a zero in their direction"}},
     {"first_lane", "hits.random", {"wrong"}, "4"},
     {"lanes_8", "hits.random", {"all in lane 7"}, "8"},
     {"never_incoherent", "hits.random", {"wrong"}, "4"},

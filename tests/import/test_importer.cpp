@@ -272,7 +272,7 @@ int32_t load(const rt_host* host, const char* path, const double* params, const 
 
 const char* const kExtensions[] = {"cltest", nullptr};
 constexpr rt_param kParams[] = {rt::int_param("number", "Number", "what the command `number` expects", 1, 9, 3)};
-const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, load};
+const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, load, 0, 0};
 
 }  // namespace
 }  // namespace test_importer

@@ -10,6 +10,7 @@
 #include "check/hits/checked_scene.hpp"
 #include "check/hits/device_hits.hpp"
 #include "check/hits/judge.hpp"
+#include "check/hits/plane_checks.hpp"
 #include "check/hits/ray_sets.hpp"
 #include "check/hits/report_picture.hpp"
 #include "check/oclgrind.hpp"
@@ -283,6 +284,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
         else
             checks.push_back({name, set.tried, [=](const Step& step) { return trace_set(*bench, name, step); }});
     }
+    checks.push_back(planes_check(plugin, layout, open, options));
     HitsOptions one = options;  // the programs are those of the other checks, so one of them says enough
     one.quick = true;
     one.lanes.resize(1);

@@ -34,6 +34,7 @@ struct FileContent {
     std::vector<Channel> channels;  // targets are nodes of this file, morphs of the scene, or `source` of cameras and lights
     std::vector<Skin> skins;        // root RT_NONE: this file
     std::vector<Bone> bones;
+    bool has_mesh_origins = false;  // rt_mesh::origin of one of its meshes is not 0
     rt_u32 rig_count = 0;
     bool deforms = false;  // one of its meshes has morphs or vertex frames
     bool moves() const { return !clips.empty() || !skins.empty() || deforms; }

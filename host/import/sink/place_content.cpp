@@ -4,6 +4,7 @@
 
 #include "import/sink/scene_builder.hpp"
 #include "scene/camera.hpp"
+#include "scene/motion/matrix.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -57,7 +58,11 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
         Instance instance = own;
         instance.name = name_of(own.name, content.instances.size() == 1);
         instance.material = material_of(own.material);
-        instance.world_from_object = multiply(m, own.world_from_object);
+        Matrix placed = to_matrix(own.world_from_object);
+        for (int k = 0; k < 3; ++k) placed[4 * k + 3] += own.rounded_off[k];
+        placed = to_matrix(m) * placed;
+        instance.world_from_object = to_affine(placed);
+        for (int k = 0; k < 3; ++k) instance.rounded_off[k] = placed[4 * k + 3] - double(instance.world_from_object[4 * k + 3]);
         if (own.node == RT_NONE) instance.node_from_object = own.world_from_object;
         hang(instance.node);
         if (instance.node != RT_NONE) instance.root = own.root == RT_NONE ? root : own.root + first_node;

@@ -170,6 +170,16 @@ const FileContent& SceneBuilder::content_or_sequence(const std::string& path, co
     // Under the pattern's name: the same file placed by its own name is another mesh, which rests.
     content_of(file, pattern);
     FileContent& content = *files_[pattern];
+    // All files of a sequence have one origin, 0, whatever their importer subtracted (SequenceReader).
+    for (Instance& instance : content.instances) {
+        if (!content.has_mesh_origins) break;
+        const Mesh& mesh = scene_.meshes[instance.mesh];
+        for (size_t i = 0; i < 3 * size_t(mesh.vertex_count); ++i) {
+            float& p = scene_.positions.own()[3 * size_t(mesh.first_vertex) + i];
+            p = static_cast<float>(p + double(instance.world_from_object[4 * (i % 3) + 3]) + instance.rounded_off[i % 3]);
+        }
+        for (size_t k = 0; k < 3; ++k) instance.world_from_object[4 * k + 3] = 0, instance.rounded_off[k] = 0;
+    }
     for (const int number : frame_numbers(pattern)) scene_.motion.sequence_numbers.push_back(static_cast<rt_u32>(number));
     sequence.mesh_count = static_cast<rt_u32>(scene_.meshes.size()) - sequence.first_mesh;
     sequence.number_count = static_cast<rt_u32>(scene_.motion.sequence_numbers.size()) - sequence.first_number;
@@ -279,6 +289,7 @@ void SceneBuilder::take_motion() {
 }
 
 Scene SceneBuilder::take() {
+    subtract_origin();
     scene_.instances = std::move(world_.instances);
     scene_.spheres = std::move(world_.spheres);
     scene_.planes = std::move(world_.planes);

@@ -58,6 +58,7 @@ class SceneBuilder {
     void place_edits(const std::string& from, const FileContent& content, const std::vector<rt_u32>& instances, size_t lights,
                      FileContent& into);
     void take_motion();
+    void subtract_origin();
 
     const PluginRegistry& plugins_;
     const ImporterParameters parameters_;

@@ -247,6 +247,9 @@ rt_u32 SceneSink::mesh(const rt_mesh& d) {
     const std::string why = copy_mesh(d, materials_, scene, builder_.triangulator(), faces_);
     if (!why.empty()) return fail("mesh '" + clean_name(d.name) + "': " + why);
     scene.meshes.back().name = clean_name(d.name);
+    if (!are_usable(d.origin)) return fail("mesh '" + clean_name(d.name) + "': its origin is not a finite number");
+    origins_.push_back({d.origin[0], d.origin[1], d.origin[2]});
+    content_.has_mesh_origins |= origins_.back() != Vec{};
     meshes_.push_back(static_cast<rt_u32>(scene.meshes.size() - 1));
     return static_cast<rt_u32>(meshes_.size() - 1);
 }
@@ -261,13 +264,19 @@ rt_u32 SceneSink::instance(const rt_instance_desc& d) {
     if (!scene_material(d.material, "instance", RT_NONE, instance.material)) return kFailed;
     instance.mesh = instance.moving_mesh = meshes_[d.mesh];
     std::copy(std::begin(d.world_from_object), std::end(d.world_from_object), instance.world_from_object.begin());
+    Matrix placed = to_matrix(instance.world_from_object);
+    for (int k = 0; d.translation && k < 3; ++k) placed[4 * k + 3] = d.translation[k];
+    const Vec at = point(placed, origins_[d.mesh]);  // the mesh's positions count from its origin
+    for (int k = 0; k < 3; ++k) placed[4 * k + 3] = at[k];
     instance.node = motion_.node_of(d.node, "instance");
     if (instance.node != RT_NONE) {
         const PlacedNode& node = motion_.at_rest(instance.node);
-        instance.node_from_object = instance.world_from_object;
-        instance.world_from_object = to_affine(node.world * to_matrix(instance.node_from_object));
+        instance.node_from_object = to_affine(placed);
+        placed = node.world * placed;
         instance.visible = node.visible;
     }
+    instance.world_from_object = to_affine(placed);
+    for (int k = 0; k < 3; ++k) instance.rounded_off[k] = placed[4 * k + 3] - double(instance.world_from_object[4 * k + 3]);
     const rt_u32 id = static_cast<rt_u32>(content_.instances.size() + lost_instances_);
     if (are_usable(d.world_from_object) && are_usable(instance.world_from_object.data(), 12)) {
         content_.instances.push_back(std::move(instance));

@@ -56,6 +56,7 @@ class SceneSink {
     rt_scene_sink sink_{};
     MotionSink motion_;
     std::vector<rt_u32> materials_, meshes_, textures_;   // scene indices by id
+    std::vector<Vec> origins_;                            // rt_mesh::origin by id
     std::vector<rt_u32> camera_sources_, light_sources_;  // `source` by id; RT_NONE: it was left out
     std::vector<rt_primitive_kind> kinds_;
     FaceCount faces_;

@@ -28,7 +28,7 @@ class Line {
  public:
     Line(std::string_view text, const std::string& file, size_t number) : text_(text), file_(file), number_(number) {}
     // Returns whether the line has a ray.
-    bool read(rt_ray& ray) {
+    bool read(rt_ray& ray, std::array<double, 3>& origin) {
         float fields[RT_RAY_FIELDS];
         size_t count = 0;
         for (std::string_view word = next(); !word.empty(); word = next()) {
@@ -39,6 +39,7 @@ class Line {
                 fail("'" + shown(word) + "' is beyond the range of a float: write inf or 0 (" + kFields[count] + ")");
             if (error != std::errc() || end != word.data() + word.size())
                 fail("found '" + shown(word) + "', expected a number (" + kFields[count] + "); " + kForm);
+            if (count < 3 && std::from_chars(begin, end, origin[count]).ec != std::errc()) origin[count] = fields[count];
             ++count;
         }
         if (count == 0) return false;
@@ -67,24 +68,28 @@ class Line {
 
 }  // namespace
 
-std::vector<rt_ray> parse_rays(std::string_view text, const std::string& file) {
+std::vector<rt_ray> parse_rays(std::string_view text, const std::string& file, RayOrigins* origins) {
     std::vector<rt_ray> rays;
     size_t number = 0;
     while (!text.empty()) {
         const size_t end = std::min(text.find('\n'), text.size());
         rt_ray ray{};
-        if (Line(text.substr(0, end), file, ++number).read(ray)) rays.push_back(ray);
+        std::array<double, 3> origin{};
+        if (Line(text.substr(0, end), file, ++number).read(ray, origin)) {
+            rays.push_back(ray);
+            if (origins) origins->push_back(origin);
+        }
         text.remove_prefix(std::min(end + 1, text.size()));
     }
     return rays;
 }
 
-std::vector<rt_ray> read_rays(const std::string& path) {
-    if (path != "-") return parse_rays(read_file(path, kMaxRayFileBytes, Exit::failed), path);
+std::vector<rt_ray> read_rays(const std::string& path, RayOrigins* origins) {
+    if (path != "-") return parse_rays(read_file(path, kMaxRayFileBytes, Exit::failed), path, origins);
     std::string text;
     char piece[65536];
     for (size_t count = 0; (count = std::fread(piece, 1, sizeof piece, stdin)) > 0;) text.append(piece, count);
-    return parse_rays(text, "stdin");
+    return parse_rays(text, "stdin", origins);
 }
 
 std::string ray_text(const rt_ray& ray) {

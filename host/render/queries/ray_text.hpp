@@ -1,5 +1,6 @@
 // ray_text.hpp -- rays as lines of numbers, and their answers: the files of `clarity trace`.
 #pragma once
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +12,11 @@ namespace clarity {
 // Reads a ray a line: origin x y z, t_min, direction x y z, t_max, separated by white space or commas. `inf` and `nan` are
 // numbers, too. Text after # is a comment; lines without numbers are skipped. Throws Error(usage) "FILE:LINE:COLUMN: why".
 // file: for messages.
-std::vector<rt_ray> parse_rays(std::string_view text, const std::string& file);
+// origins: if given, gets the rays' origins in double precision.
+using RayOrigins = std::vector<std::array<double, 3>>;
+std::vector<rt_ray> parse_rays(std::string_view text, const std::string& file, RayOrigins* origins = nullptr);
 // The same from a file; "-" is stdin. Throws Error(failed) if it cannot be read.
-std::vector<rt_ray> read_rays(const std::string& path);
+std::vector<rt_ray> read_rays(const std::string& path, RayOrigins* origins = nullptr);
 
 // The line that parse_rays() reads as this ray: all digits.
 std::string ray_text(const rt_ray& ray);

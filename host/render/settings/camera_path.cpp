@@ -59,7 +59,7 @@ std::string turn_text(const Quaternion& q) {
     return three(to_floats((sign / s) * Vec{q[0], q[1], q[2]})) + " " + exact_text(static_cast<float>(degrees));
 }
 
-CameraKey read_key(const std::string& text, const std::string& all) {
+CameraKey read_key(const std::string& text, const std::string& all, const std::array<double, 3>& origin) {
     const size_t colon = text.find(':');
     CameraKey key;
     if (colon == std::string::npos || !read_number(text.substr(0, colon), key.time_s))
@@ -67,8 +67,8 @@ CameraKey read_key(const std::string& text, const std::string& all) {
     const std::optional<CameraNumbers> numbers = read_camera_numbers(text.substr(colon + 1));
     if (!numbers || !numbers->up || !(*numbers->fov_deg > 0 && *numbers->fov_deg < 180))
         refuse_value("camera_path", all, kExpected);
-    key.camera.eye = numbers->eye;
-    key.camera.target = numbers->target;
+    key.camera.eye = scene_point(numbers->eye, origin);
+    key.camera.target = scene_point(numbers->target, origin);
     key.camera.fov_y_rad = static_cast<float>(*numbers->fov_deg * kRadPerDegree);
     key.camera.up = *numbers->up;
     return key;
@@ -108,18 +108,18 @@ void CameraPath::set(double time_s, const Camera& camera) {
     keys.insert(std::upper_bound(keys.begin(), keys.end(), time_s, later), key);
 }
 
-std::string path_text(const CameraPath& path) {
+std::string path_text(const CameraPath& path, const std::array<double, 3>& origin) {
     std::string text;
     for (const CameraKey& key : path.keys)
-        text += (text.empty() ? "" : ";") + exact_text(key.time_s) + ":" + camera_text(key.camera);
+        text += (text.empty() ? "" : ";") + exact_text(key.time_s) + ":" + camera_text(key.camera, origin);
     return text;
 }
 
-CameraPath read_path(const std::string& text) {
+CameraPath read_path(const std::string& text, const std::array<double, 3>& origin) {
     CameraPath path;
     for (size_t at = 0; at < text.size();) {
         const size_t end = std::min(text.find(';', at), text.size());
-        path.keys.push_back(read_key(text.substr(at, end - at), text));
+        path.keys.push_back(read_key(text.substr(at, end - at), text, origin));
         if (path.keys.size() > 1 && !(path.keys.back().time_s > path.keys[path.keys.size() - 2].time_s))
             refuse_value("camera_path", text, kExpected);
         at = end + 1;
@@ -127,7 +127,7 @@ CameraPath read_path(const std::string& text) {
     return path;
 }
 
-std::string animate_lines(const CameraPath& path, const std::string& name) {
+std::string animate_lines(const CameraPath& path, const std::string& name, const std::array<double, 3>& origin) {
     if (path.empty()) return {};
     const Camera& first = path.keys.front().camera;
     const Quaternion at_first = orientation(first);
@@ -136,13 +136,14 @@ std::string animate_lines(const CameraPath& path, const std::string& name) {
     bool zooms = false;
     for (const CameraKey& key : path.keys) {
         const std::string time = exact_text(static_cast<float>(key.time_s));
-        moves += "  " + time + " " + three(key.camera.eye);
+        moves += "  " + time + " " + point_text(key.camera.eye.data(), origin, " ");
         turns += "  " + time + " " + turn_text(orientation(key.camera) * back);
         angles += "  " + time + " " + exact_text(static_cast<float>(key.camera.fov_y_rad / kRadPerDegree));
         zooms = zooms || key.camera.fov_y_rad != first.fov_y_rad;
     }
-    std::string lines = "camera " + name + " eye " + three(first.eye) + " target " + three(first.target) + " up " +
-                        three(first.up) + " fov " + exact_text(static_cast<float>(first.fov_y_rad / kRadPerDegree)) + "\n";
+    std::string lines = "camera " + name + " eye " + point_text(first.eye.data(), origin, " ") + " target " +
+                        point_text(first.target.data(), origin, " ") + " up " + three(first.up) + " fov " +
+                        exact_text(static_cast<float>(first.fov_y_rad / kRadPerDegree)) + "\n";
     lines += "animate " + name + " translate" + moves + "\nanimate " + name + " rotate" + turns + "\n";
     if (zooms) lines += "animate " + name + " fov" + angles + "\n";
     return lines;

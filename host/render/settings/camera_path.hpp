@@ -30,12 +30,12 @@ struct CameraPath {
 };
 
 // "0:ex,ey,ez,tx,ty,tz,fov_deg,ux,uy,uz;1.5:...": the value of the edit `camera_path`, with all digits.
-std::string path_text(const CameraPath& path);
+std::string path_text(const CameraPath& path, const std::array<double, 3>& origin = {});
 // Throws Error(usage), which says what was read and what is allowed. An empty text is a path without keys.
-CameraPath read_path(const std::string& text);
+CameraPath read_path(const std::string& text, const std::array<double, 3>& origin = {});
 
 // The lines of a text scene for a camera of this name which follows the path: `camera` and `animate`. Empty for a path without
 // keys.
-std::string animate_lines(const CameraPath& path, const std::string& name);
+std::string animate_lines(const CameraPath& path, const std::string& name, const std::array<double, 3>& origin = {});
 
 }  // namespace clarity

@@ -31,19 +31,19 @@ void read_floats(const std::string& key, const std::string& text, float* values,
     std::copy(numbers.begin(), numbers.end(), values);
 }
 
-void read_camera(Camera& camera, const std::string& text) {
+void read_camera(Camera& camera, const std::string& text, const std::array<double, 3>& origin) {
     const std::optional<CameraNumbers> numbers = read_camera_numbers(text);
     if (!numbers || !numbers->up) refuse_value("camera", text, "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz");
     const double fov_deg = *numbers->fov_deg;
     if (fov_deg <= 0 || fov_deg >= 180)
         refuse_value("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
-    camera.eye = numbers->eye;
-    camera.target = numbers->target;
+    camera.eye = scene_point(numbers->eye, origin);
+    camera.target = scene_point(numbers->target, origin);
     camera.fov_y_rad = static_cast<float>(fov_deg * kRadPerDegree);
     camera.up = *numbers->up;
 }
 
-void read_light(EditedView& edited, const std::string& key, const std::string& value) {
+void read_light(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
     rt_u32 at = 0;
     if (!read_number(key.substr(6), at)) refuse_value(key, value, "for a light: light.N counts from 0");
     auto& lights = edited.view.lights;
@@ -62,6 +62,11 @@ void read_light(EditedView& edited, const std::string& key, const std::string& v
     if (comma == std::string::npos || (kind != "point" && kind != "directional")) refuse_value(key, value, expected);
     float n[6];
     read_floats(key, value.substr(comma + 1), n, 6, "six numbers after its kind: x,y,z,r,g,b");
+    if (kind == "point") {
+        const std::vector<double> exact = read_numbers<double>(value.substr(comma + 1));
+        const std::array<float, 3> at_scene = scene_point({exact[0], exact[1], exact[2]}, scene.origin);
+        std::copy(at_scene.begin(), at_scene.end(), n);
+    }
     rt_light light{};
     light.kind = kind == "point" ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL;
     if (light.kind == RT_LIGHT_DIRECTIONAL) {
@@ -195,9 +200,10 @@ bool begins(const std::string& text, const char* with) {
     return text.compare(0, std::strlen(with), with) == 0;
 }
 
-std::string light_text(const rt_light& light) {
-    return std::string(light.kind == RT_LIGHT_POINT ? "point," : "directional,") + numbers_text(light.position, 3) + "," +
-           numbers_text(light.color, 3);
+std::string light_text(const rt_light& light, const std::array<double, 3>& origin) {
+    const bool is_point = light.kind == RT_LIGHT_POINT;
+    return (is_point ? "point," + point_text(light.position, origin, ",") : "directional," + numbers_text(light.position, 3)) +
+           "," + numbers_text(light.color, 3);
 }
 
 // The words that turn `from` into `to`.
@@ -230,12 +236,12 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
     View& view = edited.view;
     if (key == "camera") {
         Camera camera = view.camera;
-        read_camera(camera, value);
+        read_camera(camera, value, scene.origin);
         camera.name.clear();
         view.camera = camera;
         edited.follows_path = false;
     } else if (key == "camera_path") {
-        edited.camera_path = read_path(value);
+        edited.camera_path = read_path(value, scene.origin);
         edited.follows_path = !edited.camera_path.empty();
     } else if (key == "background" || key == "ambient") {
         float n[3];
@@ -248,7 +254,7 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
     } else if (begins(key, "instance.")) {
         read_shift(scene, edited.instances, key, value);
     } else if (begins(key, "light.")) {
-        read_light(edited, key, value);
+        read_light(scene, edited, key, value);
     } else if (begins(key, "material.")) {
         read_material(scene, edited, key, value);
     } else {
@@ -261,15 +267,16 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
 std::vector<Word> edits_between(const Scene& scene, const EditedView& from, const EditedView& edited) {
     std::vector<Word> words;
     const View &view = edited.view, &base = from.view;
-    if (!edited.camera_path.empty()) words.push_back({"camera_path", path_text(edited.camera_path)});
-    if (!edited.follows_path) words.push_back({"camera", camera_text(view.camera)});
+    if (!edited.camera_path.empty()) words.push_back({"camera_path", path_text(edited.camera_path, scene.origin)});
+    if (!edited.follows_path) words.push_back({"camera", camera_text(view.camera, scene.origin)});
     if (view.background != base.background) words.push_back({"background", numbers_text(view.background.data(), 3)});
     if (view.ambient != base.ambient) words.push_back({"ambient", numbers_text(view.ambient.data(), 3)});
     for (size_t i = 0; i < view.lights.size(); ++i) {
         const bool was_off = i < from.lights_on.size() && !from.lights_on[i],
                    off = i < edited.lights_on.size() && !edited.lights_on[i];
         const bool known = i < base.lights.size() && std::memcmp(&view.lights[i], &base.lights[i], sizeof(rt_light)) == 0;
-        if (!known || (was_off && !off)) words.push_back({"light." + std::to_string(i), light_text(view.lights[i])});
+        if (!known || (was_off && !off))
+            words.push_back({"light." + std::to_string(i), light_text(view.lights[i], scene.origin)});
         if (off && !(known && was_off)) words.push_back({"light." + std::to_string(i), "off"});
     }
     for (size_t i = view.lights.size(); i < base.lights.size(); ++i) words.push_back({"light." + std::to_string(i), "off"});

@@ -52,11 +52,12 @@ float degrees_of(float fov_rad) {
     return nearest;
 }
 
-std::string camera_lines(const EditedView& edited) {
-    if (!edited.camera_path.empty()) return animate_lines(edited.camera_path, kCamera);
+std::string camera_lines(const EditedView& edited, const std::array<double, 3>& origin) {
+    if (!edited.camera_path.empty()) return animate_lines(edited.camera_path, kCamera, origin);
     const Camera& camera = edited.view.camera;
-    return std::string("camera ") + kCamera + "  eye" + spaced(camera.eye) + "  target" + spaced(camera.target) + "  up" +
-           spaced(camera.up) + "  fov " + exact_text(std::clamp(degrees_of(camera.fov_y_rad), 0.1f, 179.0f)) + "\n";
+    return std::string("camera ") + kCamera + "  eye " + point_text(camera.eye.data(), origin, " ") + "  target " +
+           point_text(camera.target.data(), origin, " ") + "  up" + spaced(camera.up) + "  fov " +
+           exact_text(std::clamp(degrees_of(camera.fov_y_rad), 0.1f, 179.0f)) + "\n";
 }
 
 std::string surroundings(const View& view) {
@@ -168,7 +169,7 @@ std::vector<std::string> folders_outside(const std::vector<std::string>& files, 
 void save_scene(const SceneToSave& scene, const std::string& path) {
     if (fs::path(path).extension() != ".scene")
         throw Error(Exit::usage, path + ": cannot save the scene there, because the name does not end in .scene");
-    std::string text = camera_lines(scene.edited) + surroundings(scene.edited.view);
+    std::string text = camera_lines(scene.edited, scene.imported.origin) + surroundings(scene.edited.view);
     const fs::path target = whole(path);
     const bool in_place = scene.files.size() == 1 && whole(scene.files.front()) == target;
     if (in_place) {

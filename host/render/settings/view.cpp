@@ -1,5 +1,6 @@
 #include "render/settings/view.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -18,8 +19,8 @@ Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
     if (numbers && !numbers->up) {
         Camera camera;
         camera.name = "command line";
-        camera.eye = numbers->eye;
-        camera.target = numbers->target;
+        camera.eye = scene_point(numbers->eye, scene.origin);
+        camera.target = scene_point(numbers->target, scene.origin);
         const auto fov = static_cast<float>(numbers->fov_deg.value_or(45));
         if (fov <= 0 || fov >= 180)
             throw Error(Exit::usage, "--camera: a field of view of " + text.substr(text.rfind(',') + 1) +
@@ -37,7 +38,7 @@ Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
 // For scenes without lights: a key light from the upper left behind the camera, and a weaker one from the right.
 std::vector<rt_light> default_lights(const Scene& scene, const Camera& camera) {
     const Bounds bounds = scene.bounds();
-    const float size = std::max(bounds.empty ? 1.0f : bounds.diagonal(), 1e-6f);
+    const float diagonal = bounds.empty ? 0 : bounds.diagonal(), size = diagonal > 0 ? diagonal : 1;
     std::array<float, 3> forward, right, up = camera.up;
     for (int k = 0; k < 3; ++k) forward[k] = camera.target[k] - camera.eye[k];
     right = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
@@ -65,10 +66,11 @@ View make_view(const Scene& scene, float aspect, const std::string& camera, cons
     view.background = scene.background;
     view.ambient = scene.ambient;
     if (!light.empty()) {
-        const std::vector<float> n = read_numbers<float>(light);
+        const std::vector<double> n = read_numbers<double>(light);
         if (n.size() != 3) throw Error(Exit::usage, "--light: `" + light + "` is not x,y,z");
         view.lights[0].kind = RT_LIGHT_POINT;
-        for (int k = 0; k < 3; ++k) view.lights[0].position[k] = n[k];
+        const std::array<float, 3> at = scene_point({n[0], n[1], n[2]}, scene.origin);
+        std::copy(at.begin(), at.end(), view.lights[0].position);
     }
     return view;
 }

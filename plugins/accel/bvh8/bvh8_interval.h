@@ -37,9 +37,10 @@ RT_INLINE bvh8_rows bvh8_octant_rows(uint octant)
     return bvh8_rows_of((octant & 1u) != 0u, (octant & 2u) != 0u, (octant & 4u) != 0u);
 }
 
-/* Rounds a bound outwards, by the slack of rt_prepare_for_boxes(). */
-#define BVH8_DOWN(v) ((v) - fabs(v) * (8.0f * RT_EPS))
-#define BVH8_UP(v) ((v) + fabs(v) * (8.0f * RT_EPS))
+/* -origin / direction, rounded outwards by the slack of rt_prepare_for_boxes(), for near and for far planes. */
+#define BVH8_NEAR_OFFSET(origin, slope) (-(origin) * (slope) - fabs((origin) * (slope)) * (8.0f * RT_EPS))
+#define BVH8_FAR_OFFSET(origin, slope)                                                                                         \
+    (-(origin) * (slope) + (fabs((origin) * (slope)) * (8.0f * RT_EPS) + fabs(slope) * RT_FAR_SLACK))
 
 /* Whether an interval is so wide that its rays are tested too before a node is visited. As a mask of numbers or of lanes. */
 #define BVH8_IS_WIDE(o_lo, o_hi, i_lo, i_hi) (RT_MASK((o_lo) != (o_hi)) | RT_MASK((i_hi) - (i_lo) > 0.25f * fabs(i_lo)))

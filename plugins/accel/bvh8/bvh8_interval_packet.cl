@@ -18,8 +18,8 @@ RT_INLINE void BVH8_INTERVAL_PACKET(const rt_ctx *ctx, uint ref, uint octant, co
     const float o_lo_##x = rt_least_of(active, ray->o##x), o_hi_##x = rt_greatest_of(active, ray->o##x);                       \
     const float i_lo_##x = rt_least_of(active, ray->i##x), i_hi_##x = rt_greatest_of(active, ray->i##x);                       \
     slab.near_slope_##x = (negative) ? i_hi_##x : i_lo_##x, slab.far_slope_##x = (negative) ? i_lo_##x : i_hi_##x;             \
-    slab.near_offset_##x = BVH8_DOWN(-((negative) ? o_lo_##x : o_hi_##x) * slab.near_slope_##x);                               \
-    slab.far_offset_##x = BVH8_UP(-((negative) ? o_hi_##x : o_lo_##x) * slab.far_slope_##x);                                   \
+    slab.near_offset_##x = BVH8_NEAR_OFFSET((negative) ? o_lo_##x : o_hi_##x, slab.near_slope_##x);                               \
+    slab.far_offset_##x = BVH8_FAR_OFFSET((negative) ? o_hi_##x : o_lo_##x, slab.far_slope_##x);                                   \
     wide |= BVH8_IS_WIDE(o_lo_##x, o_hi_##x, i_lo_##x, i_hi_##x) != 0;
     BVH8_AXIS(x, (octant & 1u) != 0u)
     BVH8_AXIS(y, (octant & 2u) != 0u)

@@ -36,8 +36,8 @@ RT_INLINE void BVH8_INTERVAL_STREAM(const rt_ctx *ctx, uint ref, uint octant, co
         wide |= rt_bits(BVH8_IS_WIDE(o_lo, o_hi, i_lo, i_hi));
         near_slope[axis] = negative ? i_hi : i_lo;
         far_slope[axis] = negative ? i_lo : i_hi;
-        near_offset[axis] = BVH8_DOWN(-(negative ? o_lo : o_hi) * near_slope[axis]);
-        far_offset[axis] = BVH8_UP(-(negative ? o_hi : o_lo) * far_slope[axis]);
+        near_offset[axis] = BVH8_NEAR_OFFSET(negative ? o_lo : o_hi, near_slope[axis]);
+        far_offset[axis] = BVH8_FAR_OFFSET(negative ? o_hi : o_lo, far_slope[axis]);
     }
 #undef BVH8_GREATEST
     const vfloat near_slope_x = near_slope[0], near_slope_y = near_slope[1], near_slope_z = near_slope[2];

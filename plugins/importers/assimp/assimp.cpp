@@ -197,7 +197,7 @@ constexpr const char* extensions[] = {"dae",     "3ds", "blend", "ac",  "ase", "
                                       "obj",     "ply", "stl",   "off",
 #endif
                                       nullptr};
-constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>};
+constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>, RT_IMPORTER_TAKES_CONTENT, 0};
 
 }  // namespace
 }  // namespace assimp_import

@@ -12,6 +12,7 @@ namespace importers {
 
 struct MeshArrays {
     std::vector<float> positions, normals, uvs;  // 3, 3 and 2 for each vertex; normals and uvs may be empty
+    double origin[3] = {0, 0, 0};                // what was subtracted from positions
     std::vector<rt_u32> sizes;                   // corners of each face; empty: all faces are triangles
 
     // Passes the mesh and returns the host's id. corners: their vertices. materials: of each face, or one for all.
@@ -24,6 +25,7 @@ struct MeshArrays {
         out.vertex_count = static_cast<rt_u32>(positions.size() / 3);
         out.position_stride = out.normal_stride = 3 * sizeof(float);
         out.uv_stride = 2 * sizeof(float);
+        std::copy_n(origin, 3, out.origin);
         out.normals = normals.empty() ? nullptr : normals.data();
         out.uvs = uvs.empty() ? nullptr : uvs.data();
         out.indices = corners;

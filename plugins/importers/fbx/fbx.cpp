@@ -26,7 +26,7 @@ rt_scene_info info_of(const Context& context) {
 
 int32_t load_file(const rt_host* host, const char* given_path, const double*, const rt_scene_sink* sink) {
     const std::string path = given_path;
-    const importers::MappedFile file(path);
+    const importers::MappedFile file(host, path);
     const Document document(file.bytes());
     const int version = document.version();
     if (version > 0 && version < kOldestVersion)
@@ -63,7 +63,7 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 constexpr const char* extensions[] = {"fbx", nullptr};
-constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load_file>};
+constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load_file>, RT_IMPORTER_TAKES_CONTENT, 0};
 
 }  // namespace
 }  // namespace fbx_import

@@ -30,8 +30,8 @@ bool is_known(const std::string& name) {
 
 }  // namespace
 
-Document::Document(const std::string& path)
-    : file_(std::make_unique<importers::MappedFile>(path)), folder_(path.substr(0, path.find_last_of('/') + 1)) {
+Document::Document(const rt_host* host, const std::string& path)
+    : file_(std::make_unique<importers::MappedFile>(host, path)), folder_(path.substr(0, path.find_last_of('/') + 1)) {
     parse(file_->bytes());
 }
 

@@ -14,7 +14,7 @@ namespace gltf_import {
 class Document {
  public:
     // Opens the file, parses it, and checks its version and the extensions that it requires.
-    explicit Document(const std::string& path);
+    Document(const rt_host* host, const std::string& path);
     // Parses bytes in memory. The bytes must outlive the document. folder: of the files beside it, ends with a slash or is
     // empty.
     Document(std::string_view bytes, std::string folder);

@@ -13,7 +13,7 @@ namespace {
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
     try {
-        load_document(Document(path), host, *sink);
+        load_document(Document(host, path), host, *sink);
     } catch (const std::bad_alloc&) {
         throw rt::fail(host, "needs more memory than an import may take: split it into several files");
     }
@@ -28,7 +28,7 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 constexpr const char* kExtensions[] = {"gltf", "glb", "vrm", nullptr};
-constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>, RT_IMPORTER_TAKES_CONTENT, 0};
 
 }  // namespace
 }  // namespace gltf_import

@@ -1,7 +1,6 @@
 #include "mtl.hpp"
 
 #include <algorithm>
-#include <string_view>
 
 #include "text.hpp"
 
@@ -14,32 +13,145 @@ struct Statements {
     float exponent = 1, ior = 1, dissolve = 1;
     bool has_diffuse = false, has_dissolve = false;
     int illumination = -1;
-    std::string texture;
+    ObjTexture texture;
 };
 
-void read_color(std::string_view rest, float out[3]) {
+// Options of maps, from Wavefront's appendix B1, "MTL material format". `least` to `most` values follow; `unless` is the value
+// that changes nothing, so that it is not worth a warning.
+struct Option {
+    std::string_view word;
+    int least, most;
+    std::string_view unless;
+};
+constexpr Option kOptions[] = {
+    {"-s", 1, 3, ""},      {"-o", 1, 3, ""},       {"-t", 1, 3, "0 0 0"}, {"-mm", 1, 2, "0 1"},    {"-bm", 1, 1, "1"},
+    {"-boost", 1, 1, "0"}, {"-texres", 1, 1, ""},  {"-clamp", 1, 1, ""},  {"-blendu", 1, 1, "on"}, {"-blendv", 1, 1, "on"},
+    {"-cc", 1, 1, "off"},  {"-imfchan", 1, 1, ""}, {"-type", 1, 1, ""},
+};
+
+// Whether a word may be the value of an option. Numbers are the values of all options that have several.
+bool is_value(const Option& option, std::string_view word, int index) {
+    float number;
+    return !word.empty() && (index < option.least ? option.most == 1 || parse_float(word, number) : parse_float(word, number));
+}
+
+// Whether two texts have the same words, or numbers of the same values.
+bool is_same(std::string_view a, std::string_view b) {
+    for (;;) {
+        const std::string_view x = next_word(a), y = next_word(b);
+        if (x.empty() || y.empty()) return x.empty() && y.empty();
+        float p, q;
+        if (!is_word(x, y) && !(parse_float(x, p) && parse_float(y, q) && p == q)) return false;
+    }
+}
+
+class Reader {
+ public:
+    Reader(std::string_view text, const std::string& folder, Library& library)
+        : lines_(text), folder_(folder), library_(library) {}
+    void read() {
+        for (std::string_view line; lines_.next_joined(line);) {
+            line = trim(line);
+            if (line.empty() || line.front() == '#') continue;
+            const std::string_view word = next_word(line);
+            if (is_word(word, "newmtl")) {
+                close();
+                name_ = std::string(without_quotes(trim(line)));
+                statements_ = {};
+                is_open_ = true;
+            } else {
+                statement(word, line);
+            }
+        }
+        close();
+    }
+
+ private:
+    void close();
+    void statement(std::string_view word, std::string_view line);
+    void leave_out(std::string_view what, std::string_view option = {});
+    void color(std::string_view word, std::string_view rest, float out[3]);
+    void map(std::string_view word, std::string_view rest, ObjTexture& out);
+
+    Lines lines_;
+    const std::string& folder_;
+    Library& library_;
+    std::string name_;
+    Statements statements_;
+    bool is_open_ = false;
+};
+
+void Reader::leave_out(std::string_view what, std::string_view option) {
+    std::string text = printable(what);
+    if (!option.empty()) text += " " + printable(option);
+    std::vector<std::string>& list = library_.left_out;
+    constexpr size_t kMost = 20;
+    if (list.size() >= kMost || std::find(list.begin(), list.end(), text) != list.end()) return;
+    if (list.empty()) library_.first_left_out = name_;
+    list.push_back(text);
+}
+
+void Reader::color(std::string_view word, std::string_view rest, float out[3]) {
     float rgb[3];
-    if (!parse_float(next_word(rest), rgb[0])) return;
+    const std::string_view first = next_word(rest);
+    if (is_word(first, "spectral") || is_word(first, "xyz")) leave_out(word, first);
+    if (!parse_float(first, rgb[0])) return;
     // One number stands for all three channels.
     if (!parse_float(next_word(rest), rgb[1]) || !parse_float(next_word(rest), rgb[2])) rgb[1] = rgb[2] = rgb[0];
     for (int k = 0; k < 3; ++k) out[k] = std::clamp(rgb[k], 0.0f, 10000.0f);
 }
 
-// Reads, for example, `-s 1 1 1 -clamp on wood grain.png`: options first, then a file name that may contain spaces.
-std::string read_file_name(std::string_view rest) {
+// Reads, for example, `-s 1 1 1 -clamp on wood grain.png`: options first, then a file name.
+void Reader::map(std::string_view word, std::string_view rest, ObjTexture& out) {
+    out = {};
     rest = trim(rest);
+    // Names that begin with numbers of the last option, which may have fewer values: `-s 2 2 4 boards.png`.
+    std::vector<std::string_view> starts;
     while (!rest.empty() && rest.front() == '-') {
-        next_word(rest);
-        for (;;) {
-            std::string_view ahead = rest;
-            const std::string_view word = next_word(ahead);
-            float number;
-            if (!parse_float(word, number) && word != "on" && word != "off") break;
-            rest = ahead;
+        std::string_view ahead = rest;
+        const std::string_view option = next_word(ahead);
+        const auto known =
+            std::find_if(std::begin(kOptions), std::end(kOptions), [&](const Option& o) { return is_word(option, o.word); });
+        if (known == std::end(kOptions)) break;  // a name that begins with '-'
+        starts.clear();
+        const std::string_view values = trim(ahead);
+        float numbers[3] = {0, 0, 0};
+        std::string_view first;
+        int count = 0;
+        for (; count < known->most; ++count) {
+            const std::string_view before = ahead, value = next_word(ahead);
+            if (!is_value(*known, value, count)) {
+                ahead = before;
+                break;
+            }
+            if (count == 0) first = value;
+            if (count >= known->least) starts.push_back(trim(before));
+            parse_float(value, numbers[count]);
         }
-        rest = trim(rest);
+        rest = trim(ahead);
+        if (known->word == "-s" || known->word == "-o") {
+            float* const to = known->word == "-s" ? out.scale : out.offset;
+            for (int k = 0; k < 2 && k < count; ++k) to[k] = numbers[k];
+        } else if (known->word == "-clamp") {
+            out.clamped = is_word(first, "on");
+        } else if (!is_same(values.substr(0, static_cast<size_t>(rest.data() - values.data())), known->unless)) {
+            leave_out(word, known->word);
+        }
     }
-    return std::string(rest);
+    // A name with fewer values of the last option before it, and each name without what may be a comment.
+    starts.insert(starts.begin(), rest);
+    for (const std::string_view start : starts) {
+        const size_t first_size = start.size();
+        for (size_t size = first_size; size > 0;) {
+            const std::string_view name = without_quotes(trim(start.substr(0, size)));
+            if (!name.empty()) out.names.emplace_back(name);
+            size_t comment = start.substr(0, size).rfind('#');
+            while (comment != start.npos && comment > 0 && !is_blank(start[comment - 1]))
+                comment = start.substr(0, comment).rfind('#');
+            size = comment == start.npos ? 0 : comment;
+            if (out.names.size() > 8) return;
+        }
+    }
 }
 
 float largest(const float c[3]) {
@@ -59,7 +171,7 @@ ObjMaterial finish(const Statements& s) {
         out.specular[k] = s.illumination == 0 || s.illumination == 1 ? 0 : std::min(s.specular[k], 1.0f);
         out.emission[k] = s.emission[k];
     }
-    if (!s.texture.empty() && (!s.has_diffuse || largest(out.color) == 0)) std::fill(out.color, out.color + 3, 1.0f);
+    if (!s.texture.names.empty() && (!s.has_diffuse || largest(out.color) == 0)) std::fill(out.color, out.color + 3, 1.0f);
     out.shininess = std::clamp(s.exponent, 1.0f, 10000.0f);
     out.refract = std::clamp(1 - s.dissolve, 0.0f, 1.0f);
     out.ior = 1;
@@ -77,49 +189,84 @@ ObjMaterial finish(const Statements& s) {
     return m;
 }
 
+void Reader::close() {
+    if (!is_open_) return;
+    ObjMaterial material = finish(statements_);
+    material.folder = folder_;
+    library_.materials[name_] = std::move(material);
+}
+
+void Reader::statement(std::string_view word, std::string_view line) {
+    Statements& s = statements_;
+    const std::pair<std::string_view, float*> colors[] = {
+        {"kd", s.diffuse}, {"ks", s.specular}, {"ke", s.emission}, {"tf", s.filter}};
+    for (const auto& [key, to] : colors) {
+        if (!is_word(word, key)) continue;
+        color(word, line, to);
+        s.has_diffuse = s.has_diffuse || to == s.diffuse;
+        return;
+    }
+    ObjTexture ignored;
+    float number = 0;
+    if (is_word(word, "map_kd")) {
+        map(word, line, s.texture);
+    } else if (is_word(word, "map_d")) {
+        leave_out(word);
+    } else if (is_word(word.substr(0, 4), "map_") || is_word(word, "bump") || is_word(word, "disp") || is_word(word, "decal") ||
+               is_word(word, "refl") || is_word(word, "norm")) {
+        map(word, line, ignored);
+    } else if (is_word(word, "d")) {
+        std::string_view value = next_word(line);
+        if (is_word(value, "-halo")) {
+            leave_out(word, value);
+            value = next_word(line);
+        }
+        if (parse_float(value, number)) {
+            s.dissolve = number;
+            s.has_dissolve = true;
+        }
+    } else if (!parse_float(next_word(line), number)) {
+        return;
+    } else if (is_word(word, "ns")) {
+        s.exponent = number;
+    } else if (is_word(word, "ni")) {
+        s.ior = number;
+    } else if (is_word(word, "illum")) {
+        s.illumination = number >= 0 && number <= 10 ? static_cast<int>(number) : -1;
+    } else if (is_word(word, "tr") && !s.has_dissolve) {
+        s.dissolve = 1 - number;
+    }
+}
+
 }  // namespace
 
-void parse_mtl(std::string_view text, std::map<std::string, ObjMaterial>& materials) {
-    std::string name;
-    Statements statements;
-    bool is_open = false;
-    const auto close = [&] {
-        if (is_open) materials[name] = finish(statements);
+const ObjMaterial* Library::find(std::string_view name) const {
+    const auto exact = [&](std::string_view wanted) {
+        const auto found = materials.find(wanted);
+        return found == materials.end() ? nullptr : &found->second;
     };
-    while (!text.empty()) {
-        std::string_view line = trim(before_comment(next_line(text)));
-        const std::string_view word = next_word(line);
-        float number = 0;
-        if (word == "newmtl") {
-            close();
-            name = std::string(trim(line));
-            statements = {};
-            is_open = true;
-        } else if (word == "Kd") {
-            read_color(line, statements.diffuse);
-            statements.has_diffuse = true;
-        } else if (word == "Ks") {
-            read_color(line, statements.specular);
-        } else if (word == "Ke") {
-            read_color(line, statements.emission);
-        } else if (word == "Tf") {
-            read_color(line, statements.filter);
-        } else if (word == "map_Kd") {
-            statements.texture = read_file_name(line);
-        } else if (word == "Ns" && parse_float(next_word(line), number)) {
-            statements.exponent = number;
-        } else if (word == "Ni" && parse_float(next_word(line), number)) {
-            statements.ior = number;
-        } else if (word == "illum" && parse_float(next_word(line), number)) {
-            statements.illumination = number >= 0 && number <= 10 ? static_cast<int>(number) : -1;
-        } else if (word == "d" && parse_float(next_word(line), number)) {
-            statements.dissolve = number;
-            statements.has_dissolve = true;
-        } else if (word == "Tr" && !statements.has_dissolve && parse_float(next_word(line), number)) {
-            statements.dissolve = 1 - number;
-        }
+    if (const ObjMaterial* found = exact(name)) return found;
+    // The material's name with a comment behind it in the library.
+    for (auto at = materials.lower_bound(name); at != materials.end(); ++at) {
+        const std::string_view known = at->first;
+        if (known.substr(0, name.size()) != name) break;
+        const std::string_view more = known.substr(name.size());
+        if (is_blank(more.front()) && trim(more).front() == '#') return &at->second;
     }
-    close();
+    // Or where it is used.
+    for (size_t at = comment_in_name(name); at != name.npos; at = comment_in_name(name, at + 1)) {
+        const ObjMaterial* found = exact(without_quotes(trim(name.substr(0, at))));
+        if (found) return found;
+    }
+    return nullptr;
+}
+
+void parse_mtl(std::string_view text, const std::string& folder, Library& library) {
+    Library own;
+    Reader(text, folder, own).read();
+    library.materials.insert(own.materials.begin(), own.materials.end());
+    if (library.left_out.empty()) library.first_left_out = own.first_left_out;
+    library.left_out.insert(library.left_out.end(), own.left_out.begin(), own.left_out.end());
 }
 
 }  // namespace openmesh_import

@@ -1,18 +1,40 @@
-// mtl.hpp -- reads Wavefront material files. OpenMesh reads only a face colour and the name of a texture from them.
+// mtl.hpp -- reads Wavefront material files.
 #pragma once
 #include <map>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "rt_plugin.h"
 
 namespace openmesh_import {
 
+// map_Kd: the picture, and how it lies on the faces.
+struct ObjTexture {
+    // What the statement may mean by the picture's name, the likeliest first: names may hold blanks, numbers and '#'.
+    std::vector<std::string> names;
+    float scale[2] = {1, 1}, offset[2] = {0, 0};  // uv in the picture = uv of the corner * scale + offset
+    bool clamped = false;
+    bool moves() const { return scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0; }
+};
 struct ObjMaterial {
     rt_material_desc values{};  // without name and texture
-    std::string texture;        // map_Kd as in the file, or empty
+    ObjTexture texture;
+    std::string folder;  // of its library, relative to that of the OBJ file, with a slash at its end; or empty
 };
 
-// Adds the materials of one file to `materials`, by name. Lines that cannot be understood are skipped, as other programs do.
-void parse_mtl(std::string_view text, std::map<std::string, ObjMaterial>& materials);
+struct Library {
+    std::map<std::string, ObjMaterial, std::less<>> materials;
+    // Statements that say more than is obeyed, such as "map_Kd -mm" and "map_d", each once; and the material of the first.
+    std::vector<std::string> left_out;
+    std::string first_left_out;
+
+    // A name may be followed by a comment here or where it is used: "Material #1 # oak" is also found as "Material #1".
+    const ObjMaterial* find(std::string_view name) const;
+};
+
+// Adds the materials of one file. A material that is known already stays as it is. Lines that cannot be understood are skipped,
+// as other programs do.
+void parse_mtl(std::string_view text, const std::string& folder, Library& library);
 
 }  // namespace openmesh_import

@@ -1,11 +1,14 @@
-// obj.cpp -- reads Wavefront OBJ. Each line is checked before OpenMesh reads it. So a broken line costs only that line, the
-// numbers of later vertices stay right, and the material of each face is known.
+// obj.cpp -- reads Wavefront OBJ. A broken line costs only that line, and the numbers of later vertices stay right. Materials
+// are looked up when the file has been read whole, because programs name them before their library.
+#include <algorithm>
 #include <map>
-#include <optional>
+#include <stdexcept>
 #include <string>
+#include <unordered_map>
 
 #include "../common/mapped_file.hpp"
 #include "mtl.hpp"
+#include "obj_libraries.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
 #include "text.hpp"
@@ -13,174 +16,212 @@
 namespace openmesh_import {
 namespace {
 
-// True for the corner of a face: `7`, `7/1`, `7//3`, `7/1/3`, `-1/-1/-1`.
-bool is_corner(std::string_view word) {
+// The numbers of a corner as written: vertex, uv, normal; 0: there is none.
+struct Corner {
+    long long numbers[3] = {0, 0, 0};
+};
+
+// Reads the corner of a face: `7`, `7/1`, `7//3`, `7/1/3`, `-1/-1/-1`.
+bool parse_corner(std::string_view word, Corner& corner) {
     for (int part = 0; part < 3; ++part) {
-        const size_t slash = word.find('/');
-        const std::string_view number = word.substr(0, slash);
-        long long value;
-        if (number.empty() ? part == 0 : (!parse_integer(number, value) || value > 2147483647 || value < -2147483647))
+        const char* const end = word.data() + word.size();
+        const char* at = word.data();
+        if (at < end && *at == '+') ++at;
+        long long value = 0;
+        const auto [stop, error] = std::from_chars(at, end, value);
+        if (stop == at ? (part == 0 || at != word.data()) : (error != std::errc() || value > 2147483647 || value < -2147483647))
             return false;
-        if (slash == word.npos) return true;
-        word.remove_prefix(slash + 1);
+        corner.numbers[part] = value;
+        if (stop == end) return true;
+        if (*stop != '/') return false;
+        word.remove_prefix(static_cast<size_t>(stop + 1 - word.data()));
     }
     return word.empty();
 }
 
-class ObjLines {
+// `count` numbers are known so far: -1 is the last of them, 1 the first one.
+rt_u32 number_of(long long written, size_t count) {
+    if (written == 0) return RT_NONE;
+    return FlatMesh::vertex_number(written > 0 ? written - 1 : static_cast<long long>(count) + written);
+}
+
+class ObjReader {
  public:
-    ObjLines(const Source& source, FlatImporter& mesh) : source_(source), mesh_(mesh) {}
+    ObjReader(const Source& source, FlatMesh& mesh) : source_(source), mesh_(mesh), lines_(source.bytes) {}
 
-    // Edits one line for OpenMesh; false drops the line. The reader goes through the file twice: for vertices, then for faces.
-    bool edit(std::string_view line, int pass, std::string& out) {
-        line = trim(before_comment(line));
-        const std::string_view word = next_word(line);
-        if (word == "v") {
-            if (pass == 0) vertex(line, out);
-            if (pass > 0) out = "v";
-            return true;
+    // Reads up to the end, or until the mesh has `most_faces`.
+    void read(size_t most_faces) {
+        Steps steps(source_);
+        for (std::string_view line; mesh_.sizes.size() < most_faces && lines_.next_joined(line);) {
+            steps.step([&] { return lines_.fraction(); });
+            line_ = line;
+            const std::string_view word = next_word(line);
+            if (word.empty() || word.front() == '#') continue;
+            if (word == "v") {
+                vertex(before_comment(line));
+            } else if (word == "f" || word == "fo") {  // fo: a face in files of Wavefront 2
+                face(before_comment(line));
+            } else if (word == "vt") {
+                values(before_comment(line), 2, mesh_.corner_uvs);
+            } else if (word == "vn") {
+                values(before_comment(line), 3, mesh_.corner_normals);
+            } else if (word == "l" || word == "p") {
+                ++points_and_lines;
+            } else if (is_word(word, "mtllib")) {
+                libraries.emplace_back(trim(line));
+            } else if (is_word(word, "usemtl")) {
+                use(std::string(without_quotes(trim(line))));
+            }
         }
-        if (word == "vt" || word == "vn") {
-            out = word;
-            if (pass == 0) numbers(line, word == "vt" ? 2 : 3, out);
-            return true;
-        }
-        if (pass == 0) return false;
-        if (word == "f") return face(line, out);
-        if (word == "l" || word == "p") ++points_and_lines;
-        if (word == "mtllib") library(line);
-        if (word == "usemtl") use(std::string(trim(line)));
-        return false;
     }
-    rt_u32 material() const { return material_; }
+    size_t line_number() const { return lines_.number(); }
 
-    uint64_t points_and_lines = 0, bad_faces = 0, faces = 0;
+    struct Use {
+        std::string name;
+        size_t libraries;  // lines with libraries before it
+    };
+    std::vector<Use> uses;
+    std::vector<std::string> libraries;  // what stands behind each `mtllib`
+    uint64_t points_and_lines = 0, bad_faces = 0;
     std::string first_bad_face;
-    LineBuffer* buffer = nullptr;
+    bool has_colors = false;
 
  private:
-    // A vertex that cannot be read keeps its number, but faces must not use it.
-    void vertex(std::string_view rest, std::string& out) {
-        const std::string_view numbers = trim(rest);
-        float xyz[3];
+    void vertex(std::string_view rest) {
+        double xyz[3];
         bool good = true;
-        for (float& x : xyz) good = good && parse_float(next_word(rest), x);
-        out = "v ";
-        if (good) out.append(numbers);
-        if (!good) {
-            out.append("0 0 0");
-            mesh_.mark_unusable(vertices_);
-        }
-        ++vertices_;
+        for (double& x : xyz) good = parse_float(next_word(rest), x) && good;
+        mesh_.add_vertex(good ? xyz[0] : NAN, xyz[1], xyz[2]);
+        if (has_colors || rest.empty()) return;
+        int more = 0;
+        while (!next_word(rest).empty()) ++more;
+        has_colors = good && more >= 3;  // `v x y z r g b`; one number more is a weight
     }
-    void numbers(std::string_view rest, int count, std::string& out) {
+    static void values(std::string_view rest, int count, std::vector<float>& out) {
         for (int i = 0; i < count; ++i) {
             float x;
-            const std::string_view word = next_word(rest);
-            out.append(" ").append(parse_float(word, x) ? word : "0");
+            out.push_back(parse_float(next_word(rest), x) ? x : 0);
         }
     }
-    bool face(std::string_view rest, std::string& out) {
-        out = "f";
-        int corners = 0;
+    void face(std::string_view rest) {
+        corners_.clear();
         bool good = true;
-        for (std::string_view words = rest; good;) {
-            const std::string_view word = next_word(words);
-            if (word.empty()) break;
-            good = is_corner(word);
-            ++corners;
-            out.append(" ").append(word);
+        for (std::string_view word = next_word(rest); good && !word.empty(); word = next_word(rest)) {
+            Corner corner;
+            good = parse_corner(word, corner);
+            corners_.push_back(corner);
         }
-        good = good && corners >= 3;
-        ++faces;
-        if (!good && bad_faces++ == 0) first_bad_face = "line " + std::to_string(buffer->line_number()) + ": " + quoted(rest);
-        return good;
+        if (!good || corners_.size() < 3) {
+            std::string_view text = line_;
+            next_word(text);
+            if (bad_faces++ == 0)
+                first_bad_face = "line " + std::to_string(lines_.number()) + ": " + quoted(before_comment(text));
+            return;
+        }
+        for (const Corner& corner : corners_) mesh_.corners.push_back(number_of(corner.numbers[0], mesh_.vertex_count()));
+        attributes(1, mesh_.corner_uvs.size() / 2, mesh_.uv_of_corner);
+        attributes(2, mesh_.corner_normals.size() / 3, mesh_.normal_of_corner);
+        mesh_.add_face(corners_.size());
+        if (use_ == RT_NONE) return;
+        mesh_.face_materials.resize(mesh_.sizes.size() - 1, RT_NONE);  // faces before the first `usemtl`
+        mesh_.face_materials.push_back(use_);
     }
-
-    void library(std::string_view rest) {
-        // A line may list several files, and a name may contain spaces. The whole rest of the line is tried first.
-        const std::string folder = source_.path.substr(0, source_.path.find_last_of('/') + 1);
-        if (open_library(folder, std::string(trim(rest)))) return;
-        bool found = false;
-        for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-            found = open_library(folder, std::string(word)) || found;
-            if (!found) missing_ = std::string(word);
-        }
-        if (!found)
-            warn(source_,
-                 "the material file " + quoted(missing_) + " cannot be read: its materials become the default material");
-        has_missing_library_ = has_missing_library_ || !found;
-    }
-    bool open_library(const std::string& folder, std::string name) {
-        for (char& c : name) c = c == '\\' ? '/' : c;
-        try {
-            const importers::MappedFile file((name.empty() || name.front() == '/' ? "" : folder) + name);
-            parse_mtl(file.bytes(), materials_);
-            return true;
-        } catch (const std::runtime_error&) {
-            return false;
-        }
+    // The uvs or normals of the face's corners. Files without them need no list.
+    void attributes(int part, size_t count, std::vector<rt_u32>& list) {
+        if (list.empty() &&
+            std::all_of(corners_.begin(), corners_.end(), [&](const Corner& c) { return c.numbers[part] == 0; }))
+            return;
+        list.resize(mesh_.corners.size() - corners_.size(), RT_NONE);
+        for (const Corner& corner : corners_) list.push_back(number_of(corner.numbers[part], count));
     }
     void use(const std::string& name) {
-        const auto known = ids_.find(name);
-        if (known != ids_.end()) {
-            material_ = known->second;
+        const auto same = [&](const Use& u) { return u.name == name && u.libraries == libraries.size(); };
+        const auto known = use_of_name_.find(name);
+        if (known != use_of_name_.end() && same(uses[known->second])) {
+            use_ = known->second;
             return;
         }
-        const auto found = materials_.find(name);
-        if (found == materials_.end()) {
-            if (!has_missing_library_ && !materials_.empty()) warn(source_, "material " + quoted(name) + " is not defined");
-            material_ = ids_[name] = RT_NONE;
-            return;
-        }
-        rt_material_desc desc = found->second.values;
-        desc.struct_bytes = sizeof desc;
-        desc.name = name.c_str();
-        if (!found->second.texture.empty()) desc.texture = texture(found->second.texture);
-        material_ = ids_[name] = rt::id(source_.sink.material(source_.sink.ctx, &desc));
-    }
-    rt_u32 texture(const std::string& path) {
-        const auto known = textures_.find(path);
-        if (known != textures_.end()) return known->second;
-        rt_texture_desc desc{};
-        desc.struct_bytes = sizeof desc;
-        desc.path = path.c_str();
-        return textures_[path] = source_.sink.texture(source_.sink.ctx, &desc);
+        use_ = use_of_name_[name] = static_cast<rt_u32>(uses.size());
+        uses.push_back({name, libraries.size()});
     }
 
     const Source& source_;
-    FlatImporter& mesh_;
-    size_t vertices_ = 0;
-    std::map<std::string, ObjMaterial> materials_;
-    std::map<std::string, rt_u32> ids_, textures_;
-    rt_u32 material_ = RT_NONE;
-    std::string missing_;
-    bool has_missing_library_ = false;
+    FlatMesh& mesh_;
+    Lines lines_;
+    std::string_view line_;
+    std::vector<Corner> corners_;
+    std::map<std::string, rt_u32> use_of_name_;
+    rt_u32 use_ = RT_NONE;
 };
+
+// uvs of corners whose material moves or scales its picture. Each pair of a material's number and a uv gets a number of its
+// own.
+void move_uvs(const std::vector<const ObjTexture*>& textures, FlatMesh& mesh) {
+    const auto moves = [&](rt_u32 use) { return use != RT_NONE && textures[use] && textures[use]->moves(); };
+    if (mesh.uv_of_corner.empty() || std::none_of(mesh.face_materials.begin(), mesh.face_materials.end(), moves)) return;
+    std::unordered_map<uint64_t, rt_u32> moved;
+    const size_t count = mesh.corner_uvs.size() / 2;
+    size_t corner = 0;
+    for (size_t face = 0; face < mesh.sizes.size(); ++face) {
+        const size_t end = corner + mesh.sizes[face];
+        const rt_u32 use = mesh.face_materials[face];
+        for (; corner < end; ++corner) {
+            rt_u32& uv = mesh.uv_of_corner[corner];
+            if (!moves(use) || uv >= count) continue;
+            const auto [at, is_new] = moved.emplace(uint64_t(use) << 32 | uv, static_cast<rt_u32>(mesh.corner_uvs.size() / 2));
+            for (int k = 0; k < 2 && is_new; ++k)
+                mesh.corner_uvs.push_back(mesh.corner_uvs[2 * size_t(uv) + size_t(k)] * textures[use]->scale[k] +
+                                          textures[use]->offset[k]);
+            uv = at->second;
+        }
+    }
+}
+
+// From the numbers of uses to the host's materials.
+void assign_materials(const Source& source, const ObjReader& reader, FlatMesh& mesh) {
+    ObjLibraries libraries(source, reader.libraries);
+    std::vector<rt_u32> ids;
+    std::vector<const ObjTexture*> textures;
+    for (const ObjReader::Use& use : reader.uses) {
+        const ObjMaterial* material = libraries.find(use.name, use.libraries);
+        ids.push_back(libraries.id(use.name, material));
+        textures.push_back(material && !material->texture.names.empty() ? &material->texture : nullptr);
+    }
+    mesh.uv_of_corner.resize(mesh.uv_of_corner.empty() ? 0 : mesh.corners.size(), RT_NONE);
+    move_uvs(textures, mesh);
+    for (rt_u32& material : mesh.face_materials) material = material == RT_NONE ? RT_NONE : ids[material];
+}
 
 }  // namespace
 
-void read_obj(const Source& source, FlatImporter& mesh) {
-    ObjLines lines(source, mesh);
-    LineBuffer buffer(
-        source.bytes, true, [&](std::string_view line, int pass, std::string& out) { return lines.edit(line, pass, out); }, 2,
-        source.progress);
-    lines.buffer = &buffer;
-    mesh.material_of_next_face = [&] { return lines.material(); };
-    mesh.line_number = [&] { return buffer.line_number(); };
-    run_reader("obj", buffer, false, false, false, mesh);
-    mesh.material_of_next_face = nullptr;
-    mesh.line_number = nullptr;
-
-    if (lines.bad_faces > 0) {
+Reading read_obj(const Source& source, FlatMesh& mesh) {
+    ObjReader reader(source, mesh);
+    reader.read(SIZE_MAX);
+    if (reader.bad_faces > 0) {
         const std::string text =
-            counted(lines.bad_faces, "face") + " left out because they cannot be read, the first at " + lines.first_bad_face;
-        if (lines.bad_faces == lines.faces) throw std::runtime_error(text);
+            counted(reader.bad_faces, "face") + " left out because they cannot be read, the first at " + reader.first_bad_face;
+        if (mesh.sizes.empty()) throw std::runtime_error(text);
         warn(source, text);
     }
-    const uint64_t collapsed = lines.faces - lines.bad_faces - mesh.face_count();
-    if (collapsed > 0) warn(source, counted(collapsed, "face") + " left out: fewer than three different corners");
-    if (lines.points_and_lines > 0) warn(source, counted(lines.points_and_lines, "point or line element") + " skipped");
+    for (auto* list : {&mesh.uv_of_corner, &mesh.normal_of_corner})
+        if (!list->empty()) list->resize(mesh.corners.size(), RT_NONE);
+    if (mesh.corner_uvs.empty()) mesh.uv_of_corner.clear();
+    if (mesh.corner_normals.empty()) mesh.normal_of_corner.clear();
+    Reading reading;
+    reading.first_number = 1;
+    reading.place_of_face = [&source](size_t face) {
+        FlatMesh again;
+        ObjReader until(source, again);
+        until.read(face + 1);
+        return "line " + std::to_string(until.line_number()) + ": ";
+    };
+    reading.contents =
+        counted(mesh.vertex_count(), "vertice") + " and " + counted(reader.points_and_lines, "point or line element");
+    if (mesh.sizes.empty()) return reading;
+    assign_materials(source, reader, mesh);
+    if (reader.has_colors) warn(source, "its vertices have colours, which are left out");
+    if (reader.points_and_lines > 0) warn(source, counted(reader.points_and_lines, "point or line element") + " skipped");
+    return reading;
 }
 
 }  // namespace openmesh_import

@@ -1,5 +1,4 @@
-// off.cpp -- reads OFF. The text is rewritten without comments and colours before OpenMesh reads it. OpenMesh would take a
-// colour behind a face for the next face, a comment for the end of the file, and ignore counts on the first line.
+// off.cpp -- reads OFF, text. Sources: Geomview's manual, "OFF Files"; files of CGAL and MeshLab.
 #include <stdexcept>
 #include <string>
 
@@ -10,15 +9,18 @@ namespace openmesh_import {
 namespace {
 
 // The header word, [ST][C][N]OFF. Of the data behind a vertex's position, only normals are kept.
-struct Kind {
-    bool has_normals = false, is_four_dimensional = false, is_binary = false;
+struct OffKind {
+    bool has_normals = false, has_colors = false, is_four_dimensional = false;
 };
 
-bool parse_kind(std::string_view word, Kind& kind) {
-    if (word.size() < 3 || word.substr(word.size() - 3) != "OFF") return false;
+bool parse_kind(std::string_view word, OffKind& kind) {
+    if (word.size() < 3 || !is_word(word.substr(word.size() - 3), "off")) return false;
     word.remove_suffix(3);
-    if (word.substr(0, 2) == "ST") word.remove_prefix(2);
-    if (!word.empty() && word.front() == 'C') word.remove_prefix(1);
+    if (is_word(word.substr(0, 2), "st")) word.remove_prefix(2);
+    if (!word.empty() && word.front() == 'C') {
+        kind.has_colors = true;
+        word.remove_prefix(1);
+    }
     if (!word.empty() && word.front() == 'N') {
         kind.has_normals = true;
         word.remove_prefix(1);
@@ -27,17 +29,17 @@ bool parse_kind(std::string_view word, Kind& kind) {
     return word.empty() || kind.is_four_dimensional;
 }
 
-class OffText {
+class OffReader {
  public:
-    explicit OffText(std::string_view text) : size_(text.size()), rest_(text) {}
+    OffReader(const Source& source, FlatMesh& mesh) : source_(source), mesh_(mesh), lines_(source.bytes) {}
 
-    std::string rewrite(FlatImporter& mesh) {
-        Kind kind;
+    void read() {
+        OffKind kind;
         std::string_view line = content();
         std::string_view ahead = line;
         if (parse_kind(next_word(ahead), kind)) {
             line = trim(ahead);
-            if (line.substr(0, 6) == "BINARY")
+            if (is_word(line.substr(0, 6), "binary"))
                 throw std::runtime_error("is a binary OFF file, which is not supported: convert it to text");
             if (line.empty()) line = content();
         }
@@ -50,52 +52,45 @@ class OffText {
                                      ", expected the numbers of vertices and faces: is it an OFF file?");
         }
         // The shortest vertex is "0 0 0\n" with 6 bytes. A face takes at least 2 bytes.
-        std::string why = too_large("vertex", static_cast<unsigned long long>(vertices), 6, size_);
-        if (why.empty()) why = too_large("face", static_cast<unsigned long long>(faces), 2, size_);
+        std::string why = too_large("vertex", static_cast<unsigned long long>(vertices), 6, source_.bytes.size());
+        if (why.empty()) why = too_large("face", static_cast<unsigned long long>(faces), 2, source_.bytes.size());
         if (!why.empty()) throw std::runtime_error(why);
-        std::string out = "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n";
-        out.reserve(size_ + 64);
-        for (long long v = 0; v < vertices; ++v) vertex(kind, v, vertices, mesh, out);
-        for (long long f = 0; f < faces; ++f) face(f, faces, out);
-        return out;
+        Steps steps(source_);
+        const auto step = [&] { steps.step([&] { return lines_.fraction(); }); };
+        for (long long v = 0; v < vertices; ++v, step()) vertex(kind, v, vertices);
+        for (long long f = 0; f < faces; ++f, step()) face(f, faces);
+        if (kind.has_colors) warn(source_, "its vertices have colours, which are left out");
     }
-    std::vector<float> normals;
 
  private:
     // The next line that is not blank.
     std::string_view content() {
-        while (!rest_.empty()) {
-            ++line_number_;
-            const std::string_view line = trim(before_comment(next_line(rest_)));
+        for (std::string_view line; lines_.next(line);) {
+            line = trim(before_comment(line));
             if (!line.empty()) return line;
         }
         return {};
     }
-    std::string where() const { return "line " + std::to_string(line_number_) + ": "; }
+    std::string where() const { return "line " + std::to_string(lines_.number()) + ": "; }
 
-    void vertex(const Kind& kind, long long index, long long count, FlatImporter& mesh, std::string& out) {
+    void vertex(const OffKind& kind, long long index, long long count) {
         std::string_view line = content();
         if (line.empty())
             throw std::runtime_error(where() + "found the end of the file after " + std::to_string(index) + " of " +
                                      std::to_string(count) + " vertices, expected x y z of the next one");
-        float xyz[3] = {0, 0, 0};
-        bool good = true;
-        std::string_view words[3];
-        for (int k = 0; k < 3; ++k) {
-            words[k] = next_word(line);
-            if (words[k].empty())
-                throw std::runtime_error(where() + "a vertex has fewer than three coordinates; expected x y z");
-            good = parse_float(words[k], xyz[k]) && good;
+        double xyz[3];
+        for (double& x : xyz) {
+            const std::string_view word = next_word(line);
+            if (word.empty()) throw std::runtime_error(where() + "a vertex has fewer than three coordinates; expected x y z");
+            if (!parse_float(word, x)) x = NAN;
         }
-        if (!good) mesh.mark_unusable(static_cast<size_t>(index));
-        for (int k = 0; k < 3; ++k) out.append(good ? words[k] : "0").append(k < 2 ? " " : "\n");
+        mesh_.add_vertex(xyz[0], xyz[1], xyz[2]);
         for (int k = 0; kind.has_normals && k < 3; ++k) {
             float n = 0;
-            parse_float(next_word(line), n);
-            normals.push_back(n);
+            mesh_.normals.push_back(parse_float(next_word(line), n) ? n : 0);
         }
     }
-    void face(long long index, long long count, std::string& out) {
+    void face(long long index, long long count) {
         std::string_view line = content();
         if (line.empty())
             throw std::runtime_error(where() + "found the end of the file after " + std::to_string(index) + " of " +
@@ -105,7 +100,6 @@ class OffText {
         if (!parse_integer(first, corners) || corners < 0) {
             throw std::runtime_error(where() + quoted(first) + " instead of the number of corners of a face");
         }
-        out.append(first);
         for (long long i = 0; i < corners; ++i) {
             long long vertex;
             std::string_view word = next_word(line);
@@ -116,27 +110,21 @@ class OffText {
             if (!parse_integer(word, vertex))
                 throw std::runtime_error(where() + "a face of " + std::to_string(corners) + " corners has " +
                                          std::to_string(i));
-            // Any index out of range is written as one that fits into OpenMesh's numbers; faces with it are reported later.
-            out.append(" ").append(vertex < 0 || vertex > 2147483647 ? "2147483647" : word);
+            mesh_.corners.push_back(FlatMesh::vertex_number(vertex));
         }
-        out += '\n';
+        mesh_.add_face(static_cast<size_t>(corners));
     }
 
-    size_t size_, line_number_ = 0;
-    std::string_view rest_;
+    const Source& source_;
+    FlatMesh& mesh_;
+    Lines lines_;
 };
 
 }  // namespace
 
-void read_off(const Source& source, FlatImporter& mesh) {
-    OffText text(source.bytes);
-    const std::string clean = text.rewrite(mesh);
-    BytesBuffer buffer({}, clean, source.progress);
-    run_reader("off", buffer, true, false, false, mesh);
-    for (size_t v = 0; 3 * v + 2 < text.normals.size(); ++v) {
-        const float* n = &text.normals[3 * v];
-        mesh.set_normal(OpenMesh::VertexHandle(static_cast<int>(v)), OpenMesh::Vec3f(n[0], n[1], n[2]));
-    }
+Reading read_off(const Source& source, FlatMesh& mesh) {
+    OffReader(source, mesh).read();
+    return {};
 }
 
 }  // namespace openmesh_import

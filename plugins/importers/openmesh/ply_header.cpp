@@ -1,5 +1,6 @@
 #include "ply_header.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -9,14 +10,14 @@
 namespace openmesh_import::ply {
 namespace {
 
-constexpr std::array<Type, 8> kTypes = {{{"char", "int8", 1, false},
-                                         {"uchar", "uint8", 1, false},
-                                         {"short", "int16", 2, false},
-                                         {"ushort", "uint16", 2, false},
-                                         {"int", "int32", 4, false},
-                                         {"uint", "uint32", 4, false},
-                                         {"float", "float32", 4, true},
-                                         {"double", "float64", 8, true}}};
+constexpr std::array<Type, 8> kTypes = {{{"char", "int8", 1, Number::int8},
+                                         {"uchar", "uint8", 1, Number::uint8},
+                                         {"short", "int16", 2, Number::int16},
+                                         {"ushort", "uint16", 2, Number::uint16},
+                                         {"int", "int32", 4, Number::int32},
+                                         {"uint", "uint32", 4, Number::uint32},
+                                         {"float", "float32", 4, Number::float32},
+                                         {"double", "float64", 8, Number::float64}}};
 
 const Type& type_of(std::string_view word) {
     for (const Type& type : kTypes) {
@@ -26,28 +27,58 @@ const Type& type_of(std::string_view word) {
                              ", expected char, uchar, short, ushort, int, uint, float or double");
 }
 
-Property parse_property(std::string_view rest) {
+constexpr std::pair<std::string_view, Kind> kElements[] = {
+    {"vertex", Kind::vertices}, {"face", Kind::faces}, {"tristrips", Kind::strips}};
+
+struct NamedRole {
+    std::string_view name;
+    Kind kind;
+    bool is_list;
+    Role role;
+};
+// Names as other programs write them. uv are s and t in Blender's files and texture_u and texture_v in MeshLab's.
+constexpr NamedRole kRoles[] = {
+    {"x", Kind::vertices, false, Role::x},
+    {"y", Kind::vertices, false, Role::y},
+    {"z", Kind::vertices, false, Role::z},
+    {"nx", Kind::vertices, false, Role::nx},
+    {"ny", Kind::vertices, false, Role::ny},
+    {"nz", Kind::vertices, false, Role::nz},
+    {"u", Kind::vertices, false, Role::u},
+    {"s", Kind::vertices, false, Role::u},
+    {"texture_u", Kind::vertices, false, Role::u},
+    {"v", Kind::vertices, false, Role::v},
+    {"t", Kind::vertices, false, Role::v},
+    {"texture_v", Kind::vertices, false, Role::v},
+    {"red", Kind::vertices, false, Role::color},
+    {"diffuse_red", Kind::vertices, false, Role::color},
+    {"red", Kind::faces, false, Role::color},
+    {"vertex_indices", Kind::faces, true, Role::indices},
+    {"vertex_index", Kind::faces, true, Role::indices},
+    {"texcoord", Kind::faces, true, Role::texcoords},
+    {"vertex_indices", Kind::strips, true, Role::indices},
+    {"vertex_index", Kind::strips, true, Role::indices},
+};
+
+Property parse_property(std::string_view rest, const Element& element) {
     Property property;
     std::string_view word = next_word(rest);
     if (word == "list") {
         property.count_type = &type_of(next_word(rest));
-        if (property.count_type->is_float)
+        if (property.count_type->is_float())
             throw std::runtime_error("found the type " + std::string(property.count_type->name) +
                                      " for the length of a list, expected an integer type");
         word = next_word(rest);
     }
     property.type = &type_of(word);
     property.name = std::string(next_word(rest));
-    // Names of texture coordinates in files of other programs.
-    if (property.name == "texture_u") property.name = "u";
-    if (property.name == "texture_v") property.name = "v";
     if (property.name.empty()) throw std::runtime_error("found a property without a name, expected one behind its type");
+    for (const NamedRole& named : kRoles) {
+        const bool fits = named.name == property.name && named.kind == element.kind && named.is_list == property.is_list();
+        if (fits && !element.has(named.role)) property.role = named.role;
+    }
     return property;
 }
-
-}  // namespace
-
-namespace {
 
 void parse_line(std::string_view line, Header& header) {
     const std::string_view word = next_word(line);
@@ -61,129 +92,100 @@ void parse_line(std::string_view line, Header& header) {
         if (!parse_integer(number, count) || count < 0)
             throw std::runtime_error("found " + quoted(number) + ", expected the number of elements " + quoted(element.name));
         element.count = static_cast<unsigned long long>(count);
+        for (const auto& [name, kind] : kElements)
+            if (element.name == name) element.kind = kind;
         header.elements.push_back(element);
     } else if (word == "property") {
         if (header.elements.empty()) throw std::runtime_error("found a property, expected an element before it");
-        header.elements.back().properties.push_back(parse_property(line));
+        header.elements.back().properties.push_back(parse_property(line, header.elements.back()));
     } else if (word == "comment") {
-        if (next_word(line) == "TextureFile") header.texture = std::string(trim(line));
+        if (next_word(line) == "TextureFile") header.texture = std::string(without_quotes(trim(line)));
     } else if (word != "obj_info" && !word.empty()) {
         throw std::runtime_error("found " + quoted(word) +
                                  ", expected format, element, property, comment, obj_info or end_header");
     }
 }
 
-}  // namespace
-
-Header parse_header(std::string_view bytes) {
-    Header header;
-    const std::string_view first = next_line(bytes);
-    if (first.substr(0, 3) != "ply")
-        throw std::runtime_error("line 1: found " + quoted(first) + ", expected 'ply', with which a PLY file begins");
-    for (size_t line_number = 2; !bytes.empty(); ++line_number) {
-        const std::string_view line = next_line(bytes);
-        std::string_view words = line;
-        if (next_word(words) == "end_header") {
-            header.body = bytes;
-            return header;
-        }
-        try {
-            parse_line(line, header);
-        } catch (const std::runtime_error& error) {
-            throw std::runtime_error("line " + std::to_string(line_number) + ": the PLY header is damaged: " + error.what());
-        }
-    }
-    throw std::runtime_error(
-        "the PLY header has no end: found the end of the file, expected end_header; it is cut off or damaged");
-}
-
-namespace {
-
 // The smallest number of bytes that one element can take.
 unsigned long long least_bytes(const Element& element, bool ascii) {
     unsigned long long bytes = 0;
     for (const Property& p : element.properties) {
-        bytes += ascii ? 2 : p.is_list() ? p.count_type->bytes : p.type->bytes;
+        bytes += ascii ? 2 : static_cast<unsigned>(p.is_list() ? p.count_type->bytes : p.type->bytes);
     }
     return std::max(bytes, 1ull);
 }
 
-}  // namespace
-
+// Throws std::runtime_error if the file is too short for what the header declares, or if something is missing.
 void check(const Header& header) {
     if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
         throw std::runtime_error("found the PLY format " + quoted(header.format) +
                                  ", expected ascii, binary_little_endian or binary_big_endian");
     }
     for (const Element& element : header.elements) {
-        // OpenMesh counts the faces of the first one, and fails an assertion at the properties of the second.
-        if (header.find(element.name) != &element)
+        if (element.kind != Kind::other && header.find(element.kind) != &element)
             throw std::runtime_error("the PLY header has two elements " + quoted(element.name) + ", expected one");
     }
-    const Element *vertices = header.find("vertex"), *faces = header.find("face");
+    const Element* vertices = header.find(Kind::vertices);
     if (!vertices) throw std::runtime_error("the PLY header has no element 'vertex'");
-    if (!faces) {
-        const bool strips = header.find("tristrips") != nullptr;
-        throw std::runtime_error(strips ? "holds triangle strips, which are not supported: convert them to faces"
-                                        : "contains no polygons: it is a point cloud");
-    }
-    if (vertices > faces) throw std::runtime_error("has its faces before its vertices, which is not supported");
-    for (const char* axis : {"x", "y", "z"}) {
-        const auto named = [&](const Property& p) { return p.name == axis; };
-        const auto found = std::find_if(vertices->properties.begin(), vertices->properties.end(), named);
-        if (found == vertices->properties.end()) throw std::runtime_error(std::string("its vertices have no ") + axis);
-        if (found->is_list() || (!found->type->is_float && !header.is_ascii())) {
-            throw std::runtime_error("its vertices are not of type float or double, which is not supported");
-        }
-    }
-    const auto indices =
-        std::find_if(faces->properties.begin(), faces->properties.end(), [](auto& p) { return p.is_indices(); });
-    if (indices == faces->properties.end()) throw std::runtime_error("its faces have no list 'vertex_indices'");
-    if (indices != faces->properties.begin())
-        throw std::runtime_error("its faces have properties before 'vertex_indices', which is not supported");
-    if (indices->type->is_float)
-        throw std::runtime_error("the vertex indices of its faces have a floating-point type; expected an integer type");
+    if (!header.find(Kind::faces) && !header.find(Kind::strips))
+        throw std::runtime_error("contains no polygons: it is a point cloud");
+    for (const auto& [role, axis] : {std::pair(Role::x, "x"), std::pair(Role::y, "y"), std::pair(Role::z, "z")})
+        if (!vertices->has(role)) throw std::runtime_error(std::string("its vertices have no number ") + axis);
     // The last number of a text needs no separator behind it.
     unsigned long long available = header.body.size() + (header.is_ascii() ? 1 : 0);
-    for (const Element& element : header.elements) {
-        for (const Property& p : element.properties) {
-            if (p.is_list() && &element != faces) {
-                throw std::runtime_error("has a list in element " + quoted(element.name) + ", which is not supported");
-            }
-        }
+    // What stands behind the last element that is read does not matter.
+    size_t needed = header.elements.size();
+    while (header.elements[needed - 1].kind == Kind::other) --needed;
+    for (size_t i = 0; i < needed; ++i) {
+        const Element& element = header.elements[i];
+        for (const Property& p : element.properties)
+            if (p.role == Role::indices && p.type->is_float())
+                throw std::runtime_error("the vertex indices of its " +
+                                         std::string(element.kind == Kind::faces ? "faces" : "strips") +
+                                         " have a floating-point type; expected an integer type");
+        const bool needs_indices = element.kind == Kind::faces || element.kind == Kind::strips;
+        if (needs_indices && element.count > 0 && !element.has(Role::indices))
+            throw std::runtime_error("its elements " + quoted(element.name) + " have no list 'vertex_indices'");
         const unsigned long long each = least_bytes(element, header.is_ascii());
         const std::string why = too_large(printable(element.name).c_str(), element.count, each, available);
         if (!why.empty()) throw std::runtime_error(why);
         available -= std::min(available, element.count * each);
-        if (&element == faces) break;
     }
-}
-
-namespace {
-
-// The types that rewrite() writes. In ASCII, OpenMesh would read one-byte integers as characters. In both forms it knows only a
-// few types for the length of a list. The sign of the length type does not matter.
-std::string_view type_text(const Type& type, bool ascii) {
-    return ascii && !type.is_float ? "int" : type.name;
-}
-std::string_view count_type_text(const Type& type, bool ascii) {
-    if (ascii || type.bytes == 4) return "int";
-    return type.bytes == 1 ? "uchar" : "uint16";
 }
 
 }  // namespace
 
-std::string rewrite(const Header& header) {
-    std::string text = "ply\nformat " + header.format + " 1.0\n";
-    for (const Element& element : header.elements) {
-        text += "element " + element.name + " " + std::to_string(element.count) + "\n";
-        for (const Property& p : element.properties) {
-            text += "property ";
-            if (p.is_list()) text.append("list ").append(count_type_text(*p.count_type, header.is_ascii())).append(" ");
-            text.append(type_text(*p.type, header.is_ascii())).append(" ") += p.name + "\n";
+bool Element::has(Role role) const {
+    return std::any_of(properties.begin(), properties.end(), [&](const Property& p) { return p.role == role; });
+}
+
+const Element* Header::find(Kind kind) const {
+    const auto found = std::find_if(elements.begin(), elements.end(), [&](const Element& e) { return e.kind == kind; });
+    return found == elements.end() ? nullptr : &*found;
+}
+
+Header parse_header(std::string_view bytes) {
+    Header header;
+    Lines lines(bytes);
+    std::string_view line;
+    if (!lines.next(line) || trim(line) != "ply")
+        throw std::runtime_error("line 1: found " + quoted(line) + ", expected 'ply', with which a PLY file begins");
+    while (lines.next(line)) {
+        std::string_view words = line;
+        if (next_word(words) == "end_header") {
+            header.body = lines.data();
+            header.lines = lines.number();
+            check(header);
+            return header;
+        }
+        try {
+            parse_line(line, header);
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error("line " + std::to_string(lines.number()) + ": the PLY header is damaged: " + error.what());
         }
     }
-    return text + "end_header\n";
+    throw std::runtime_error(
+        "the PLY header has no end: found the end of the file, expected end_header; it is cut off or damaged");
 }
 
 }  // namespace openmesh_import::ply

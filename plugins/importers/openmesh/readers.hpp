@@ -1,12 +1,11 @@
-// readers.hpp -- one function per format. Each reads the bytes of a file into a FlatImporter, through OpenMesh's reader.
+// readers.hpp -- one function per format. Each reads the bytes of a file into a FlatMesh, which load() finishes.
 #pragma once
+#include <functional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "flat_importer.hpp"
+#include "flat_mesh.hpp"
 #include "rt_plugin.h"
-#include "streams.hpp"
 
 namespace openmesh_import {
 
@@ -14,26 +13,41 @@ namespace openmesh_import {
 struct Source {
     std::string path;
     std::string_view bytes;
-    ReportProgress progress;
+    std::function<void(float)> progress;  // takes 0..1; throws to cancel
     const rt_scene_sink& sink;
+};
+// What a reader tells besides the mesh.
+struct Reading {
+    std::string texture;  // of the whole mesh (MeshLab's "comment TextureFile" in PLY), or empty
+    std::function<std::string(size_t face)> place_of_face;  // "line 7: ", for messages; may be empty
+    rt_u32 first_number = 0;                                // with which the file counts vertices
+    std::string contents;  // what a file without faces has instead: "8 vertices, 3 point or line elements"; may be empty
 };
 
 void warn(const Source& source, const std::string& text);
 
-void read_obj(const Source& source, FlatImporter& mesh);
-// Returns the texture of the whole mesh (MeshLab's "comment TextureFile"), or an empty string.
-std::string read_ply(const Source& source, FlatImporter& mesh);
-void read_stl(const Source& source, FlatImporter& mesh);
-void read_off(const Source& source, FlatImporter& mesh);
-void read_om(const Source& source, FlatImporter& mesh);
-
-// Runs OpenMesh's reader of a format. Returns false if the reader gave up. stop_at_errors: the stream throws
-// std::ios_base::failure at the first datum that cannot be read.
-bool run_reader(const char* extension, std::streambuf& buffer, bool stop_at_errors, bool is_binary, bool custom_properties,
-                FlatImporter& mesh);
+Reading read_obj(const Source& source, FlatMesh& mesh);
+Reading read_ply(const Source& source, FlatMesh& mesh);
+Reading read_stl(const Source& source, FlatMesh& mesh);
+Reading read_off(const Source& source, FlatMesh& mesh);
+Reading read_om(const Source& source, FlatMesh& mesh);
 
 // Returns a message such as "declares 4294967295 elements 'vertex' of at least 12 bytes ..." if `available` bytes cannot hold
 // that many elements, or an empty string if they can.
 std::string too_large(const char* what, unsigned long long count, unsigned long long least_bytes, unsigned long long available);
+
+// Reports the share of a file that was read, at every 16384th call.
+class Steps {
+ public:
+    explicit Steps(const Source& source) : source_(source) {}
+    template <class Fraction>
+    void step(const Fraction& fraction) {
+        if (++count_ % 16384 == 0 && source_.progress) source_.progress(fraction());
+    }
+
+ private:
+    const Source& source_;
+    size_t count_ = 0;
+};
 
 }  // namespace openmesh_import

@@ -1,4 +1,4 @@
-// text.hpp -- splits text formats into lines and words, and parses numbers.
+// text.hpp -- words and numbers of text formats, and texts for messages.
 #pragma once
 #include <charconv>
 #include <cmath>
@@ -7,10 +7,14 @@
 #include <string_view>
 #include <system_error>
 
+#include "../common/text_lines.hpp"
+
 namespace openmesh_import {
 
+using importers::Lines;
+
 inline bool is_blank(char c) {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r';
 }
 
 inline std::string_view trim(std::string_view text) {
@@ -21,31 +25,47 @@ inline std::string_view trim(std::string_view text) {
 
 // Removes the first word from `text` and returns it; empty if there is none.
 inline std::string_view next_word(std::string_view& text) {
-    size_t start = 0;
-    while (start < text.size() && is_blank(text[start])) ++start;
-    size_t end = start;
-    while (end < text.size() && !is_blank(text[end])) ++end;
-    const std::string_view word = text.substr(start, end - start);
-    text.remove_prefix(end);
-    return word;
+    const char *at = text.data(), *const end = at + text.size();
+    while (at < end && is_blank(*at)) ++at;
+    const char* const start = at;
+    while (at < end && !is_blank(*at)) ++at;
+    text = {at, static_cast<size_t>(end - at)};
+    return {start, static_cast<size_t>(at - start)};
 }
 
-// Removes the first line from `text` and returns it without its end (\n or \r\n).
-inline std::string_view next_line(std::string_view& text) {
-    const size_t end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == text.npos ? text.size() : end + 1);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    return line;
-}
-
+// For lines of numbers: `#` begins a comment wherever it stands.
 inline std::string_view before_comment(std::string_view line) {
     return line.substr(0, line.find('#'));
 }
 
-// Parses the whole word as a finite float. Values too small for a float become 0. Returns false for nan, inf, 1e999 and other
-// words.
-inline bool parse_float(std::string_view word, float& value) {
+// For lines of names, which may hold a `#`: a comment begins where one stands behind a blank. Returns where that is from `from`
+// on, or npos.
+inline size_t comment_in_name(std::string_view line, size_t from = 0) {
+    for (size_t at = line.find('#', from); at != line.npos; at = line.find('#', at + 1))
+        if (at == 0 || is_blank(line[at - 1])) return at;
+    return line.npos;
+}
+
+// Without the quotes around it, if it has some.
+inline std::string_view without_quotes(std::string_view name) {
+    const bool quoted = name.size() >= 2 && name.front() == '"' && name.back() == '"';
+    return quoted ? trim(name.substr(1, name.size() - 2)) : name;
+}
+
+// Compares a word of the file with one in lower case.
+inline bool is_word(std::string_view word, std::string_view lower) {
+    if (word.size() != lower.size()) return false;
+    for (size_t i = 0; i < word.size(); ++i) {
+        const char c = word[i] >= 'A' && word[i] <= 'Z' ? static_cast<char>(word[i] - 'A' + 'a') : word[i];
+        if (c != lower[i]) return false;
+    }
+    return true;
+}
+
+// Parses the whole word as a finite float, or as a double that is finite as a float. Values too small for a float become 0.
+// Returns false for nan, inf, 1e999 and other words.
+template <class Number>
+bool parse_float(std::string_view word, Number& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     double wide = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), wide);
@@ -56,14 +76,23 @@ inline bool parse_float(std::string_view word, float& value) {
     } else if (error != std::errc()) {
         return false;
     }
-    value = static_cast<float>(wide);
-    return std::isfinite(value);
+    value = static_cast<Number>(wide);
+    return std::isfinite(static_cast<float>(wide));
 }
 
 inline bool parse_integer(std::string_view word, long long& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     return error == std::errc() && end == word.data() + word.size() && !word.empty();
+}
+
+// True for words such as nan, -nan(ind), inf, -1.#IND and 1e999, which programs write for numbers that are not finite.
+inline bool is_odd_number(std::string_view word) {
+    if (!word.empty() && (word.front() == '-' || word.front() == '+')) word.remove_prefix(1);
+    if (word.empty()) return false;
+    const char first = static_cast<char>(word.front() | 0x20);
+    if (first == 'n' || first == 'i') return word.size() >= 3 && word.size() <= 8;
+    return word.front() >= '0' && word.front() <= '9' && word.find_first_of("eE#") != word.npos;
 }
 
 // Returns, for example, "1 face" or "3 faces".

@@ -63,37 +63,20 @@ bool is_space(char c) {
 
 }  // namespace
 
-Lexer::Lexer(std::string_view text) : text_(text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text_.substr(0, 3) == byte_order_mark) at_ = 3;
-}
-
-std::string_view Lexer::cut_line() {
-    const size_t end = text_.find_first_of("\r\n", at_);
-    const std::string_view line = text_.substr(at_, end == std::string_view::npos ? end : end - at_);
-    if (end == std::string_view::npos) {
-        at_ = text_.size();
-    } else {
-        at_ = end + (text_.substr(end, 2) == "\r\n" ? 2 : 1);
-    }
-    ++line_;
-    return line;
-}
-
 bool Lexer::next_line(std::vector<Token>& tokens) {
     tokens.clear();
-    while (at_ < text_.size()) {
-        const std::string_view line = cut_line();
-        if (line_ > kMaxLines) {
-            at_ = text_.size();
-            throw StatementError{{line_, 1},
+    for (std::string_view line; lines_.next(line);) {
+        if (lines_.number() > kMaxLines) {
+            const uint32_t line_number = this->line_number();
+            lines_ = importers::Lines({});
+            throw StatementError{{line_number, 1},
                                  "the file has more than " + std::to_string(kMaxLines) +
                                      " lines; give large meshes as PLY or OBJ and `load` them",
                                  true};
         }
         if (line.size() > kMaxLineBytes) {
             throw StatementError{
-                {line_, 1},
+                {line_number(), 1},
                 "the line has " + std::to_string(line.size()) + " bytes; expected at most " + std::to_string(kMaxLineBytes)};
         }
         split(line, tokens);
@@ -103,7 +86,7 @@ bool Lexer::next_line(std::vector<Token>& tokens) {
 }
 
 void Lexer::split(std::string_view line, std::vector<Token>& tokens) {
-    Cursor cursor{line, {line_, 1}};
+    Cursor cursor{line, {line_number(), 1}};
     line_end_ = cursor.position;
     while (!cursor.done()) {
         if (is_space(cursor.look())) {

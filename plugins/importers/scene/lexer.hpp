@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../common/text_lines.hpp"
 #include "diagnostics.hpp"
 
 namespace scene_format {
@@ -23,7 +24,7 @@ struct Token {
 // only UTF-8 text without control characters is accepted, because names end up in JSON, in logs and on terminals.
 class Lexer {
  public:
-    explicit Lexer(std::string_view text);
+    explicit Lexer(std::string_view text) : lines_(text) {}
 
     // Reads the next line that has words. Returns false at the end of the file. Throws StatementError for a bad line; the next
     // call continues with the line after it.
@@ -31,15 +32,13 @@ class Lexer {
     // The position just behind the last word of the line that next_line() read.
     Position line_end() const { return line_end_; }
     // The fraction of the file that has been read, 0..1.
-    float fraction() const { return text_.empty() ? 1.0f : static_cast<float>(at_) / static_cast<float>(text_.size()); }
+    float fraction() const { return lines_.fraction(); }
 
  private:
-    std::string_view cut_line();
+    uint32_t line_number() const { return static_cast<uint32_t>(lines_.number()); }
     void split(std::string_view line, std::vector<Token>& tokens);
 
-    std::string_view text_;
-    size_t at_ = 0;
-    uint32_t line_ = 0;
+    importers::Lines lines_;
     Position line_end_;
 };
 

@@ -1,10 +1,8 @@
 // The importer plugin `scene`, for the text format of docs/scene_format.md.
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
+#include <stdexcept>
 #include <string>
 
+#include "../common/mapped_file.hpp"
 #include "emit.hpp"
 #include "lexer.hpp"
 #include "parser.hpp"
@@ -13,29 +11,6 @@
 
 namespace scene_format {
 namespace {
-
-struct FileCloser {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-// Returns an empty string on success, else the reason of the failure.
-std::string read_file(const char* path, std::string& text) {
-    const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path, "rb"));
-    if (!file) return std::string("cannot open the file: ") + std::strerror(errno);
-    constexpr size_t piece_bytes = 1u << 16;
-    for (;;) {
-        const size_t size = text.size();
-        text.resize(size + piece_bytes);
-        const size_t got = std::fread(&text[size], 1, piece_bytes, file.get());
-        text.resize(size + got);
-        if (std::ferror(file.get()) != 0) return std::string("cannot read the file: ") + std::strerror(errno);
-        if (text.size() > kMaxFileBytes) {
-            return "the file is larger than " + std::to_string(kMaxFileBytes >> 20) +
-                   " MiB; give large meshes as PLY or OBJ and `load` them";
-        }
-        if (got < piece_bytes) return {};
-    }
-}
 
 // Reports the first error to the user, and writes the others to the log.
 int32_t report(const Diagnostics& diagnostics, const char* path, const rt_host& host) {
@@ -51,9 +26,11 @@ int32_t report(const Diagnostics& diagnostics, const char* path, const rt_host& 
 }
 
 int32_t load_file(const rt_host& host, const char* path, const rt_scene_sink& sink) {
-    std::string text;
-    if (const std::string why = read_file(path, text); !why.empty())
-        return host.fail(host.ctx, (std::string(path) + ": " + why).c_str());
+    const importers::MappedFile file(&host, path);
+    const std::string_view text = file.bytes();
+    if (text.size() > kMaxFileBytes)
+        throw std::runtime_error("the file is larger than " + std::to_string(kMaxFileBytes >> 20) +
+                                 " MiB; give large meshes as PLY or OBJ and `load` them");
     Document document;
     Diagnostics diagnostics;
     const auto proceed = [&](float fraction) { return host.progress(host.ctx, 0.5f * fraction) != 0; };
@@ -68,7 +45,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
 }
 
 constexpr const char* kExtensions[] = {"scene", nullptr};
-constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt::guarded<load>};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt::guarded<load>, RT_IMPORTER_TAKES_CONTENT, 0};
 
 }  // namespace
 }  // namespace scene_format

@@ -16,6 +16,6 @@ static int32_t load(const rt_host*, const char*, const double*, const rt_scene_s
 }
 
 static const char* const kExtensions[] = {"magic", nullptr};
-static const rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>};
+static const rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>, 0, 0};
 
 const rt_plugin rt_plugin_v1 = rt::importer_plugin("by_content", "By content", "1.0", nullptr, kImporter);

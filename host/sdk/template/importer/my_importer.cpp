@@ -45,7 +45,7 @@ int32_t load(const rt_host* host, const char* path, const double* params, const 
 }
 
 const char* const kExtensions[] = {"tri", nullptr};
-constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt::guarded<load>};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt::guarded<load>, 0, 0};
 
 }  // namespace
 
