@@ -108,12 +108,19 @@ std::vector<Cause> causes_of(const std::vector<CheckResult>& results) {
     std::stable_sort(failed.begin(), failed.end(),
                      [&](size_t a, size_t b) { return place_of(stage_of(results[a])) < place_of(stage_of(results[b])); });
     std::vector<Cause> causes;
+    const auto has_found = [&](const Cause& cause, const std::string& found) {
+        return std::any_of(cause.results.begin(), cause.results.end(),
+                           [&](size_t i) { return results[i].outcome.found == found; });
+    };
     for (const size_t i : failed) {
         const std::string stage = stage_of(results[i]);
-        // Checks without a stage come last, each with a cause of its own.
-        const bool follows = !stage.empty() && !causes.empty();
-        if (!follows) causes.push_back({stage, {}});
-        causes[follows ? 0 : causes.size() - 1].results.push_back(i);
+        // Checks without a stage come last, each with a cause of its own, unless it found just what another one found.
+        auto cause = stage.empty()
+                         ? std::find_if(causes.begin(), causes.end(),
+                                        [&](const Cause& other) { return has_found(other, results[i].outcome.found); })
+                         : causes.begin();
+        if (cause == causes.end()) cause = causes.insert(causes.end(), {stage, {}});
+        cause->results.push_back(i);
     }
     return causes;
 }

@@ -153,6 +153,7 @@ class Run {
             throw Error(Exit::usage, "--only " + options_.only.front() + ": " + record_.plugin->id +
                                          " has no check whose name begins like this; `clarity check " + record_.plugin->id +
                                          " --list` lists them");
+        if (options_.stop_at_first && failed_) stop();  // the worker may have stopped by itself
         return {failed_, cut_};
     }
 
@@ -259,6 +260,7 @@ class Run {
                                                   "--phase",   name,
                                                   "--quick",   options_.quick ? "1" : "0",
                                                   "--list",    options_.list ? "1" : "0",
+                                                  "--stop",    options_.stop_at_first ? "1" : "0",
                                                   "--seed",    std::to_string(options_.seed),
                                                   "--parent",  std::to_string(getpid())};
             for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});

@@ -55,7 +55,7 @@ struct Arguments {
     std::vector<std::string> only;
     std::set<std::string> done;  // checks that an earlier worker ran
     std::vector<int> lanes;
-    bool quick = false, list = false;
+    bool quick = false, list = false, stop_at_first = false;
     uint64_t seed = 0;
     long parent = 0;
 };
@@ -72,6 +72,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
         {"--phase", text(a.phase)},  // builds, hits, keys, shape, accesses or imports
         {"--quick", flag(a.quick)},
         {"--list", flag(a.list)},
+        {"--stop", flag(a.stop_at_first)},
         {"--seed", [&](const char* value) { a.seed = std::strtoull(value, nullptr, 10); }},
         {"--device", text(a.device)},
         {"--report", text(a.report)},
@@ -109,7 +110,7 @@ void report(const Check& check, const Outcome& outcome, double seconds) {
                          {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
-void run(const Check& check) {
+Outcome::Kind run(const Check& check) {
     const auto start = std::chrono::steady_clock::now();
     const Step step = [&](const std::string& what, double limit_s) {
         worker::take_crash_signals();
@@ -128,6 +129,7 @@ void run(const Check& check) {
         outcome = Outcome::failed(e.what());
     }
     report(check, outcome, seconds_since(start));
+    return outcome.kind;
 }
 
 using worker::WorkerKind;
@@ -283,9 +285,13 @@ int run_all(const Arguments& arguments) {
                                       : arguments.phase == "imports" ? importer_checks(arguments)
                                       : arguments.phase == "keys"    ? key_value_checks(arguments)
                                                                      : kernel_checks(record, arguments);
-    for (const Check& check : checks)
-        if (!arguments.done.count(check.name) && is_wanted(check.name, arguments.only))
-            arguments.list ? report(check, Outcome::skipped(""), 0) : run(check);
+    for (const Check& check : checks) {
+        if (arguments.done.count(check.name) || !is_wanted(check.name, arguments.only)) continue;
+        if (arguments.list)
+            report(check, Outcome::skipped(""), 0);
+        else if (run(check) == Outcome::Kind::failed && arguments.stop_at_first)
+            break;
+    }
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
     return 0;
 }

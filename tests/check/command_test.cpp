@@ -26,6 +26,7 @@ TEST(Causes, TheFirstStageThatFailsStandsForTheOthers) {
         result("hits.octants", Outcome::failed("any-hit queries with 1 lane: 3 are wrong")),
         result("hits.random", Outcome::failed("nearest hits with 1 lane, debug: 3 are wrong")),
         result("builds.leaks", Outcome::failed("it leaks memory")),
+        result("builds.cancel", Outcome::failed("a box is too small")),
         result("hits.axes", Outcome::failed("crashed while tracing 800 rays, nearest hits with 16 lanes")),
         result("builds.bounds", Outcome::failed("a box is too small")),
         result("builds.refit", Outcome::failed("wrong")),
@@ -33,9 +34,9 @@ TEST(Causes, TheFirstStageThatFailsStandsForTheOthers) {
     const auto causes = clarity::check::causes_of(results);
     ASSERT_EQ(causes.size(), 2u);
     EXPECT_EQ(causes[0].stage, "bounds");
-    EXPECT_EQ(causes[0].results, (std::vector<size_t>{5, 2, 1, 4, 6}));
+    EXPECT_EQ(causes[0].results, (std::vector<size_t>{6, 2, 1, 5, 7, 4}));
     EXPECT_EQ(causes[1].results, (std::vector<size_t>{3}));
-    EXPECT_EQ(clarity::check::stage_of(results[4]), "nearest hits of several lanes");
+    EXPECT_EQ(clarity::check::stage_of(results[5]), "nearest hits of several lanes");
 }
 
 TEST(Causes, WithoutFailuresThereAreNone) {
