@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/output_file.hpp"
+#include "base/log.hpp"
 #include "base/printable.hpp"
 #include "check/causes.hpp"
 #include "check/check.hpp"
@@ -159,7 +160,10 @@ class Report {
 
     void take(const CheckResult& result) {
         results_.push_back(result);
-        if (!command_.json && result.outcome.kind != Outcome::Kind::failed)
+        if (command_.json) return;
+        if (result.outcome.kind == Outcome::Kind::failed)
+            log(LogLevel::info, result.plugin + " " + result.name + " fails; the last lines say how");
+        else
             print(line_of(result) + "  (" + seconds_text(result.seconds) + ")");
     }
     // Prints what failed, and the verdict. cut: why not all checks ran.
