@@ -22,7 +22,7 @@ constexpr char kNames[] = "uv";
 struct Spot {
     Vec at{}, normal{};  // unit, on the side from which it was found
     double uv[2] = {0, 0};
-    bool found = false;
+    bool found = false, is_back = false;  // is_back: the surface's own normal points to the other side
 };
 
 // The difference of two texture coordinates: 0.99 and 0.01 are neighbours, because pictures repeat.
@@ -46,7 +46,7 @@ class Surface {
         std::vector<ProbePoint> points;
         std::vector<Spot> spots(from.size());
         for (size_t i = 0; i < rays.size(); ++i) {
-            spots[i].found = from[i].found && is_hit(rays[i], hits[i]) && double(hits[i].t) < 2.5 * lift;
+            spots[i].found = from[i].found && is_hit(rays[i], hits[i]) && std::fabs(double(hits[i].t) - lift) < 0.8 * lift;
             spots[i].at = point_of(rays[i], spots[i].found ? double(hits[i].t) : lift);
             points.push_back({{float(spots[i].at[0]), float(spots[i].at[1]), float(spots[i].at[2])}, hits[i].u, hits[i].v});
         }
@@ -55,8 +55,10 @@ class Surface {
             const Vec n = to_vec(surfaces[i].normal);
             spots[i].found = spots[i].found && dot(n, n) > 0 && std::isfinite(dot(n, n));
             if (!spots[i].found) continue;
-            spots[i].normal = (dot(n, from[i].normal) < 0 ? -1 : 1) * normalized(n);
-            spots[i].found = dot(spots[i].normal, from[i].normal) > kSameSheet;  // else it is around an edge
+            spots[i].is_back = from[i].is_back;
+            spots[i].normal = (from[i].is_back ? -1 : 1) * normalized(n);
+            // Else it is around an edge, or on the other side of something thin.
+            spots[i].found = dot(spots[i].normal, from[i].normal) > kSameSheet;
             spots[i].uv[0] = double(surfaces[i].tex_u);
             spots[i].uv[1] = double(surfaces[i].tex_v);
         }
@@ -118,6 +120,7 @@ std::vector<Spot> smooth_spots(const TouchedPart& part) {
         Spot spot;
         spot.at = touch.at;
         spot.normal = touch.across;
+        spot.is_back = dot(to_vec(part.surfaces[i].normal), touch.across) < 0;
         spot.uv[0] = double(part.surfaces[i].tex_u);
         spot.uv[1] = double(part.surfaces[i].tex_v);
         spot.found = true;
