@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstdlib>
 #include <exception>
@@ -18,6 +19,7 @@
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "check/oclgrind.hpp"
+#include "import/wire.hpp"
 #include "worker/child.hpp"
 #include "worker/supervisor.hpp"
 
@@ -28,6 +30,9 @@ constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;  // of a worker; the scenes
 constexpr const char* kWorker = "check-worker";
 // After so many deaths of its worker a phase ends: each endless loop costs its time limit.
 constexpr unsigned kMostDeaths = 3;
+// oclgrind takes seconds to minutes for the same rays, as the kernels are: it is cut after this processor time.
+constexpr double kAccesses_s = 60;
+constexpr const char* kAccessesCut = "cut after 60 s";
 
 // The worker died in a check.
 struct Died {
@@ -35,13 +40,20 @@ struct Died {
     bool endless;
 };
 
+// The checks were told to stop.
+struct Stopped {
+    std::string why;
+};
+
 // Follows one worker through checks of one phase.
 class CheckSupervisor : public worker::Supervisor {
  public:
+    // stop: asked often; says why the worker must stop, or nothing.
     CheckSupervisor(worker::WorkerProcess& process, const std::string& plugin, Progress& progress,
-                    const std::function<void(CheckResult)>& on_result)
+                    const std::function<std::string()>& stop, const std::function<void(CheckResult)>& on_result)
         : Supervisor(process, {worker::kCheckGreeting, "a check worker", worker::worker_program(), Exit::failed}, progress),
           plugin_(plugin),
+          stop_(stop),
           on_result_(on_result) {}
     // The check that runs, as far as it is known.
     CheckResult current() const {
@@ -52,6 +64,7 @@ class CheckSupervisor : public worker::Supervisor {
         result.seconds = seconds_since(begin_);
         return result;
     }
+    const std::string& step() const { return step_; }
 
  private:
     void handle(const worker::Message& message) override {
@@ -82,6 +95,9 @@ class CheckSupervisor : public worker::Supervisor {
             on_result_(result);
         }
     }
+    void watched() override {
+        if (std::string why = stop_(); !why.empty()) throw Stopped{std::move(why)};
+    }
     double idle_limit_s() const override { return limit_s_; }
     bool counts_processor_time() const override { return true; }
     uint64_t processor_limit_s() const override { return 0; }
@@ -110,6 +126,7 @@ class CheckSupervisor : public worker::Supervisor {
     }
 
     const std::string plugin_;
+    const std::function<std::string()>& stop_;
     const std::function<void(CheckResult)>& on_result_;
     std::string name_, tried_, step_ = "the library was loaded";
     double limit_s_ = 60;
@@ -123,7 +140,7 @@ class Run {
         const std::function<void(const CheckResult&)>& on_result)
         : record_(record), beside_(beside), options_(options), progress_(progress), on_result_(on_result) {}
 
-    bool all() {
+    CheckEnd all() {
         if (record_.plugin->importer) {
             phase("imports");
         } else if (record_.plugin->primitive) {
@@ -132,11 +149,12 @@ class Run {
         } else {
             structure();
         }
-        if (count_ == 0)
+        if (count_ == 0 && cut_.empty())
             throw Error(Exit::usage, "--only " + options_.only.front() + ": " + record_.plugin->id +
                                          " has no check whose name begins like this; `clarity check " + record_.plugin->id +
-                                         "` lists them");
-        return !failed_;
+                                         " --list` lists them");
+        if (options_.stop_at_first && failed_) stop();  // the worker may have stopped by itself
+        return {failed_, cut_};
     }
 
  private:
@@ -164,6 +182,14 @@ class Run {
     // oclgrind is slow and may be missing, so only the long form asks for it.
     void kernels(const std::string& name) {
         if (!phase(name) || options_.quick || !is_wanted(kAccessCheck, options_.only)) return;
+        CheckResult result;
+        result.plugin = record_.plugin->id;
+        result.name = kAccessCheck;
+        result.tried = kAccessTried;
+        if (options_.list) {
+            result.outcome = Outcome::skipped("");
+            return take(result);
+        }
         const std::string log = folder() + "/oclgrind.log";
         const Launch launch =
             in_oclgrind({worker::worker_program() == worker::kThisProgram ? program_file().string() : worker::worker_program(),
@@ -174,10 +200,6 @@ class Run {
             phase("accesses", launch, log);
             return;
         }
-        CheckResult result;
-        result.plugin = record_.plugin->id;
-        result.name = kAccessCheck;
-        result.tried = kAccessTried;
         result.outcome = Outcome::skipped("oclgrind is not installed");
         take(result);
     }
@@ -198,6 +220,15 @@ class Run {
         if (!options_.report_folder.empty()) return options_.report_folder;
         if (!temporary_) temporary_.emplace("clarity-check");
         return temporary_->path();
+    }
+
+    // Why no check may go on; empty: nothing stands against it.
+    std::string stop() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (cut_.empty() && options_.stop_at_first && failed_) cut_ = "--stop-at-first: a check has failed";
+        if (cut_.empty() && options_.time_limit_s > 0 && seconds_since(begin_) > options_.time_limit_s)
+            cut_ = "--time-limit: " + worker::in_words(options_.time_limit_s) + " are over";
+        return cut_;
     }
 
     void take(const CheckResult& result) {
@@ -224,9 +255,13 @@ class Run {
             take(result);
         };
         for (unsigned deaths = 0;;) {
+            if (!stop().empty()) return passed;
             std::vector<std::string> arguments = {"--library", record_.path,
                                                   "--phase",   name,
                                                   "--quick",   options_.quick ? "1" : "0",
+                                                  "--list",    options_.list ? "1" : "0",
+                                                  "--stop",    options_.stop_at_first ? "1" : "0",
+                                                  "--seed",    std::to_string(options_.seed),
                                                   "--parent",  std::to_string(getpid())};
             for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});
             for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
@@ -238,14 +273,37 @@ class Run {
             for (const std::string& only : options_.only) arguments.insert(arguments.end(), {"--only", only});
             for (const std::string& other : done) arguments.insert(arguments.end(), {"--done", other});
             arguments.insert(arguments.begin(), launch.before.begin(), launch.before.end());
+            const bool takes_scene = options_.scene && name == "hits";
+            if (takes_scene) arguments.insert(arguments.end(), {"--rays", options_.rays_file});
             worker::WorkerProcess process(launch.program, launch.command, arguments, Exit::failed);
+            if (takes_scene)
+                if (const std::string why = import::write_scene(process.result(), *options_.scene); !why.empty())
+                    throw Error(Exit::failed, "the scene cannot be given to the worker: " + why);
             const std::function<void(CheckResult)> on_result = [&](CheckResult result) {
                 if (!log.empty()) result.outcome = with_findings(result.outcome, log);
                 finish(result);
             };
-            CheckSupervisor supervisor(process, record_.plugin->id, progress_, on_result);
+            const auto begin = std::chrono::steady_clock::now();
+            const std::function<std::string()> stop_worker = [&] {
+                std::string why = stop();
+                // On a busy machine its processor time grows slowly: then it has three times as long.
+                if (why.empty() && !log.empty() &&
+                    (process.processor_s() > kAccesses_s || seconds_since(begin) > 3 * kAccesses_s))
+                    why = kAccessesCut;
+                return why;
+            };
+            CheckSupervisor supervisor(process, record_.plugin->id, progress_, stop_worker, on_result);
             try {
                 supervisor.follow();
+                return passed;
+            } catch (const Stopped& stopped) {
+                CheckResult result = supervisor.current();
+                if (result.name.empty() || std::count(done.begin(), done.end(), result.name)) return passed;
+                const std::string during = stopped.why + ", while " + supervisor.step();
+                result.outcome = stopped.why == kAccessesCut
+                                     ? with_findings(Outcome::passed("no access outside of a buffer so far; " + during), log)
+                                     : Outcome::skipped("cut by " + during);
+                finish(result);
                 return passed;
             } catch (const Died& died) {
                 CheckResult result = supervisor.current();
@@ -267,6 +325,8 @@ class Run {
     std::mutex mutex_;
     std::condition_variable sound_known_;
     bool sound_is_known_ = false, unsound_ = false, failed_ = false;
+    std::string cut_;
+    const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     size_t count_ = 0;
 };
 
@@ -277,8 +337,8 @@ bool is_wanted(const std::string& check, const std::vector<std::string>& only) {
                                        [&](const std::string& begin) { return check.compare(0, begin.size(), begin) == 0; });
 }
 
-bool check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
-                          Progress& progress, const std::function<void(const CheckResult&)>& on_result) {
+CheckEnd check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
+                              Progress& progress, const std::function<void(const CheckResult&)>& on_result) {
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");

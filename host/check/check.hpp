@@ -1,12 +1,15 @@
 // check.hpp -- is a plugin right? Runs all checks of a library in worker processes, which a faulty plugin may crash.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/progress.hpp"
 #include "check/steps.hpp"
 #include "plugin/registry.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::check {
 
@@ -18,6 +21,13 @@ struct CheckOptions {
     std::vector<int> lanes;            // with which kernels are compiled; empty: 1, 4, 8 and 16
     std::vector<std::string> samples;  // of importers: files, and folders with files of their extensions
     std::string truth_folder;          // of importers: what others read from the samples; "": none
+    bool list = false;                 // runs nothing: each check is a skipped result
+    uint64_t seed = 0;                 // of random numbers: see seed.hpp
+    double time_limit_s = 0;           // for one plugin; 0: none
+    bool stop_at_first = false;        // no check begins after one has failed
+    // Of structures: the user's own scene, without shapes, and rays through it. Null: none.
+    std::shared_ptr<const Scene> scene;
+    std::string rays_file;
 };
 
 struct CheckResult {
@@ -29,12 +39,17 @@ struct CheckResult {
 // Whether the names, or beginnings of names, in `only` name a check; all do if there is none.
 bool is_wanted(const std::string& check, const std::vector<std::string>& only);
 
+// How the checks of a library ended.
+struct CheckEnd {
+    bool failed = false;  // a check
+    std::string cut;      // why not all checks ran: "--time-limit: 30 s are over"; empty: all did
+};
+
 // Checks one library. The host has accepted its plugin. beside: the libraries that it needs: the one that packs and traces
 // its topology, or importers of files that samples load. on_result is called from several threads, one at a time, in the order
-// in which checks end. Returns whether all passed. Throws Cancelled, and Error if no worker can be started or `only` names
-// nothing.
-bool check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
-                          Progress& progress, const std::function<void(const CheckResult&)>& on_result);
+// in which checks end. Throws Cancelled, and Error if no worker can be started or `only` names nothing.
+CheckEnd check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
+                              Progress& progress, const std::function<void(const CheckResult&)>& on_result);
 
 // Main function of the worker (`clarity check-worker ...`, which people do not call).
 int check_worker_main(int argc, char** argv);

@@ -1,11 +1,21 @@
 // check_worker_main.cpp -- main function of the worker: loads one library and runs checks of one phase, one after the other.
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -17,11 +27,14 @@
 #include "check/builds/device_checks.hpp"
 #include "check/check.hpp"
 #include "check/hits/hits_checks.hpp"
+#include "check/hits/own_scene.hpp"
 #include "check/importers/import_checks.hpp"
 #include "check/process_size.hpp"
 #include "check/shapes/key_checks.hpp"
 #include "check/shapes/shape_checks.hpp"
 #include "device/device.hpp"
+#include "import/wire.hpp"
+#include "render/queries/ray_text.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"
 
@@ -34,54 +47,48 @@ using worker::MessageKind;
 constexpr uint64_t kBuilderBytes = uint64_t(1) << 30;   // for scenes of at most 40000 triangles
 constexpr uint64_t kImporterBytes = uint64_t(1) << 30;  // what the program gives to small files
 constexpr size_t kMostText = 3000;
+constexpr rlim_t kAloneLimit_s = 4;  // processor time for a sample that is read alone; of larger ones nothing is compared then
 
 struct Arguments {
-    std::string library, phase, device, report, truth, scratch;
+    std::string library, phase, device, report, truth, scratch, rays;
     std::vector<std::string> beside, samples;
     std::vector<std::string> only;
     std::set<std::string> done;  // checks that an earlier worker ran
     std::vector<int> lanes;
-    bool quick = false;
+    bool quick = false, list = false, stop_at_first = false;
+    uint64_t seed = 0;
     long parent = 0;
 };
 
-// check-worker --library FILE [--beside FILE]... --phase builds|hits|keys|shape|accesses|imports [--quick 1] [--device D]
-// [--report DIR]
-// [--lanes N]...
-// [--only NAME]...
-// [--done NAME]... [--sample FILE|DIR]... [--truth DIR] [--scratch DIR]
+// check-worker KEY VALUE... The program gives the scene to --rays in the file kResultFd.
 bool parse(int argc, char** argv, Arguments& arguments) {
+    Arguments& a = arguments;
+    const auto text = [](std::string& to) { return [&to](const char* value) { to = value; }; };
+    const auto list = [](auto& to) { return [&to](const char* value) { to.insert(to.end(), value); }; };
+    const auto flag = [](bool& to) { return [&to](const char* value) { to = value == std::string("1"); }; };
+    const std::map<std::string, std::function<void(const char*)>> keys = {
+        {"--library", text(a.library)},
+        {"--beside", list(a.beside)},
+        {"--phase", text(a.phase)},  // builds, hits, keys, shape, accesses or imports
+        {"--quick", flag(a.quick)},
+        {"--list", flag(a.list)},
+        {"--stop", flag(a.stop_at_first)},
+        {"--seed", [&](const char* value) { a.seed = std::strtoull(value, nullptr, 10); }},
+        {"--device", text(a.device)},
+        {"--report", text(a.report)},
+        {"--lanes", [&](const char* value) { a.lanes.push_back(std::atoi(value)); }},
+        {"--only", list(a.only)},
+        {"--done", list(a.done)},
+        {"--sample", list(a.samples)},
+        {"--truth", text(a.truth)},
+        {"--scratch", text(a.scratch)},
+        {"--rays", text(a.rays)},
+        {"--parent", [&](const char* value) { a.parent = std::strtol(value, nullptr, 10); }},
+    };
     for (int i = 2; i + 1 < argc; i += 2) {
-        const std::string key = argv[i], value = argv[i + 1];
-        if (key == "--library") {
-            arguments.library = value;
-        } else if (key == "--beside") {
-            arguments.beside.push_back(value);
-        } else if (key == "--sample") {
-            arguments.samples.push_back(value);
-        } else if (key == "--truth") {
-            arguments.truth = value;
-        } else if (key == "--scratch") {
-            arguments.scratch = value;
-        } else if (key == "--phase") {
-            arguments.phase = value;
-        } else if (key == "--quick") {
-            arguments.quick = value == "1";
-        } else if (key == "--device") {
-            arguments.device = value;
-        } else if (key == "--report") {
-            arguments.report = value;
-        } else if (key == "--only") {
-            arguments.only.push_back(value);
-        } else if (key == "--lanes") {
-            arguments.lanes.push_back(std::atoi(value.c_str()));
-        } else if (key == "--done") {
-            arguments.done.insert(value);
-        } else if (key == "--parent") {
-            arguments.parent = std::strtol(value.c_str(), nullptr, 10);
-        } else {
-            return false;
-        }
+        const auto key = keys.find(argv[i]);
+        if (key == keys.end()) return false;
+        key->second(argv[i + 1]);
     }
     return !arguments.library.empty() && !arguments.phase.empty();
 }
@@ -91,7 +98,19 @@ std::string shortened(std::string text) {
     return text;
 }
 
-void run(const Check& check) {
+void report(const Check& check, const Outcome& outcome, double seconds) {
+    constexpr const char* kKinds[] = {"passed", "failed", "skipped"};
+    const nlohmann::json report = {{"name", check.name},
+                                   {"tried", check.tried},
+                                   {"kind", kKinds[static_cast<int>(outcome.kind)]},
+                                   {"found", shortened(outcome.found)},
+                                   {"repeat", outcome.repeat},
+                                   {"seconds", seconds}};
+    worker::send_message(kChannelFd,
+                         {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+}
+
+Outcome::Kind run(const Check& check) {
     const auto start = std::chrono::steady_clock::now();
     const Step step = [&](const std::string& what, double limit_s) {
         worker::take_crash_signals();
@@ -109,15 +128,8 @@ void run(const Check& check) {
     } catch (const std::exception& e) {
         outcome = Outcome::failed(e.what());
     }
-    constexpr const char* kKinds[] = {"passed", "failed", "skipped"};
-    const nlohmann::json report = {{"name", check.name},
-                                   {"tried", check.tried},
-                                   {"kind", kKinds[static_cast<int>(outcome.kind)]},
-                                   {"found", shortened(outcome.found)},
-                                   {"repeat", outcome.repeat},
-                                   {"seconds", seconds_since(start)}};
-    worker::send_message(kChannelFd,
-                         {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+    report(check, outcome, seconds_since(start));
+    return outcome.kind;
 }
 
 using worker::WorkerKind;
@@ -138,7 +150,7 @@ std::string own_folder() {  // tells how large this process is
 std::vector<Check> builder_checks(const PluginRecord& record, const Arguments& arguments) {
     use_one_arena();
     enter_sandbox(WorkerKind::builder, {own_folder()}, limits_of(kBuilderBytes));
-    return build_checks(*record.plugin, arguments.quick);
+    return build_checks(*record.plugin, arguments.quick, arguments.seed);
 }
 
 // The first structure among the libraries beside a shape; nullptr: none.
@@ -157,9 +169,16 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
         if (!beside.plugin) throw Error(Exit::failed, beside.path + ": " + beside.why);
         layout = beside.plugin;
     }
+    std::vector<rt_ray> rays;
+    Scene scene;
+    if (!arguments.rays.empty() && !arguments.list) {
+        rays = read_rays(arguments.rays);
+        if (const std::string why = import::read_scene(worker::kResultFd, scene); !why.empty()) throw Error(Exit::failed, why);
+    }
     enter_sandbox(WorkerKind::driver, {}, {});
     HitsOptions options;
     options.quick = arguments.quick;
+    options.seed = arguments.seed;
     options.report_folder = arguments.report;
     options.lanes_are_named = !arguments.lanes.empty();
     if (options.lanes_are_named) options.lanes = arguments.lanes;
@@ -172,6 +191,8 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     if (arguments.phase == "accesses") return access_checks(*record.plugin, layout, open, options);
     std::vector<Check> checks = hits_checks(*record.plugin, layout, open, options);
     checks.insert(checks.begin(), device_check(*record.plugin, open, arguments.quick));
+    if (!arguments.rays.empty())
+        checks.push_back(own_scene_check(*record.plugin, layout, open, options, std::move(scene), std::move(rays)));
     return checks;
 }
 
@@ -181,12 +202,46 @@ std::vector<Check> key_value_checks(const Arguments& arguments) {
     libraries.insert(libraries.end(), arguments.beside.begin(), arguments.beside.end());
     inputs->plugins = PluginRegistry::of(libraries);
     inputs->plugin = inputs->plugins.records().front().plugin;
-    inputs->statements = write_statements(*inputs->plugin, arguments.scratch);
+    inputs->statements = write_statements(*inputs->plugin, arguments.scratch, arguments.seed);
+    inputs->seed = arguments.seed;
     set_log_listener([](LogLevel, const std::string&) {});  // warnings about wrong statements are as they should be
     use_one_arena();
     enter_sandbox(WorkerKind::parser, {own_folder(), std::filesystem::canonical(arguments.scratch).string()},
                   limits_of(kImporterBytes));
     return key_checks(inputs, arguments.quick);
+}
+
+// Calls a function in a copy of this process, with a limit of processor time in seconds. Nothing where it crashes or takes
+// longer: that is a result of other checks.
+std::optional<std::string> in_copy(rlim_t limit_s, const std::function<std::string()>& call) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+    const pid_t copy = fork();
+    if (copy == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        // The handlers would tell the program of a crash.
+        for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGSYS}) std::signal(signal, SIG_DFL);
+        const rlimit limit{limit_s, limit_s};
+        setrlimit(RLIMIT_CPU, &limit);
+        std::string said;
+        try {
+            said = call();
+        } catch (...) {
+            _exit(1);
+        }
+        _exit(write(ends[1], said.data(), said.size()) == static_cast<ssize_t>(said.size()) ? 0 : 1);
+    }
+    close(ends[1]);
+    std::string said;
+    char bytes[4096];
+    for (ssize_t count = 0; copy > 0 && (count = read(ends[0], bytes, sizeof bytes)) > 0;)
+        said.append(bytes, static_cast<size_t>(count));
+    close(ends[0]);
+    int status = 1;
+    if (copy > 0)
+        while (waitpid(copy, &status, 0) < 0 && errno == EINTR) {
+        }
+    return status == 0 ? std::optional<std::string>(said) : std::nullopt;
 }
 
 std::vector<Check> importer_checks(const Arguments& arguments) {
@@ -196,14 +251,28 @@ std::vector<Check> importer_checks(const Arguments& arguments) {
     inputs->plugins = PluginRegistry::of(libraries);
     inputs->plugin = inputs->plugins.records().front().plugin;
     const rt_importer& importer = *inputs->plugin->importer;
+    inputs->seed = arguments.seed;
     inputs->samples = samples_among(importer, arguments.samples);
     for (const std::string& sample : inputs->samples)
         if (const auto truth = truth_of(sample, arguments.truth)) inputs->truths[sample] = *truth;
-    inputs->hostile = write_hostile_files(importer, inputs->samples, arguments.scratch, arguments.quick ? 100 : 600);
+    inputs->hostile = write_hostile_files(importer, inputs->samples, arguments.scratch,
+                                          arguments.list    ? 0
+                                          : arguments.quick ? 100
+                                                            : 600,
+                                          arguments.seed);
     set_log_listener([](LogLevel, const std::string&) {});  // warnings about damaged files are as they should be
     use_one_arena();
     std::vector<std::string> folders = {own_folder(), std::filesystem::canonical(arguments.scratch).string()};
     for (const std::string& sample : inputs->samples) folders.push_back(std::filesystem::path(sample).parent_path().string());
+    if (!arguments.list && is_wanted("imports.state", arguments.only) && !arguments.done.count("imports.state"))
+        for (size_t i = 0; i < std::min(inputs->samples.size(), kMostAlone); ++i) {
+            const std::string& sample = inputs->samples[i];
+            const auto digest = in_copy(kAloneLimit_s, [&] {
+                enter_sandbox(WorkerKind::parser, folders, limits_of(kImporterBytes));
+                return import_digest(*inputs, sample);
+            });
+            if (digest) inputs->alone[sample] = *digest;
+        }
     enter_sandbox(WorkerKind::parser, folders, limits_of(kImporterBytes));
     return import_checks(inputs, arguments.quick);
 }
@@ -216,8 +285,13 @@ int run_all(const Arguments& arguments) {
                                       : arguments.phase == "imports" ? importer_checks(arguments)
                                       : arguments.phase == "keys"    ? key_value_checks(arguments)
                                                                      : kernel_checks(record, arguments);
-    for (const Check& check : checks)
-        if (!arguments.done.count(check.name) && is_wanted(check.name, arguments.only)) run(check);
+    for (const Check& check : checks) {
+        if (arguments.done.count(check.name) || !is_wanted(check.name, arguments.only)) continue;
+        if (arguments.list)
+            report(check, Outcome::skipped(""), 0);
+        else if (run(check) == Outcome::Kind::failed && arguments.stop_at_first)
+            break;
+    }
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
     return 0;
 }

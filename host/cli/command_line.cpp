@@ -191,6 +191,22 @@ void add_compare(CLI::App& app, CompareCommand& command) {
     app.add_flag("--json", command.json, "As JSON");
 }
 
+// "10%" is 0.1.
+CLI::Validator percent() {
+    return CLI::Validator(
+        [](std::string& text) {
+            if (text.empty() || text.back() != '%') return std::string();
+            const std::string number = text.substr(0, text.size() - 1);
+            double share = 0;
+            if (!CLI::detail::lexical_cast(number, share)) return text + " is no number of percent";
+            char all_digits[40];
+            std::snprintf(all_digits, sizeof all_digits, "%.17g", share / 100);
+            text = all_digits;
+            return std::string();
+        },
+        "");
+}
+
 void add_check(CLI::App& app, CheckCommand& command) {
     app.add_option("plugin", command.what,
                    "Ids as `clarity plugins` lists them, libraries, or folders of source, which are built first")
@@ -206,7 +222,18 @@ void add_check(CLI::App& app, CheckCommand& command) {
         ->allow_extra_args(false)
         ->check(CLI::IsMember({1, 4, 8, 16}));
     app.add_flag("--quick", command.options.quick,
-                 "Fewer rays, repetitions and compiled variants: seconds instead of a minute");
+                 "Fewer rays, repetitions and compiled variants: about a minute of processor time, where the long form takes "
+                 "several");
+    app.add_flag("--list", command.options.list, "Only list the checks: their names and what they try");
+    single(app.add_option("--seed", command.options.seed,
+                          "Other rays, values and damaged files; 0: those of every run without this option"))
+        ->type_name("N")
+        ->capture_default_str();
+    single(app.add_option("--time-limit", command.options.time_limit_s,
+                          "Limit for the checks of one plugin; what is cut is not said to be right"))
+        ->type_name("SECONDS")
+        ->check(CLI::Range(1.0, 1e6));
+    app.add_flag("--stop-at-first", command.options.stop_at_first, "Begin no check after one has failed");
     app.add_option("--samples", command.options.samples,
                    "Of importers: files to read and to damage, or folders with files of its extensions; may be repeated")
         ->type_name("FILE|DIR")
@@ -214,7 +241,17 @@ void add_check(CLI::App& app, CheckCommand& command) {
     single(app.add_option("--truth", command.options.truth_folder,
                           "Of importers: a folder of .json files with what other programs read from the samples"))
         ->type_name("DIR");
+    CLI::Option* const scene =
+        app.add_option("--scene", command.scene_files,
+                       "Of structures: only trace the rays of --rays in this scene, and compare all hits "
+                       "with those of every primitive tested; may be repeated");
+    scene->type_name("FILE")->allow_extra_args(false);
+    CLI::Option* const rays =
+        single(app.add_option("--rays", command.options.rays_file, "The rays for --scene, as `clarity trace` reads them"));
+    rays->type_name("FILE")->needs(scene);
+    scene->needs(rays);
     app.add_flag("--json", command.json, "As JSON");
+    single(app.add_option("--junit", command.junit_file, "Write the results as JUnit's XML, too"))->type_name("FILE");
     single(app.add_option("--report", command.options.report_folder,
                           "Write the rays with wrong answers into this folder, and a picture of the pixels that differ"))
         ->type_name("DIR");
@@ -263,8 +300,10 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->type_name("SECONDS")
         ->check(CLI::Range(1.0, 1e6));
     single(app.add_option("--max-spread", bench.max_spread,
-                          "Refuse a row if the middle half of its repetitions spreads over more than this share of the median"))
+                          "Refuse a row if the middle half of its repetitions spreads over more than this share of the median, "
+                          "0.1 or 10%"))
         ->type_name("SHARE")
+        ->transform(percent())
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
     single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suites scale and large"))

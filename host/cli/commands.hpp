@@ -93,6 +93,8 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command);
 struct CheckCommand {
     std::vector<std::string> what;  // ids and libraries
     check::CheckOptions options;
+    std::vector<std::string> scene_files;  // of --scene
+    std::string junit_file;
     bool json = false;
 };
 int run_check(const PluginRegistry& plugins, const CheckCommand& command);

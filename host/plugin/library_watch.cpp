@@ -13,8 +13,8 @@
 
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
+#include "base/files/process_folder.hpp"
 #include "base/files/read_file.hpp"
-#include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
 
 namespace clarity {
@@ -58,9 +58,17 @@ bool is_being_written(const std::string& path) {
 
 // Copies a library to a new name: my_tree.2.so.
 std::string private_copy(const std::string& path) {
-    static const TemporaryFolder folder("clarity-plugins");  // of this process
+    // Of this process. If it is killed, the next one that copies removes the folder.
+    static const std::unique_ptr<ProcessFolder> folder = [] {
+        std::error_code error;
+        const fs::path named = fs::temp_directory_path(error);
+        const fs::path parent = fs::canonical(error ? fs::path("/tmp") : named, error);  // as the loader names its files
+        return error ? nullptr : ProcessFolder::make(parent, "clarity-plugins");
+    }();
     static std::atomic<unsigned> number{1};
-    const fs::path copy = fs::path(folder.path()) / (fs::path(path).stem().string() + "." + std::to_string(++number) + ".so");
+    if (!folder)
+        throw Error(Exit::failed, "no folder can be made for a copy of it; set TMPDIR to a folder with room, and start again");
+    const fs::path copy = folder->path() / (fs::path(path).stem().string() + "." + std::to_string(++number) + ".so");
     std::error_code error;
     if (!fs::copy_file(path, copy, error))
         throw Error(Exit::failed, "cannot be copied to " + copy.string() + ": " + error.message() +

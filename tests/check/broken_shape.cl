@@ -3,7 +3,9 @@ enum {
     BROKEN_SHAPE_FAR_ROOT = 1, BROKEN_SHAPE_OCTANT, BROKEN_SHAPE_ONE_SIDED, BROKEN_SHAPE_FORGETS_T_MIN, BROKEN_SHAPE_FIRST_LANE,
     BROKEN_SHAPE_UNIT_DIRECTION, BROKEN_SHAPE_WRONG_RADIUS, BROKEN_SHAPE_WRONG_SCALE, BROKEN_SHAPE_WRONG_NORMAL, BROKEN_SHAPE_INWARD,
     BROKEN_SHAPE_WRONG_UV, BROKEN_SHAPE_INEXACT, BROKEN_SHAPE_READS_BEYOND, BROKEN_SHAPE_LOOP, BROKEN_SHAPE_HOLE, BROKEN_SHAPE_NAN,
-    BROKEN_SHAPE_LANES_8, BROKEN_SHAPE_ZERO_RADIUS
+    BROKEN_SHAPE_LANES_8, BROKEN_SHAPE_ZERO_RADIUS,
+    BROKEN_SHAPE_UV_SEAM, BROKEN_SHAPE_UV_OFF_CENTRE, BROKEN_SHAPE_UV_WORLD_CENTRE, BROKEN_SHAPE_UV_TWICE, BROKEN_SHAPE_UV_CONSTANT,
+    BROKEN_SHAPE_UV_ONE_DIRECTION, BROKEN_SHAPE_UV_STEPS, BROKEN_SHAPE_UV_HALVES, BROKEN_SHAPE_UV_NEVER_ENDS, BROKEN_SHAPE_UV_MIRRORED_HALF
 };
 
 /* The vector in the space where the ball has the radius 1. */
@@ -73,4 +75,15 @@ RT_INLINE void broken_shape_surface(const global float *numbers, const global fl
         s->height = -s->height;
     }
     if (defect == BROKEN_SHAPE_WRONG_UV) s->tex_u = s->tex_u * 360.0f;
+    if (defect == BROKEN_SHAPE_UV_SEAM) /* a part of the picture is left out */
+        s->tex_u = rt_select(RT_MASK(s->tex_u > rt_vfloat(0.7f)), s->tex_u, 0.9f * s->tex_u);
+    if (defect == BROKEN_SHAPE_UV_OFF_CENTRE) s->tex_u = rt_turns(p.x - rt_vfloat(0.4f), p.z);
+    if (defect == BROKEN_SHAPE_UV_WORLD_CENTRE) s->tex_u = rt_turns(at.x, at.z);
+    if (defect == BROKEN_SHAPE_UV_TWICE) s->tex_u = 2.0f * s->tex_u - rt_select(RT_MASK(s->tex_u >= rt_vfloat(0.5f)), rt_vfloat(1.0f), rt_vfloat(0.0f));
+    if (defect == BROKEN_SHAPE_UV_CONSTANT) s->tex_u = s->tex_v = rt_vfloat(0.5f);
+    if (defect == BROKEN_SHAPE_UV_ONE_DIRECTION) s->tex_u = s->tex_v;
+    if (defect == BROKEN_SHAPE_UV_STEPS) s->tex_v = rt_to_float(rt_to_int(16.0f * s->tex_v)) / 16.0f;
+    if (defect == BROKEN_SHAPE_UV_HALVES) s->tex_v = 2.0f * s->tex_v - rt_select(RT_MASK(s->tex_v >= rt_vfloat(0.5f)), rt_vfloat(1.0f), rt_vfloat(0.0f));
+    if (defect == BROKEN_SHAPE_UV_NEVER_ENDS) s->tex_u = 0.8f * s->tex_u;
+    if (defect == BROKEN_SHAPE_UV_MIRRORED_HALF) s->tex_u = 0.5f - fabs(s->tex_u - 0.5f); /* continuous, but the picture is folded */
 }

@@ -137,6 +137,15 @@ TEST(Report, APictureShowsWhichPixelsDiffer) {
         EXPECT_TRUE(entry.path().extension() == ".png" || entry.path().extension() == ".rays") << entry.path() << " is left";
 }
 
+// The user's own scene and rays.
+TEST(OwnScene, WrongHitsAreFound) {
+    const Scratch scratch;
+    scratch.write("a.scene", "sphere center 0 0 0 radius 1\n");
+    scratch.write("a.rays", "10 -8 10 0 -1 0.8 -1 inf\n");
+    expect_found(check("octant", {"--scene", scratch.path("a.scene"), "--rays", scratch.path("a.rays"), "--lanes", "1"}, 1),
+                 {"octant", "hits.own", {"1 of 1 nearest hits are wrong", "hit nothing, but there is something"}});
+}
+
 // Rays in a tree that lacks a primitive.
 TEST(Device, RaysMissWhatIsInNoLeaf) {
     expect_found(check("device_loses", {"--only", "hits.device"}, 1),

@@ -17,6 +17,12 @@ class ImporterCheck : public testing::Test {
         scratch_.write("row.tri", text);
         scratch_.write("one.tri", "1\n0 0 0  1 0 0  0 1 0\n");
         scratch_.write("row.tri.json", R"({"triangles": 40, "area": 20, "bbox": [[0, 0, 0], [79, 1, 0]]})");
+        // A closed surface, and all that can be known of it.
+        scratch_.write("tetrahedron.tri",
+                       "4\n0 0 0  0 1 0  1 0 0\n0 0 0  1 0 0  0 0 1\n0 0 0  0 0 1  0 1 0\n1 0 0  0 1 0  0 0 1\n");
+        scratch_.write("tetrahedron.tri.json",
+                       R"({"triangles": 4, "volume": 0.16666667, "instance_count": 1, "material_count": 1,
+            "corners": [{"at": [1, 0, 0], "normal": [0, 0, -1], "facing": [0, 0, -1], "uv": [1, 0]}, {"at": [0, 1, 0], "uv": [0, 1]}]})");
     }
     json results_of(const std::string& library, int exit_code, std::vector<std::string> words = {}) {
         words.insert(words.end(), {"--samples", scratch_.path("")});
@@ -41,13 +47,30 @@ const Defect kDefects[] = {
     {"ignores_cancel", "imports.cancel", {"must return RT_CANCELLED soon"}},
     {"leaks", "imports.leaks", {"it leaks memory"}},
     {"sure_of_all", "imports.table", {"it would take files of other importers"}},
+    // what is in the world
+    {"no_instance", "imports.read", {"places none of its", "sink->instance"}},
+    {"mesh_left_over", "imports.read", {"a mesh without an instance, number 1"}},
+    {"singular", "imports.read", {"1 instances with a singular transform"}},
+    // what only a truth tells
+    {"swaps_uv", "imports.truth", {"uv 0 1", "there should be", "uv 1 0"}},
+    {"turns_uv_over", "imports.truth", {"uv 1 1", "uv 1 0"}},
+    {"flips_winding", "imports.truth", {"wind the other way round"}},
+    {"winds_last_back", "imports.truth", {"encloses a volume of"}},
+    {"flips_normals", "imports.truth", {"the normal", "0 0 1", "there should be the normal 0 0 -1"}},
+    {"turns_normals", "imports.truth", {"there should be the normal 0 0 -1"}},
+    {"forgets_normals", "imports.truth", {"the normal none"}},
+    {"material_again", "imports.truth", {"has 2 materials, not 1"}},
+    // memory that nobody has written, and state
+    {"border_normals", "imports.memory", {"memory that it has not written", "the normal of vertex"}},
+    {"uv_of_stack", "imports.memory", {"memory that it has not written", "a texture coordinate of vertex 2"}},
+    {"first_differs", "imports.state", {"in a process that has read nothing before"}},
 };
 INSTANTIATE_TEST_SUITE_P(Plugins, BrokenImporter, testing::ValuesIn(kDefects), name_of);
 
 TEST_F(ImporterCheck, SoundOnePasses) {
     const json results = results_of("importer_none", 0);
     ASSERT_TRUE(results.is_array());
-    EXPECT_EQ(results.size(), 7u);
+    EXPECT_EQ(results.size(), 8u);
     for (const json& result : results) EXPECT_EQ(result["status"], "passed") << result.dump(2);
 }
 

@@ -44,6 +44,16 @@ const Defect kDefects[] = {
     {"wrong_normal", "surface.normal", {"normals are not across the surface"}},
     {"inward", "surface.normal", {"normals point outwards"}},
     {"wrong_uv", "surface.uv", {"not within 0 and 1"}},
+    {"uv_seam", "surface.uv", {"u jumps by", "while the surface is smooth"}},
+    {"uv_off_centre", "surface.uv", {"v comes to its end", "u does not turn"}},
+    {"uv_world_centre", "surface.uv", {"v comes to its end", "u does not turn"}},
+    {"uv_twice", "surface.uv", {"u goes from 1 to 0", "begins anew within the surface"}},
+    {"uv_constant", "surface.uv", {"a picture has no area there"}},
+    {"uv_one_direction", "surface.uv", {"a picture has no area there"}},
+    {"uv_steps", "surface.uv", {"a picture has no area there"}},
+    {"uv_halves", "surface.uv", {"v goes from 1 to 0", "begins anew within the surface"}},
+    {"uv_never_ends", "surface.uv", {"u jumps by 0.2"}},
+    {"uv_mirrored_half", "surface.uv", {"around this point u does not turn"}},
     {"inexact", "surface.leaving", {"make s->error larger"}},
 };
 INSTANTIATE_TEST_SUITE_P(Plugins, BrokenShape, testing::ValuesIn(kDefects), name_of);

@@ -201,4 +201,21 @@ TEST_F(Watch, RendersAgainWithAPluginThatIsBuiltAgain) {
     ASSERT_TRUE(watcher.says(kWaiting, 3)) << watcher.said();
     EXPECT_EQ(watcher.interrupt(), 0) << watcher.said();
 }
+
+// A private copy is loaded, but the message names the file that the user built.
+TEST_F(Watch, ACrashNamesTheLibraryThatWasBuilt) {
+    const std::string folder = std::string(TEST_PLUGINS) + "/", library = scratch_.path("sound.so");
+    fs::copy_file(folder + "sound.so", library);
+    std::vector<std::string> all = words();
+    all.insert(all.end(), {"--plugin", library, "--accel", "sound"});
+    Watcher watcher(all, scratch_.path("cl"), scratch_.path("said"));
+    ASSERT_TRUE(watcher.says(kWaiting)) << watcher.said();
+    fs::remove(library);
+    fs::copy_file(folder + "sound_crashes.so", library);
+    ASSERT_TRUE(watcher.says("the builder crashed")) << watcher.said();
+    ASSERT_TRUE(watcher.says(kWaiting, 2)) << watcher.said();
+    EXPECT_NE(watcher.said().find("`clarity check " + library + "` looks for it"), std::string::npos) << watcher.said();
+    EXPECT_EQ(watcher.said().find("clarity-plugins-"), std::string::npos) << watcher.said();
+    watcher.interrupt();
+}
 #endif

@@ -1,6 +1,8 @@
 // Start and end of the window, what it remembers, and that the newest of many requests counts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
 
 #include "ui/driver/window_fixture.hpp"
@@ -114,6 +116,31 @@ TEST_F(Window, WritesPreferencesToTheConfigurationFolderOnly) {
     const auto window = open({{"XDG_CONFIG_HOME", untouched.path()}});
     window->quit();
     EXPECT_TRUE(fs::is_empty(untouched.path()));
+}
+
+// A library that was built again is loaded from a copy in a temporary folder.
+TEST_F(Window, ASignalClosesItAndLeavesNoCopiesOfLibrariesBehind) {
+    const TemporaryFolder temporary, own;
+    const fs::path installed = fs::path(program_path()).parent_path().parent_path() / "lib/clarity/plugins/accel/linear.so";
+    const fs::path library = fs::path(own.path()) / "linear.so", built = fs::path(own.path()) / "linear.so.new";
+    ASSERT_TRUE(fs::copy_file(installed, library));
+    WindowDriver window({"--size", "320x240", "--plugin", library.string(), source_path("scenes/primitives.scene")},
+                        {{"TMPDIR", temporary.path()}});
+    window.settle();
+    const auto copies = [&] {
+        return std::count_if(fs::directory_iterator(temporary.path()), fs::directory_iterator(), [](const auto& entry) {
+            return entry.path().filename().string().rfind("clarity-plugins-", 0) == 0;
+        });
+    };
+    fs::copy_file(installed, built);
+    fs::rename(built, library);
+    const auto begin = Clock::now();
+    while (copies() == 0 && seconds_since(begin) < 60) usleep(20000);
+    ASSERT_EQ(copies(), 1);
+    window.settle();
+    window.quit_by(SIGTERM);
+    EXPECT_EQ(window.exit_code(), 130) << window.errors();
+    EXPECT_EQ(copies(), 0);
 }
 
 }  // namespace

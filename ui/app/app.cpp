@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 
 #include "base/error.hpp"
@@ -26,6 +27,24 @@ namespace {
 double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+// SIGTERM, SIGHUP and Ctrl-C close the window as its button does, so that preferences are saved and temporary files removed. A
+// second signal ends the program at once.
+volatile std::sig_atomic_t asked_to_end = 0;
+
+class EndOnSignal {
+ public:
+    EndOnSignal() {
+        struct sigaction action {};
+        action.sa_handler = [](int) { asked_to_end = 1; };
+        action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+        for (const int signal : {SIGTERM, SIGHUP, SIGINT}) {
+            // A shell starts background jobs with SIGINT ignored; do not change that.
+            struct sigaction old {};
+            if (sigaction(signal, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
+        }
+    }
+};
 
 constexpr float kTapSeconds = 0.06f;  // a key press moves by at least this much time's motion, however short it was
 constexpr float kLongestStep =
@@ -81,12 +100,13 @@ App::~App() {
 }
 
 int App::run() {
+    const EndOnSignal signals;
     turn();
-    while (!window_->closing()) {
+    while (!window_->closing() && !asked_to_end) {
         if (window_->wait_events(wait_seconds())) settle_frames_ = 3;
         if (due()) turn();
     }
-    return 0;
+    return static_cast<int>(asked_to_end ? Exit::interrupted : Exit::done);
 }
 
 // Whether a frame is due: after an event, news from a thread, a key that is down, a line of the script, or when the clock asks

@@ -24,8 +24,9 @@ constexpr double kPatience_ms = 500;  // a build that lasts longer must ask whet
 // The inputs, made on first use and shared by all checks of a structure.
 class Inputs {
  public:
-    explicit Inputs(const rt_plugin& p) : plugin(p), params(default_parameters(p)) {}
+    Inputs(const rt_plugin& p, uint64_t s) : plugin(p), seed(s), params(default_parameters(p)) {}
     const rt_plugin& plugin;
+    const uint64_t seed;  // of random numbers
     const ParameterValues params;
 
     const std::vector<BuildCase>& small() {
@@ -275,8 +276,8 @@ Outcome afterwards(Inputs& inputs, const Step& step) {
 
 }  // namespace
 
-std::vector<Check> build_checks(const rt_plugin& plugin, bool quick) {
-    const auto inputs = std::make_shared<Inputs>(plugin);
+std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed) {
+    const auto inputs = std::make_shared<Inputs>(plugin, seed);
     return {
         {"builds.sound", "builds scenes from nothing to 3000 primitives, in memory whose overrun is seen",
          [=](const Step& step) { return sound(*inputs, step); }},

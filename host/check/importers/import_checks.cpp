@@ -4,12 +4,16 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/lower.hpp"
 #include "base/memory_text.hpp"
 #include "base/numbers.hpp"
+#include "check/importers/fresh_memory.hpp"
+#include "check/importers/scene_difference.hpp"
 #include "check/process_size.hpp"
+#include "import/scene_digest.hpp"
 #include "import/sink/scene_builder.hpp"
 
 namespace fs = std::filesystem;
@@ -55,6 +59,7 @@ struct Import {
     std::string why;       // how it failed; empty: it did not
     bool cancelled = false;
     unsigned reports = 0;
+    size_t flat = 0;  // instances that flatten their mesh
 };
 
 Import import_file(const ImportInputs& inputs, const std::string& path, unsigned cancel_at = 0) {
@@ -64,7 +69,9 @@ Import import_file(const ImportInputs& inputs, const std::string& path, unsigned
         const import::FileAccess access({path}, {});
         import::SceneBuilder builder(inputs.plugins, {}, access, watch, &watch);
         builder.add_root(path);
+        const size_t meshes = builder.scene().meshes.size();
         result.scene = builder.take();
+        result.flat = result.scene.meshes.size() - meshes;  // such an instance gets a flattened copy of its mesh
     } catch (const Cancelled&) {
         result.cancelled = true;
     } catch (const std::bad_alloc&) {
@@ -77,14 +84,43 @@ Import import_file(const ImportInputs& inputs, const std::string& path, unsigned
     return result;
 }
 
+std::string digest_of(const Import& result) {
+    return result.why.empty() ? import::scene_digest(result.scene) : result.why;
+}
+
+// What of a scene is not in the world, though it is there; empty: nothing. truth: of the file; nullptr: none.
+std::string fault_of_placing(const Import& result, const Contents* truth) {
+    const Scene& scene = result.scene;
+    std::vector<uint8_t> placed(scene.meshes.size(), 0);
+    for (const Instance& instance : scene.instances) placed[instance.mesh] = placed[instance.moving_mesh] = 1;
+    const bool other = !scene.spheres.empty() || !scene.planes.empty() || !scene.polygons.empty() || !scene.shapes.empty();
+    if (scene.placed_triangle_count() == 0 && !other && !(truth && truth->triangles == 0.0))
+        return scene.triangles.empty() ? "holds no surface; if that is so, say \"triangles\": 0 in its truth"
+                                       : "places none of its " + std::to_string(scene.triangle_count()) +
+                                             " triangles: a mesh is in the world where sink->instance puts it";
+    const double expected = truth && truth->flat ? *truth->flat : 0;
+    if (double(result.flat) != expected)
+        return "has " + std::to_string(result.flat) + " instances with a singular transform, which flatten their meshes, not " +
+               exact_text(expected) + (expected == 0 ? "; if the file is so, say \"flat\": N in its truth" : "");
+    if (result.flat > 0) return {};  // the meshes that were copied are there, too
+    for (size_t i = 0; i < placed.size(); ++i)
+        if (!placed[i] && scene.meshes[i].triangle_count > 0 && scene.motion.sequences.empty())
+            return "has a mesh without an instance, number " + std::to_string(i) +
+                   (scene.meshes[i].name.empty() ? "" : " (" + scene.meshes[i].name + ")") + " of " +
+                   std::to_string(scene.meshes[i].triangle_count) + " triangles, which is not in the world";
+    return {};
+}
+
 // What is wrong with the result of a file that is in order; empty: nothing.
-std::string fault_of(const ImportInputs& inputs, const Import& result) {
+std::string fault_of(const ImportInputs& inputs, const std::string& path, const Import& result) {
     if (result.cancelled) return "said that it was cancelled, but nobody had cancelled it";
     if (!result.why.empty()) return result.why;
     if (result.importer != inputs.plugin->id)
         return "is read by the importer " + result.importer + ": " + inputs.plugin->id +
                " has not its extension, or its `probe` is less sure";
-    return validate(result.scene);
+    if (const std::string why = validate(result.scene); !why.empty()) return why;
+    const auto truth = inputs.truths.find(path);
+    return fault_of_placing(result, truth == inputs.truths.end() ? nullptr : &truth->second);
 }
 
 Outcome table(const ImportInputs& inputs, const Step& step) {
@@ -116,62 +152,83 @@ Outcome read(const ImportInputs& inputs, const Step& step) {
     for (const std::string& path : inputs.samples) {
         step("reading " + path, limit_of(path));
         const Import result = import_file(inputs, path);
-        if (const std::string why = fault_of(inputs, result); !why.empty()) return Outcome::failed(name_of(path) + ": " + why);
+        if (const std::string why = fault_of(inputs, path, result); !why.empty())
+            return Outcome::failed(name_of(path) + ": " + why);
         triangles += result.scene.placed_triangle_count();
     }
     return Outcome::passed(std::to_string(inputs.samples.size()) + " files with " + std::to_string(triangles) + " triangles");
 }
 
-// How a scene differs from the truth; empty: it does not.
-std::string difference(const Scene& scene, const Contents& truth) {
-    const auto triangles = static_cast<double>(scene.placed_triangle_count());
-    if (triangles != truth.triangles) return "has " + exact_text(triangles) + " triangles, not " + exact_text(truth.triangles);
-    const double area = scene.surface_area();
-    if (!(std::fabs(area - truth.area) <= 1e-3 * truth.area))
-        return "has a surface of " + exact_text(area) + ", not " + exact_text(truth.area);
-    const Bounds bounds = scene.bounds();
-    double size = 0;
-    for (int k = 0; k < 3; ++k) size = std::max(size, truth.hi[k] - truth.lo[k]);
-    for (int k = 0; k < 3; ++k)
-        if (!(std::fabs(bounds.min[k] - truth.lo[k]) <= 1e-3 * size && std::fabs(bounds.max[k] - truth.hi[k]) <= 1e-3 * size))
-            return std::string("goes from ") + exact_text(bounds.min[k]) + " to " + exact_text(bounds.max[k]) + " along " +
-                   "xyz"[k] + ", not from " + exact_text(truth.lo[k]) + " to " + exact_text(truth.hi[k]);
-    return {};
-}
-
 Outcome truth(const ImportInputs& inputs, const Step& step) {
     if (inputs.truths.empty())
         return Outcome::skipped("no truth about the samples: put FILE.json beside them, or name a folder with --truth DIR");
+    std::set<std::string> keys;
     for (const auto& [path, held] : inputs.truths) {
+        keys.insert(held.keys);
         step("reading " + path, limit_of(path));
         const Import result = import_file(inputs, path);
-        std::string why = fault_of(inputs, result);
+        std::string why = fault_of(inputs, path, result);
         if (why.empty()) why = difference(result.scene, held);
         if (!why.empty()) return Outcome::failed(name_of(path) + ": " + why);
     }
-    return Outcome::passed("triangles, surface and box of " + std::to_string(inputs.truths.size()) + " files are right");
+    std::string list;
+    for (const std::string& some : keys) list += (list.empty() ? "" : "; ") + some;
+    return Outcome::passed("what is stated about " + std::to_string(inputs.truths.size()) + " files is right (" + list + ")");
 }
 
-// Reads each sample after another one: an importer keeps no state.
+// Reads each sample with two kinds of fresh memory: what differs has not been written by the plugin.
+Outcome memory(const ImportInputs& inputs, const Step& step) {
+    if (inputs.samples.empty()) return Outcome::skipped(kNoSamples);
+    // As floats both are finite, so that a wrong number is compared and not refused.
+    constexpr uint8_t kFills[] = {0x3C, 0xC1};
+    for (const std::string& path : inputs.samples) {
+        Import results[2];
+        for (size_t i = 0; i < 2; ++i) {
+            step("reading " + path + " with fresh memory of bytes " + std::to_string(kFills[i]), limit_of(path));
+            fill_fresh_memory(kFills[i]);
+            results[i] = import_file(inputs, path);
+            leave_fresh_memory();
+        }
+        std::string why;
+        if (results[0].why != results[1].why)
+            why = "'" + results[0].why + "' and '" + results[1].why + "'";
+        else
+            why = difference(results[0].scene, results[1].scene);
+        if (!why.empty())
+            return Outcome::failed(name_of(path) +
+                                   " becomes another scene when fresh memory holds other bytes, so the plugin uses memory that "
+                                   "it has not written: " +
+                                   why);
+    }
+    return Outcome::passed(std::to_string(inputs.samples.size()) + " files do not depend on what fresh memory holds");
+}
+
+// Reads each sample after others, forwards and backwards: an importer keeps no state.
 Outcome state(const ImportInputs& inputs, const Step& step) {
     if (inputs.samples.empty()) return Outcome::skipped(kNoSamples);
-    const size_t count = std::min<size_t>(inputs.samples.size(), 10);
+    const size_t count = std::min(inputs.samples.size(), kMostAlone);
     std::vector<Import> first;
+    const auto failed = [](const std::string& path, const std::string& when, const std::string& why) {
+        return Outcome::failed(name_of(path) + " gives another scene " + when + ": the plugin keeps state: " + why);
+    };
     for (size_t i = 0; i < count; ++i) {
-        step("reading " + inputs.samples[i], limit_of(inputs.samples[i]));
-        first.push_back(import_file(inputs, inputs.samples[i]));
+        const std::string& path = inputs.samples[i];
+        step("reading " + path, limit_of(path));
+        first.push_back(import_file(inputs, path));
+        const auto alone = inputs.alone.find(path);
+        if (alone != inputs.alone.end() && alone->second != digest_of(first.back()))
+            return failed(path, "in a process that has read nothing before",
+                          "its digest is " + alone->second + " there and " + digest_of(first.back()) + " after others");
     }
     for (size_t i = count; i-- > 0;) {
-        step("reading " + inputs.samples[i] + " again, after another file", limit_of(inputs.samples[i]));
-        const Import again = import_file(inputs, inputs.samples[i]);
-        const Scene &a = first[i].scene, &b = again.scene;
-        if (again.why != first[i].why || a.positions != b.positions || a.triangles != b.triangles ||
-            a.instances.size() != b.instances.size() || a.materials.size() != b.materials.size() ||
-            a.lights.size() != b.lights.size() || a.cameras.size() != b.cameras.size())
-            return Outcome::failed(name_of(inputs.samples[i]) +
-                                   " gives another scene when it is read again: the plugin keeps state");
+        const std::string& path = inputs.samples[i];
+        step("reading " + path + " again, after another file", limit_of(path));
+        const Import again = import_file(inputs, path);
+        if (again.why != first[i].why) return failed(path, "when it is read again", "'" + again.why + "'");
+        if (const std::string why = difference(first[i].scene, again.scene); !why.empty())
+            return failed(path, "when it is read again", why);
     }
-    return Outcome::passed(std::to_string(count) + " files give the same scene again");
+    return Outcome::passed(std::to_string(count) + " files give the same scene alone, and after others");
 }
 
 Outcome hostile(const ImportInputs& inputs, const Step& step) {
@@ -204,7 +261,7 @@ Outcome cancel(const ImportInputs& inputs, const Step& step) {
     const std::string& path = inputs.samples.back();  // the largest
     step("reading " + path, limit_of(path));
     const Import whole = import_file(inputs, path);
-    if (const std::string why = fault_of(inputs, whole); !why.empty()) return Outcome::failed(name_of(path) + ": " + why);
+    if (const std::string why = fault_of(inputs, path, whole); !why.empty()) return Outcome::failed(name_of(path) + ": " + why);
     if (whole.reports == 0) return Outcome::skipped(name_of(path) + " is read without a call of host->progress");
     step("cancelling " + path, limit_of(path));
     const Import result = import_file(inputs, path, 1);
@@ -228,12 +285,18 @@ Outcome leaks(const ImportInputs& inputs, const Step& step, bool quick) {
 
 }  // namespace
 
+std::string import_digest(const ImportInputs& inputs, const std::string& path) {
+    return digest_of(import_file(inputs, path));
+}
+
 std::vector<Check> import_checks(const Inputs& inputs, bool quick) {
     return {
         {"imports.table", "extensions and `probe`", [=](const Step& step) { return table(*inputs, step); }},
         {"imports.read", "reads the sample files", [=](const Step& step) { return read(*inputs, step); }},
-        {"imports.truth", "triangles, surface and box of the samples are what others read",
+        {"imports.truth", "what others read from the samples, or their authors know of them",
          [=](const Step& step) { return truth(*inputs, step); }},
+        {"imports.memory", "nothing depends on what fresh memory holds",
+         [=](const Step& step) { return memory(*inputs, step); }},
         {"imports.state", "no state is kept from file to file", [=](const Step& step) { return state(*inputs, step); }},
         {"imports.cancel", "an import stops when the user cancels it", [=](const Step& step) { return cancel(*inputs, step); }},
         {"imports.leaks", "no memory, file or thread is left behind by import after import",

@@ -1,5 +1,6 @@
 // import_checks.hpp -- whether an importer reads what it should, and survives what it should not.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,8 +18,16 @@ struct ImportInputs {
     const rt_plugin* plugin = nullptr;
     std::vector<std::string> samples;
     std::map<std::string, Contents> truths;  // by sample
+    // By sample: what import_digest() says in a process that has read nothing before. Of some samples.
+    std::map<std::string, std::string> alone;
     std::vector<HostileFile> hostile;
+    uint64_t seed = 0;  // of random numbers: see seed.hpp
 };
+
+// How many samples are read after others, and alone.
+inline constexpr size_t kMostAlone = 10;
+// Reads a file; returns the digest of its scene, or why there is none.
+std::string import_digest(const ImportInputs& inputs, const std::string& path);
 
 // The checks of one importer, in the order in which they run. quick: fewer repetitions.
 std::vector<Check> import_checks(const std::shared_ptr<const ImportInputs>& inputs, bool quick);

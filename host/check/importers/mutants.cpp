@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <random>
 
+#include "check/seed.hpp"
+
 namespace clarity::check {
 namespace {
 
@@ -103,10 +105,10 @@ Mutant change_any_number(const std::string& bytes, Random& random) {
 
 }  // namespace
 
-std::vector<Mutant> mutants_of(const std::string& bytes, unsigned count) {
+std::vector<Mutant> mutants_of(const std::string& bytes, unsigned count, uint64_t seed) {
     std::vector<Mutant> mutants;
     if (bytes.empty()) return mutants;
-    Random random(static_cast<unsigned>(bytes.size()));
+    Random random = random_of(static_cast<unsigned>(bytes.size()), seed);
     constexpr Mutant (*kWays[])(const std::string&, Random&) = {cut, change_byte, change_word, change_block, change_any_number};
     // Counts stand at the head of a file: its first numbers get every impossible value.
     for (const char* number : kNumbers)

@@ -1,5 +1,6 @@
 // mutants.hpp -- damaged copies of a file, and files that are none. Made by formula: the same on every machine.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,8 @@ struct Mutant {
 };
 
 // `count` copies of a file, each damaged in one way: cut short, bytes replaced, a block left out, doubled or zeroed, a number
-// of a text replaced by an impossible one. Before them come copies whose first numbers are impossible.
-std::vector<Mutant> mutants_of(const std::string& bytes, unsigned count);
+// of a text replaced by an impossible one. Before them come copies whose first numbers are impossible. seed: see seed.hpp.
+std::vector<Mutant> mutants_of(const std::string& bytes, unsigned count, uint64_t seed);
 
 // Content that no format has: one byte, zeros, random bytes, brackets without end, one endless line.
 std::vector<Mutant> junk();

@@ -26,24 +26,85 @@ bool has_extension(const rt_importer& importer, const fs::path& path) {
     return false;
 }
 
-// Nothing where the file holds no triangle: its box is null.
-std::optional<Contents> read_truth(const std::string& path, const nlohmann::json& json) {
-    try {
-        const nlohmann::json& whole = json.contains("truth") ? json.at("truth") : json;
-        const nlohmann::json& held = whole.contains("static") ? whole.at("static") : whole;
-        if (held.at("triangles") == 0) return std::nullopt;
-        Contents truth{};
-        truth.triangles = held.at("triangles");
-        truth.area = held.contains("area") ? held.at("area") : held.at("area_fan");
-        for (int k = 0; k < 3; ++k) {
-            truth.lo[k] = held.at("bbox").at(0).at(k);
-            truth.hi[k] = held.at("bbox").at(1).at(k);
+// Reads the keys of a truth.
+class TruthReader {
+ public:
+    TruthReader(const std::string& path, const nlohmann::json& json) : path_(path), json_(json) {}
+
+    Contents read() {
+        const std::pair<const char*, std::optional<double>*> numbers[] = {
+            {"triangles", &held_.triangles},      {"area", &held_.area}, {"instance_count", &held_.instances},
+            {"material_count", &held_.materials}, {"flat", &held_.flat}, {"volume", &held_.volume}};
+        for (const auto& [key, to] : numbers)
+            if (const nlohmann::json* value = find(json_, key)) *to = number(*value, key);
+        // Where faces with many corners are cut in another way, the area of a fan may be all that is known.
+        if (const nlohmann::json* fan = held_.area ? nullptr : find(json_, "area_fan")) held_.area = number(*fan, "area_fan");
+        // A file without triangles has no box.
+        if (const nlohmann::json* box = held_.triangles == 0.0 ? nullptr : find(json_, "bbox")) {
+            if (!box->is_array() || box->size() != 2) wrong("bbox", "the least and the greatest corner");
+            held_.bounds = {vector(box->at(0), "bbox"), vector(box->at(1), "bbox")};
         }
-        return truth;
-    } catch (const nlohmann::json::exception& e) {
-        throw Error(Exit::usage, path + ": is no truth of a file: " + e.what() +
-                                     "; it needs {\"triangles\": n, \"area\": a, \"bbox\": [[x, y, z], [x, y, z]]}");
+        if (const nlohmann::json* corners = find(json_, "corners")) {
+            if (!corners->is_array()) wrong("corners", "a list of objects {\"at\": [x, y, z], ...}");
+            for (const nlohmann::json& corner : *corners) held_.corners.push_back(corner_of(corner));
+        }
+        if (held_.keys.empty())
+            throw Error(
+                Exit::usage,
+                path_ +
+                    ": states nothing about the file; it needs one of the keys triangles, area, bbox, instance_count, "
+                    "material_count, flat, volume and corners, such as {\"triangles\": 12, \"bbox\": [[0, 0, 0], [1, 1, 1]]}");
+        return std::move(held_);
     }
+
+ private:
+    [[noreturn]] void wrong(const std::string& key, const std::string& expected) const {
+        throw Error(Exit::usage, path_ + ": the key '" + key + "' must be " + expected);
+    }
+    // What is null is not known.
+    const nlohmann::json* find(const nlohmann::json& in, const char* key) {
+        const auto at = in.find(key);
+        if (at == in.end() || at->is_null()) return nullptr;
+        if (&in == &json_) held_.keys += (held_.keys.empty() ? "" : ", ") + std::string(key);
+        return &*at;
+    }
+    double number(const nlohmann::json& value, const std::string& key) const {
+        if (!value.is_number()) wrong(key, "a number");
+        return value;
+    }
+    Vec vector(const nlohmann::json& value, const std::string& key) const {
+        if (!value.is_array() || value.size() != 3) wrong(key, "of three numbers, [x, y, z]");
+        return {number(value.at(0), key), number(value.at(1), key), number(value.at(2), key)};
+    }
+    Contents::Corner corner_of(const nlohmann::json& json) {
+        Contents::Corner corner;
+        const nlohmann::json* at = json.is_object() ? find(json, "at") : nullptr;
+        if (!at) wrong("corners", "a list of objects {\"at\": [x, y, z], ...}");
+        for (const auto& [key, value] : json.items())
+            if (key != "at" && key != "normal" && key != "facing" && key != "uv")
+                wrong("corners", "of objects with the keys at, normal, facing and uv, not '" + key + "'");
+        corner.at = vector(*at, "at");
+        if (const auto* normal = find(json, "normal")) corner.normal = vector(*normal, "normal");
+        if (const auto* facing = find(json, "facing")) corner.facing = vector(*facing, "facing");
+        if (const auto* uv = find(json, "uv")) {
+            if (!uv->is_array() || uv->size() != 2) wrong("uv", "of two numbers, [u, v]");
+            corner.uv = {number(uv->at(0), "uv"), number(uv->at(1), "uv")};
+        }
+        return corner;
+    }
+
+    const std::string& path_;
+    const nlohmann::json& json_;
+    Contents held_;
+};
+
+// Nothing where the other program could not read the file either.
+std::optional<Contents> read_truth(const std::string& path, const nlohmann::json& json) {
+    if (!json.is_object()) throw Error(Exit::usage, path + ": is no truth of a file: it must hold a JSON object");
+    const nlohmann::json& whole = json.contains("truth") && json["truth"].is_object() ? json["truth"] : json;
+    const nlohmann::json& held = whole.contains("static") && whole["static"].is_object() ? whole["static"] : whole;
+    if (whole.contains("ok") && whole["ok"] == false) return std::nullopt;
+    return TruthReader(path, held).read();
 }
 
 }  // namespace
@@ -69,7 +130,8 @@ std::vector<std::string> samples_among(const rt_importer& importer, const std::v
 
 std::optional<Contents> truth_of(const std::string& file, const std::string& folder) {
     if (fs::exists(file + ".json"))
-        return read_truth(file + ".json", nlohmann::json::parse(read_file(file + ".json", kMostTruthBytes, Exit::usage)));
+        return read_truth(file + ".json",
+                          nlohmann::json::parse(read_file(file + ".json", kMostTruthBytes, Exit::usage), nullptr, false));
     if (folder.empty()) return std::nullopt;
     const fs::path path(file);
     const std::string end = path.parent_path().filename().string() + "/" + path.filename().string();
@@ -84,7 +146,7 @@ std::optional<Contents> truth_of(const std::string& file, const std::string& fol
 }
 
 std::vector<HostileFile> write_hostile_files(const rt_importer& importer, const std::vector<std::string>& samples,
-                                             const std::string& folder, unsigned count) {
+                                             const std::string& folder, unsigned count, uint64_t seed) {
     std::vector<HostileFile> files;
     const auto write = [&](const Mutant& mutant, const std::string& extension, const std::string& of) {
         const std::string path = folder + "/hostile_" + std::to_string(files.size()) + extension;
@@ -96,10 +158,10 @@ std::vector<HostileFile> write_hostile_files(const rt_importer& importer, const 
     for (const std::string& sample : samples)
         if (seeds.size() < kMostSeeds && fs::file_size(sample) > 0 && fs::file_size(sample) <= kMostSeedBytes)
             seeds.push_back(sample);
-    for (const std::string& seed : seeds) {
-        const fs::path path(seed);
-        const std::string bytes = read_file(seed, kMostSeedBytes, Exit::failed);
-        for (const Mutant& mutant : mutants_of(bytes, count / static_cast<unsigned>(seeds.size())))
+    for (const std::string& sample : seeds) {
+        const fs::path path(sample);
+        const std::string bytes = read_file(sample, kMostSeedBytes, Exit::failed);
+        for (const Mutant& mutant : mutants_of(bytes, count / static_cast<unsigned>(seeds.size()), seed))
             write(mutant, path.extension().string(), path.filename().string() + ", but ");
     }
     return files;

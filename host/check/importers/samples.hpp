@@ -1,26 +1,39 @@
 // samples.hpp -- the files on which an importer is tried, and what independent programs read from them.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "check/importers/mutants.hpp"
 #include "rt_plugin.h"
+#include "scene/vec.hpp"
 
 namespace clarity::check {
 
-// What a file holds, in its own units and axes.
+// What a file holds, in its own units and axes, as far as it is known.
 struct Contents {
-    double triangles = 0, area = 0;
-    double lo[3], hi[3];  // bounding box
+    std::optional<double> triangles, area, instances, materials;
+    std::optional<double> flat;                // instances whose transform is singular; none are expected otherwise
+    std::optional<double> volume;              // positive where closed surfaces wind counter-clockwise, seen from outside
+    std::optional<std::array<Vec, 2>> bounds;  // lo and hi
+    // A corner of a triangle, and what is known there. Where several corners are at one place, one of them must have it all.
+    struct Corner {
+        Vec at{};
+        std::optional<Vec> normal;  // for shading
+        std::optional<Vec> facing;  // of the triangle, as it winds
+        std::optional<std::array<double, 2>> uv;
+    };
+    std::vector<Corner> corners;
+    std::string keys;  // those that are there: "triangles, area"
 };
 
 // Files of the importer's extensions among these files and in these folders, the smallest first.
 std::vector<std::string> samples_among(const rt_importer& importer, const std::vector<std::string>& files_and_folders);
 
 // The truth about a file, if there is one: from FILE.json beside it, or from a .json file in `folder` whose field `file` is the
-// file's folder and name. The numbers are in the object itself, or in `truth`, `static` or both. Throws Error(usage)
-// "FILE.json: why" if they cannot be read.
+// file's folder and name. The keys are in the object itself, or in `truth`, `static` or both; each may be left out. Throws
+// Error(usage) "FILE.json: why" if they cannot be read.
 std::optional<Contents> truth_of(const std::string& file, const std::string& folder);
 
 // Damaged copies of samples, as files in a folder. They are written before the sandbox closes.
@@ -29,6 +42,6 @@ struct HostileFile {
 };
 // Writes the files. count: how many damaged copies of all samples together. Throws Error(failed).
 std::vector<HostileFile> write_hostile_files(const rt_importer& importer, const std::vector<std::string>& samples,
-                                             const std::string& folder, unsigned count);
+                                             const std::string& folder, unsigned count, uint64_t seed);
 
 }  // namespace clarity::check

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "check/process_size.hpp"
+#include "check/seed.hpp"
 #include "check/shapes/shape_values.hpp"
 #include "import/sink/scene_builder.hpp"
 
@@ -31,7 +32,7 @@ bool is_fault(const std::string& why) {
 Outcome values(const KeyInputs& inputs, const Step& step, size_t count) {
     step("trying usual values of its keys", kLimit_s);
     std::vector<ShapeTrial> refused;
-    const std::vector<ShapeTrial> accepted = accepted_trials(*inputs.plugin, count, &refused);
+    const std::vector<ShapeTrial> accepted = accepted_trials(*inputs.plugin, count, inputs.seed, &refused);
     for (const ShapeTrial& trial : refused) {
         const std::string statement = "`" + trial.values.statement(*inputs.plugin) + "`: ";
         if (is_fault(trial.why)) return Outcome::failed(statement + trial.why);
@@ -49,7 +50,7 @@ Outcome values(const KeyInputs& inputs, const Step& step, size_t count) {
 
 Outcome ends(const KeyInputs& inputs, const Step& step, size_t count) {
     size_t accepted = 0, refused = 0;
-    for (const ShapeTrial& usual : accepted_trials(*inputs.plugin, count))
+    for (const ShapeTrial& usual : accepted_trials(*inputs.plugin, count, inputs.seed))
         for (const ShapeValues& values : values_at_ends(*inputs.plugin->primitive, usual.values)) {
             step("trying " + values.what, kLimit_s);
             const ShapeTrial trial = try_values(*inputs.plugin, values);
@@ -74,7 +75,7 @@ bool same(const Scene& a, const Scene& b) {
 
 Outcome state(const KeyInputs& inputs, const Step& step) {
     step("trying the same values again", kLimit_s);
-    const std::vector<ShapeTrial> first = accepted_trials(*inputs.plugin, 6);
+    const std::vector<ShapeTrial> first = accepted_trials(*inputs.plugin, 6, inputs.seed);
     if (first.empty()) return Outcome::skipped("it accepts no values (see keys.values)");
     for (size_t i = first.size(); i-- > 0;) {
         const ShapeTrial again = try_values(*inputs.plugin, first[i].values);
@@ -86,7 +87,7 @@ Outcome state(const KeyInputs& inputs, const Step& step) {
 }
 
 Outcome leaks(const KeyInputs& inputs, const Step& step, bool quick) {
-    const std::vector<ShapeTrial> first = accepted_trials(*inputs.plugin, 1);
+    const std::vector<ShapeTrial> first = accepted_trials(*inputs.plugin, 1, inputs.seed);
     if (first.empty()) return Outcome::skipped("it accepts no values (see keys.values)");
     return find_leaks("shape", quick ? 40 : 100, [&](unsigned) {
         step("making a shape again and again", kLimit_s);
@@ -134,10 +135,10 @@ Outcome statements(const KeyInputs& inputs, const Step& step) {
 // Writes one kind of statement after the other.
 class Writer {
  public:
-    Writer(const rt_plugin& plugin, const std::string& folder) : plugin_(plugin), folder_(folder) {}
+    Writer(const rt_plugin& plugin, const std::string& folder, uint64_t seed) : plugin_(plugin), folder_(folder), seed_(seed) {}
 
     std::vector<KeyInputs::Statement> all() {
-        std::mt19937 random(1);
+        std::mt19937 random = random_of(1, seed_);
         for (int i = 0; i < 24; ++i) {
             usual_ = random_values(*plugin_.primitive, random);
             write(usual_.statement(plugin_), "");
@@ -182,14 +183,15 @@ class Writer {
     }
     const rt_plugin& plugin_;
     const std::string folder_;
+    const uint64_t seed_;
     ShapeValues usual_;
     std::vector<KeyInputs::Statement> statements_;
 };
 
 }  // namespace
 
-std::vector<KeyInputs::Statement> write_statements(const rt_plugin& plugin, const std::string& folder) {
-    return Writer(plugin, folder).all();
+std::vector<KeyInputs::Statement> write_statements(const rt_plugin& plugin, const std::string& folder, uint64_t seed) {
+    return Writer(plugin, folder, seed).all();
 }
 
 std::vector<Check> key_checks(const Inputs& inputs, bool quick) {

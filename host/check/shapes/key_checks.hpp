@@ -1,6 +1,7 @@
 // key_checks.hpp -- what a shape's functions on the host make of the values of its keys, and what text scenes say about wrong
 // ones.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,9 +22,10 @@ struct KeyInputs {
         ShapeValues values;
     };
     std::vector<Statement> statements;
+    uint64_t seed = 0;  // of random numbers: see seed.hpp
 };
 // Writes text scenes with usual and wrong statements into `folder`. Calls no function of the plugin.
-std::vector<KeyInputs::Statement> write_statements(const rt_plugin& plugin, const std::string& folder);
+std::vector<KeyInputs::Statement> write_statements(const rt_plugin& plugin, const std::string& folder, uint64_t seed);
 
 // In the order in which they run. quick: fewer repetitions.
 std::vector<Check> key_checks(const std::shared_ptr<const KeyInputs>& inputs, bool quick);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "check/seed.hpp"
 #include "render/queries/ray_text.hpp"
 
 namespace clarity::check {
@@ -50,7 +51,7 @@ ShapeProbe& ShapeBench::probe(const Variant& variant, const Step& step) {
 const std::vector<ShapeTrial>& ShapeBench::trials(const Step& step) {
     if (!trials_.empty()) return trials_;
     step("making shapes with usual values", kShapeTrace_s);
-    trials_ = accepted_trials(plugin_, options_.quick ? kQuickShapes : kShapes);
+    trials_ = accepted_trials(plugin_, options_.quick ? kQuickShapes : kShapes, options_.seed);
     if (trials_.empty()) throw Error(Exit::failed, "it accepts no values of about 1 (see keys.values)");
     return trials_;
 }
@@ -58,7 +59,7 @@ const std::vector<ShapeTrial>& ShapeBench::trials(const Step& step) {
 const std::vector<TouchedPart>& ShapeBench::parts(const Step& step) {
     if (!parts_.empty()) return parts_;
     ShapeProbe& with = first_probe(step);
-    std::mt19937 random(3);
+    std::mt19937 random = random_of(3, options_.seed);
     std::vector<TouchedPart> parts;
     for (size_t i = 0; i < trials(step).size(); ++i)
         for (ShapeSubject& subject : subjects_of(plugin_, trials_[i], kPartsOfShape)) {

@@ -7,9 +7,11 @@
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "check/oclgrind.hpp"
+#include "check/seed.hpp"
 #include "check/shapes/placed_checks.hpp"
 #include "check/shapes/shape_bench.hpp"
 #include "check/shapes/surface_checks.hpp"
+#include "check/shapes/uv_checks.hpp"
 #include "render/queries/ray_text.hpp"
 
 namespace clarity::check {
@@ -75,7 +77,7 @@ Outcome within_box(ShapeBench& bench, const Step& step) {
 // point.
 Outcome met_again(ShapeBench& bench, const Step& step) {
     RayFindings findings;
-    std::mt19937 random(11);
+    std::mt19937 random = random_of(11, bench.options().seed);
     for (const TouchedPart& part : bench.parts(step)) {
         const ShapeSubject& subject = part.subject;
         const double slack = slack_of(subject);
@@ -176,7 +178,7 @@ Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
             // Each fifth is strange, the others in another order.
             std::vector<rt_ray> asked;
             std::vector<size_t> of;
-            std::mt19937 random(23);
+            std::mt19937 random = random_of(23, bench.options().seed);
             std::vector<size_t> order(part.rays.size());
             for (size_t i = 0; i < order.size(); ++i) order[i] = i;
             std::shuffle(order.begin(), order.end(), random);
@@ -217,7 +219,7 @@ Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
 // Rays along the surface may hit or miss, but what they hit must be there.
 Outcome grazing(ShapeBench& bench, const Step& step) {
     size_t rays_traced = 0, hits = 0;
-    std::mt19937 random(31);
+    std::mt19937 random = random_of(31, bench.options().seed);
     for (const TouchedPart& part : bench.parts(step)) {
         const ShapeSubject& subject = part.subject;
         std::vector<rt_ray> rays;
@@ -259,7 +261,7 @@ Outcome grazing(ShapeBench& bench, const Step& step) {
 // Keys at their ends: whatever is accepted gives numbers.
 Outcome at_ends(ShapeBench& bench, const Step& step) {
     size_t shapes = 0;
-    std::mt19937 random(41);
+    std::mt19937 random = random_of(41, bench.options().seed);
     for (const ShapeValues& values : values_at_ends(*bench.plugin().primitive, bench.trials(step).front().values)) {
         step("trying " + values.what, kShapeTrace_s);
         const ShapeTrial trial = try_values(bench.plugin(), values);
@@ -333,7 +335,7 @@ std::vector<Check> shape_checks(const rt_plugin& plugin, const rt_plugin* accel,
         check("hits.ends", "shapes with a key at its least or greatest value", at_ends),
         check("surface.height", "height is the distance from where rays meet the surface", surface_height),
         check("surface.normal", "the normal is the one that neighbouring hits show, outward", surface_normal),
-        check("surface.uv", "texture coordinates are 0 to 1", surface_uv),
+        check("surface.uv", "texture coordinates are 0 to 1, continuous, and turn about where they meet", surface_uv),
         check("surface.leaving", "rays that leave the surface do not meet it again", surface_leaving),
         check("hits.placed", "nearest and any in scenes: turned, stretched, small, from far away, with t_max", hits_placed),
     };

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "check/seed.hpp"
 #include "import/sink/shape_parts.hpp"
 #include "scene/scene.hpp"
 
@@ -185,8 +186,9 @@ ShapeTrial try_values(const rt_plugin& plugin, const ShapeValues& values) {
     return trial;
 }
 
-std::vector<ShapeTrial> accepted_trials(const rt_plugin& plugin, size_t count, std::vector<ShapeTrial>* refused) {
-    std::mt19937 random(kSeed);
+std::vector<ShapeTrial> accepted_trials(const rt_plugin& plugin, size_t count, uint64_t seed,
+                                        std::vector<ShapeTrial>* refused) {
+    std::mt19937 random = random_of(kSeed, seed);
     std::vector<ShapeTrial> accepted;
     for (size_t draw = 0; draw < kMostDraws && accepted.size() < count; ++draw) {
         ShapeTrial trial = try_values(plugin, random_values(*plugin.primitive, random));

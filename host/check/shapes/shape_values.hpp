@@ -1,5 +1,6 @@
 // shape_values.hpp -- values for the keys of a shape: usual ones, ones at the ends of their ranges, and what they become.
 #pragma once
+#include <cstdint>
 #include <random>
 #include <string>
 #include <vector>
@@ -34,7 +35,9 @@ struct ShapeTrial {
 };
 ShapeTrial try_values(const rt_plugin& plugin, const ShapeValues& values);
 
-// Usual values that the plugin accepts: at most `count`. `refused` gets those that it refused on the way.
-std::vector<ShapeTrial> accepted_trials(const rt_plugin& plugin, size_t count, std::vector<ShapeTrial>* refused = nullptr);
+// Usual values that the plugin accepts: at most `count`. seed: of random numbers (seed.hpp). `refused` gets those that it
+// refused on the way.
+std::vector<ShapeTrial> accepted_trials(const rt_plugin& plugin, size_t count, uint64_t seed,
+                                        std::vector<ShapeTrial>* refused = nullptr);
 
 }  // namespace clarity::check

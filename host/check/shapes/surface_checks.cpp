@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/numbers.hpp"
+#include "check/seed.hpp"
 
 namespace clarity::check {
 namespace {
@@ -134,24 +135,9 @@ Outcome surface_normal(ShapeBench& bench, const Step& step) {
                            (inward.tried_count() ? ", and outward where the shape is closed" : ""));
 }
 
-Outcome surface_uv(ShapeBench& bench, const Step& step) {
-    RayFindings findings;
-    constexpr float kRoom = 1e-3f;
-    for (const TouchedPart& part : bench.parts(step))
-        for (size_t i = 0; i < part.touches.size(); ++i) {
-            const ProbeSurface& s = part.surfaces[i];
-            findings.tried();
-            if (s.tex_u >= -kRoom && s.tex_u <= 1 + kRoom && s.tex_v >= -kRoom && s.tex_v <= 1 + kRoom) continue;
-            findings.wrong(part.subject, part.touches[i].ray, false,
-                           "texture coordinates " + exact_text(s.tex_u) + ", " + exact_text(s.tex_v));
-        }
-    if (!findings.empty()) return Outcome::failed(findings.text("texture coordinates are not within 0 and 1"));
-    return Outcome::passed(std::to_string(findings.tried_count()) + " pairs are within 0 and 1");
-}
-
 Outcome surface_leaving(ShapeBench& bench, const Step& step) {
     RayFindings findings;
-    std::mt19937 random(51);
+    std::mt19937 random = random_of(51, bench.options().seed);
     for (const TouchedPart& part : bench.parts(step)) {
         const ShapeSubject& subject = part.subject;
         std::vector<rt_ray> rays;

@@ -7,7 +7,6 @@ namespace clarity::check {
 
 Outcome surface_height(ShapeBench& bench, const Step& step);
 Outcome surface_normal(ShapeBench& bench, const Step& step);
-Outcome surface_uv(ShapeBench& bench, const Step& step);
 Outcome surface_leaving(ShapeBench& bench, const Step& step);
 
 }  // namespace clarity::check

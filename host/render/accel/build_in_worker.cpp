@@ -52,7 +52,8 @@ class BuildSupervisor : public worker::Supervisor {
     void printed(const std::string& line) override { log(LogLevel::info, speaker() + " printed: " + printable_line(line)); }
     void ended(const worker::Ending& ending) const override {
         using End = worker::Ending::Kind;
-        const std::string advice = "; this is a fault of the plugin: `clarity check " + library_ + "` looks for it";
+        const std::string advice =
+            "; this is a fault of the plugin: `clarity check " + original_of(library_) + "` looks for it";
         switch (ending.kind) {
             case End::crashed:
                 throw Error(Exit::failed, "the builder crashed (" + ending.how + ")" + advice);

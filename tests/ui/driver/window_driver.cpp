@@ -186,6 +186,12 @@ void WindowDriver::quit() {
     while (running() && seconds_since(begin) < 60) read_more(0.05);
 }
 
+void WindowDriver::quit_by(int signal) {
+    if (running()) kill(pid_, signal);
+    const auto begin = Clock::now();
+    while (running() && seconds_since(begin) < 60) read_more(0.05);
+}
+
 void WindowDriver::send(const std::string& text) {
     const std::string whole = text + "\n";
     if (write(script_, whole.data(), whole.size()) != static_cast<ssize_t>(whole.size()))

@@ -107,7 +107,8 @@ class WindowDriver {
 
     // Returns the next line of stdout that begins with `prefix`; empty if there is none within `seconds`.
     std::string line(const std::string& prefix, double seconds);
-    void quit();  // and waits until the program has ended
+    void quit();               // and waits until the program has ended
+    void quit_by(int signal);  // the same
     bool running();
     int exit_code() const { return exit_code_; }
     const std::string& folder() const { return folder_.path(); }
