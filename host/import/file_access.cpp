@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/files/packed_file.hpp"
 
 namespace clarity::import {
 namespace {
@@ -58,13 +59,15 @@ void check_model_file(const std::string& path) {
     if (fs::file_size(path, error) == 0) refuse(path, "the file is empty");
     errno = 0;
     std::ifstream file(path, std::ios::binary);
-    unsigned char head[2] = {};
-    if (!file || !file.read(reinterpret_cast<char*>(head), 1)) {
-        refuse(path, std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EIO));
-    }
-    file.read(reinterpret_cast<char*>(head + 1), 1);
-    if (fs::path(path).extension() == ".gz" || (head[0] == 0x1f && head[1] == 0x8b)) {
-        refuse(path, "is packed with gzip, which no importer reads; unpack it first (gunzip -k)");
+    char first;
+    if (!file || !file.get(first)) refuse(path, std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EIO));
+    if (is_packed(path)) {
+        std::string head;
+        const std::string why = unpack_head(path, 1, head);
+        if (!why.empty() && head.empty()) refuse(path, why);
+        if (head.empty()) refuse(path, "is packed with gzip, and nothing is in it");
+    } else if (name_without_gz(path) != path) {
+        refuse(path, "is no gzip file, as its name says: its first bytes are others; copy it again, or name it without .gz");
     }
 }
 

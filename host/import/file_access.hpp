@@ -7,7 +7,8 @@ namespace clarity::import {
 
 // Throws Error(import_failed) "FILE: why" if the file is missing, a folder, a device, or not readable.
 void check_readable(const std::string& path);
-// Also throws if no importer could use the content: the file is empty, or compressed with gzip.
+// Also throws if no importer could use the content: the file is empty, or packed with gzip and damaged
+// at its begin.
 void check_model_file(const std::string& path);
 
 // A model may name other files: textures and included scenes. It may only read from the folders of the files that the user

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/files/packed_file.hpp"
 #include "base/log.hpp"
 #include "base/physical_memory.hpp"
 #include "base/printable.hpp"
@@ -22,11 +23,7 @@ namespace {
 class Limits {
  public:
     explicit Limits(const ImportOptions& options) : options_(options) {}
-    void add_file(const std::string& path) {
-        std::error_code error;
-        const uint64_t size = std::filesystem::file_size(path, error);
-        if (!error) file_bytes_ += std::min(size, uint64_t(1) << 50);
-    }
+    void add_file(const std::string& path) { file_bytes_ += std::min(stated_content_bytes(path), uint64_t(1) << 50); }
     // Seconds without progress. Small files are read in milliseconds; a damaged file that puts a parser into an endless loop
     // must be stopped within ten seconds.
     double idle_s() const { return std::min(7 + 2 * static_cast<double>(file_bytes_) / (1 << 20), options_.time_limit_s); }

@@ -22,10 +22,18 @@ int32_t host_fail(void* ctx, const char* why) {
 std::string HostServices::named(const std::string& text) const {
     // "main.scene:3:9: ..." contains the file's name already.
     const bool has_name = plugin_name_.empty() || text.compare(0, plugin_name_.size() + 1, plugin_name_ + ":") == 0;
-    return has_name ? text : plugin_name_ + ": " + text;
+    if (has_name) return text;
+    const bool has_other = !other_name_.empty() && text.compare(0, other_name_.size() + 1, other_name_ + ":") == 0;
+    return plugin_name_ + (has_other ? text.substr(other_name_.size()) : ": " + text);
 }
 
-HostServices::HostServices(std::string name, Progress& progress) : plugin_name_(std::move(name)), progress_(progress) {
+void HostServices::set_content(std::string_view bytes) {
+    host_.content = reinterpret_cast<const uint8_t*>(bytes.data());
+    host_.content_bytes = bytes.size();
+}
+
+HostServices::HostServices(std::string name, Progress& progress, std::string other_name)
+    : plugin_name_(std::move(name)), other_name_(std::move(other_name)), progress_(progress) {
     host_.struct_bytes = sizeof(rt_host);
     host_.ctx = this;
     host_.fail = host_fail;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include "base/progress.hpp"
 #include "rt_plugin.h"
@@ -15,11 +16,14 @@ namespace clarity {
 class HostServices {
  public:
     // name: what log lines and error messages begin with, "accel bvh2"; empty: nothing, where the reader of them knows.
-    HostServices(std::string name, Progress& progress);
+    // other_name: what the plugin calls it where that differs: the name of a packed file's content.
+    HostServices(std::string name, Progress& progress, std::string other_name = {});
     HostServices(const HostServices&) = delete;
     HostServices& operator=(const HostServices&) = delete;
 
     const rt_host* host() const { return &host_; }
+    // The bytes of the file that an importer is to load, where it cannot read them itself. They must outlive the call.
+    void set_content(std::string_view bytes);
     // Records why the call failed. Only the first reason is kept. Thread-safe.
     void fail(const std::string& why);
     bool failed() const;
@@ -33,7 +37,7 @@ class HostServices {
     // "<name>: <text>", or the text alone if it begins with the name.
     std::string named(const std::string& text) const;
 
-    std::string plugin_name_;
+    std::string plugin_name_, other_name_;
     Progress& progress_;
     rt_host host_{};
     mutable std::mutex mutex_;

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "base/files/library_files.hpp"
+#include "base/files/packed_file.hpp"
 #include "base/log.hpp"
 #include "base/lower.hpp"
 #include "plugin/elf_file.hpp"
@@ -170,8 +171,14 @@ std::string lower_extension(const std::string& path) {
     return lower(extension);
 }
 
+// The first bytes of a file, or of what is packed in it.
 std::vector<uint8_t> read_head(const std::string& path) {
     std::vector<uint8_t> head(4096);
+    if (is_packed(path)) {
+        std::string content;
+        unpack_head(path, head.size(), content);  // damage is reported when the file is read
+        return {content.begin(), content.end()};
+    }
     size_t bytes = 0;
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // opening a pipe must not block
     struct stat status {};
@@ -386,7 +393,7 @@ std::vector<const rt_plugin*> PluginRegistry::with_kernels() const {
 }
 
 const rt_plugin* PluginRegistry::importer_for(const std::string& path) const {
-    const std::string extension = lower_extension(path);
+    const std::string extension = lower_extension(name_without_gz(path));
     const std::vector<uint8_t> head = read_head(path);
     const rt_plugin* best = nullptr;
     int best_certainty = 0;

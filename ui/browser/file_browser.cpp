@@ -38,7 +38,10 @@ std::vector<std::string> extensions_for(const Session& session, BrowseFor what) 
     if (what == BrowseFor::preset) return {"json"};
     std::vector<std::string> all;
     for (const rt_plugin* plugin : session.plugins().importers())
-        for (const char* const* e = plugin->importer->extensions; e && *e; ++e) all.emplace_back(*e);
+        for (const char* const* e = plugin->importer->extensions; e && *e; ++e) {
+            all.emplace_back(*e);
+            all.push_back(std::string(*e) + ".gz");
+        }
     return all;
 }
 

@@ -11,7 +11,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
-#include "bench/suites/gunzip.hpp"
+#include "base/files/packed_file.hpp"
 #include "render/settings/edit.hpp"
 
 namespace clarity::bench {
@@ -169,25 +169,17 @@ std::vector<BenchView> SceneCatalog::views() const {
 
 BenchScene scene_of_file(const std::string& path) {
     BenchScene scene;
-    fs::path name = fs::path(path).filename();
-    if (name.extension() == ".gz") name = name.stem();
-    scene.name = name.stem().string();
+    scene.name = fs::path(name_without_gz(path)).stem().string();
     scene.files = {path};
     return scene;
 }
 
 LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect,
                        const import::ImportOptions& options, Progress& progress) {
-    std::vector<TemporaryFile> unpacked;
-    std::vector<std::string> files;
-    for (const std::string& file : scene.files) {
-        const bool packed = fs::path(file).extension() == ".gz";
-        if (packed) unpacked.push_back(gunzip(file));
-        files.push_back(packed ? unpacked.back().path() : file);
-    }
     LoadedScene loaded;
     const auto begin = std::chrono::steady_clock::now();
-    loaded.scene = std::make_shared<const Scene>(with_scene_edits(import::import_scene(plugins, files, options, progress)));
+    loaded.scene =
+        std::make_shared<const Scene>(with_scene_edits(import::import_scene(plugins, scene.files, options, progress)));
     loaded.import_ms = ms_since(begin);
     loaded.view = make_view(*loaded.scene, aspect, scene.camera, scene.light);
     return loaded;

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/files/frame_path.hpp"
+#include "base/files/packed_file.hpp"
 #include "base/files/read_file.hpp"
 #include "import/sink/mesh_copy.hpp"
 #include "import/sink/scene_sink.hpp"
@@ -50,9 +51,8 @@ std::string known_extensions(const PluginRegistry& plugins) {
 // Reserves address space for the largest arrays, so that they seldom move while they grow: a move holds an array twice. Memory
 // that is not written costs nothing. Files whose numbers are packed may need more.
 void reserve_arrays(const std::string& path, Scene& scene) {
-    std::error_code error;
-    const uint64_t size = fs::file_size(path, error);
-    if (error || !scene.positions.empty()) return;
+    const uint64_t size = stated_content_bytes(path);
+    if (!scene.positions.empty()) return;
     rlimit space{};
     getrlimit(RLIMIT_AS, &space);
     // 1.5 times the file, but at most 256 MB and a sixteenth of what the process may have.
@@ -80,8 +80,13 @@ void SceneBuilder::warn(const std::string& file, const std::string& text) {
         ++warnings_left_out_;
         return;
     }
-    const bool named = text.compare(0, file.size() + 1, file + ":") == 0;
-    scene_.warnings.push_back(named ? text : file + ": " + text);
+    // Importers know a packed file by the name of what is in it.
+    for (const std::string& name : {file, name_without_gz(file)}) {
+        if (text.compare(0, name.size() + 1, name + ":") != 0) continue;
+        scene_.warnings.push_back(file + text.substr(name.size()));
+        return;
+    }
+    scene_.warnings.push_back(file + ": " + text);
 }
 
 void SceneBuilder::add_root(const std::string& path) {
@@ -131,13 +136,29 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     auto content = std::make_unique<FileContent>();
     content->first_material = static_cast<rt_u32>(scene_.materials.size());
     reserve_arrays(path, scene_);
-    HostServices services(path, progress_);
+    std::string unpacked;
+    const bool packed = is_packed(path);
+    const std::string name = packed ? name_without_gz(path) : path;
+    HostServices services(path, progress_, name);
+    if (packed) {
+        if (!(plugin->importer->flags & RT_IMPORTER_TAKES_CONTENT))
+            fail(path, "is packed with gzip, and the importer " + std::string(plugin->id) +
+                           " takes no packed files; unpack it first (gunzip -k)");
+        const auto report = [&](float fraction) {
+            if (!progress_.report(fraction)) throw Cancelled();
+        };
+        progress_.stage("unpacking " + file_name(path));
+        const std::string why = unpack_file(path, report, unpacked);
+        if (!why.empty()) fail(path, why);
+        progress_.stage(stage);
+        services.set_content(unpacked);
+    }
     SceneSink sink(*this, services, path, *content);
     try {
         const auto chosen = parameters_.find(plugin->id);
         const ParameterValues parameters = chosen != parameters_.end() ? chosen->second : default_parameters(*plugin);
         services.check(static_cast<int>(Exit::import_failed),
-                       [&] { return plugin->importer->load(services.host(), path.c_str(), parameters.data(), sink.sink()); });
+                       [&] { return plugin->importer->load(services.host(), name.c_str(), parameters.data(), sink.sink()); });
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {

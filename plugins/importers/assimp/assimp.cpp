@@ -5,14 +5,18 @@
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
+
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <assimp/ProgressHandler.hpp>
-#include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "../common/mapped_file.hpp"
 #include "complaints.hpp"
 #include "content_checks.hpp"
 #include "file_kind.hpp"
@@ -51,28 +55,20 @@ std::string lower_extension(const std::string& path) {
     return extension;
 }
 
-// The whole file, or nothing if it is too large to be looked through.
-std::string read_content(const std::string& path) {
-    constexpr size_t kMostBytes = size_t(256) << 20;
-    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-    std::string bytes;
-    char piece[65536];
-    while (file && bytes.size() < kMostBytes) {
-        const size_t got = std::fread(piece, 1, sizeof piece, file.get());
-        if (got == 0) break;
-        bytes.append(piece, got);
+// The file itself from its bytes, and the files beside it, such as materials, from the disk.
+class FilesAround : public Assimp::DefaultIOSystem {
+ public:
+    FilesAround(std::string path, std::string_view bytes) : path_(std::move(path)), bytes_(bytes) {}
+    bool Exists(const char* file) const override { return path_ == file || DefaultIOSystem::Exists(file); }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (path_ != file) return DefaultIOSystem::Open(file, mode);
+        return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes_.data()), bytes_.size());
     }
-    return bytes.size() < kMostBytes ? bytes : std::string();
-}
 
-std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
-    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (!file) throw rt::fail(host, "cannot open the file for reading");
-    std::vector<uint8_t> head(16384);
-    head.resize(std::fread(head.data(), 1, head.size(), file.get()));
-    if (head.empty()) throw rt::fail(host, "the file is empty");
-    return head;
-}
+ private:
+    const std::string path_;
+    const std::string_view bytes_;
+};
 
 // The axes and the unit that the file declares.
 struct Units {
@@ -80,11 +76,11 @@ struct Units {
     double unit_scale = 0;
 };
 
-Units units_of(aiScene& scene, const std::string& extension, const std::vector<uint8_t>& head) {
+Units units_of(aiScene& scene, const std::string& extension, std::string_view head) {
     Units units;
     if (extension == "dae" && scene.mRootNode) {
         // assimp scales the root node to metres. Undo that, and report the unit instead.
-        const std::string text(head.begin(), head.end());
+        const std::string_view text = head.substr(0, 16384);
         if (text.find("Z_UP") != text.npos) units.up_axis = 2;
         if (text.find("X_UP") != text.npos) units.up_axis = 0;
         aiMatrix4x4& root = scene.mRootNode->mTransformation;
@@ -149,16 +145,19 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
 }
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    const std::vector<uint8_t> head = read_head(host, path);
+    const importers::MappedFile file(host, path);
+    if (file.bytes().empty()) throw rt::fail(host, "the file is empty");
     const std::string extension = lower_extension(path);
-
-    const std::string bytes = read_content(path);
+    constexpr size_t kMostChecked = size_t(256) << 20;  // larger files are not looked through
+    const std::string bytes(file.bytes().size() < kMostChecked ? file.bytes() : std::string_view());
     const std::string damage = bytes.empty() ? bytes : damage_in(bytes, extension);
     if (!damage.empty()) throw rt::fail(host, damage);
 
     Assimp::Importer importer;
     HostProgress* progress = new HostProgress(*host);  // the importer deletes it
     importer.SetProgressHandler(progress);
+    if (RT_HAS(host, rt_host, content_bytes) && host->content)
+        importer.SetIOHandler(new FilesAround(path, file.bytes()));  // likewise
     importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
     const Complaints complaints;
     importer.ReadFile(path, 0);
@@ -169,7 +168,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
         throw rt::fail(host, explain_refusal(bytes, extension, why));
     }
 
-    const Units units = units_of(*scene, extension, head);
+    const Units units = units_of(*scene, extension, file.bytes());
     const NodeTree tree(*scene);
     MaterialTable materials(*scene, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
@@ -190,13 +189,9 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 // The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
-constexpr const char* extensions[] = {"dae",     "3ds", "blend", "ac",  "ase", "b3d", "bvh",     "dxf",  "hmp", "ifc", "irr",
-                                      "irrmesh", "lwo", "lws",   "lxo", "md2", "md3", "md5mesh", "ms3d", "nff", "q3o", "smd",
-                                      "ter",     "x",   "x3d",   "xgl", "zgl", "3mf", "amf",     "cob",  "scn",
-#ifdef ASSIMP_TAKES_MESH_FORMATS
-                                      "obj",     "ply", "stl",   "off",
-#endif
-                                      nullptr};
+constexpr const char* extensions[] = {"dae",     "3ds", "blend", "ac",  "ase", "b3d", "bvh",     "dxf",  "hmp", "ifc",  "irr",
+                                      "irrmesh", "lwo", "lws",   "lxo", "md2", "md3", "md5mesh", "ms3d", "nff", "q3o",  "smd",
+                                      "ter",     "x",   "x3d",   "xgl", "zgl", "3mf", "amf",     "cob",  "scn", nullptr};
 constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>, RT_IMPORTER_TAKES_CONTENT, 0};
 
 }  // namespace

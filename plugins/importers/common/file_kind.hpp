@@ -10,6 +10,8 @@ inline const char* kind_of(std::string_view bytes) {
     constexpr std::pair<std::string_view, const char*> kinds[] = {
         {"\x89PNG", "a PNG picture: call it .png"},
         {"\xFF\xD8\xFF", "a JPEG picture: call it .jpg"},
+        {"\xFF\xFE", "text in UTF-16: save it as UTF-8"},
+        {"\xFE\xFF", "text in UTF-16: save it as UTF-8"},
         {"PK\x03\x04", "a zip archive: unpack it"},
         {"\x1F\x8B", "a gzip archive: unpack it"},
         {"%PDF", "a PDF document: call it .pdf"},

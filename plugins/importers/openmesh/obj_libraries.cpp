@@ -129,7 +129,10 @@ std::string ObjLibraries::picture(const ObjMaterial& material) const {
                                          material.folder + file_name(path), "textures/" + file_name(path)})
             if (!place.empty() && place.back() != '/' && is_there(place)) return place;
     }
-    return names.front();
+    const auto plain = std::find_if(names.begin(), names.end(), [](const std::string& name) {
+        return comment_in_name(name) == name.npos && name.find('.') != name.npos;
+    });
+    return plain == names.end() ? names.front() : *plain;
 }
 
 rt_u32 ObjLibraries::texture(const ObjMaterial& material) {

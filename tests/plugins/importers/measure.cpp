@@ -58,14 +58,11 @@ nlohmann::json read_json(const std::string& path) {
 bool has_importer_for(const std::string& path) {
     const std::string extension = fs::path(path).extension().string();
     if (extension == ".gltf" || extension == ".glb" || extension == ".fbx") return true;
-    for (const char* openmesh : {".obj", ".ply", ".stl", ".off", ".om"}) {
-        if (extension != openmesh) continue;
-#if defined(CLARITY_HAVE_OPENMESH) || defined(CLARITY_HAVE_ASSIMP)
-        return true;
-#else
-        return false;
+    for (const char* ours : {".obj", ".ply", ".stl", ".off"})
+        if (extension == ours) return true;
+#ifdef CLARITY_HAVE_OPENMESH
+    if (extension == ".om") return true;
 #endif
-    }
 #ifdef CLARITY_HAVE_ASSIMP
     return true;
 #else

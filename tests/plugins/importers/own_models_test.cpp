@@ -73,14 +73,12 @@ TEST(ObjModel, ReadsMaterials) {
     EXPECT_FLOAT_EQ(paint.shininess, 40);
     EXPECT_EQ(paint.reflect + paint.refract, 0);
     EXPECT_FLOAT_EQ(material_named(scene, "lamp").values.emission[2], 5);
-#ifdef CLARITY_HAVE_OPENMESH
     EXPECT_FLOAT_EQ(material_named(scene, "mirror").values.reflect, 0.9f);
     const rt_material glass = material_named(scene, "glass").values;
     EXPECT_FLOAT_EQ(glass.refract, 1);
     EXPECT_FLOAT_EQ(glass.ior, 1.4f);
     EXPECT_FLOAT_EQ(glass.color[0], 0.5f);
     EXPECT_FLOAT_EQ(glass.color[1], 1);
-#endif
     const rt_material foil = material_named(scene, "foil").values;
     EXPECT_FLOAT_EQ(foil.refract, 0.75f);
     EXPECT_FLOAT_EQ(foil.ior, 1);
@@ -108,16 +106,12 @@ TEST(ObjModel, LeavesOutOnlyWhatIsBroken) {
     const std::string path = folder.write("broken.obj",
                                           "v 0 0 0\nv 1 0 0\nv nan 0 0\nv 0 1 0\nv 1e99 0 0\nv 0 0 1\n"
                                           "f 1 2 4\nf 1 2 3\nf 1 5 2\nf 1 2 77\nf 1 x 2\nf 1 2\nf 1 2 6\n");
-#ifdef CLARITY_HAVE_OPENMESH
     const Scene scene = import_file(path);
     ASSERT_EQ(scene.triangle_count(), 2u);
     EXPECT_NEAR(scene.surface_area(), 1, 1e-6);  // vertices behind the broken one keep their numbers
     ASSERT_EQ(scene.warnings.size(), 2u);
     EXPECT_NE(scene.warnings[0].find("line 11"), std::string::npos) << scene.warnings[0];
     EXPECT_NE(scene.warnings[1].find("line 8"), std::string::npos) << scene.warnings[1];
-#else
-    (void)path;
-#endif
 }
 
 // ---- OFF, STL, PLY, OM
@@ -151,17 +145,12 @@ TEST(StlModel, AsciiAndBinaryAgree) {
     const Scene binary = import_file(folder.write("binary.stl", bytes));
     EXPECT_EQ(binary.triangle_count(), 2u);
     EXPECT_NEAR(binary.surface_area(), 1, 1e-6);
-#ifdef CLARITY_HAVE_OPENMESH
     const Scene padded = import_file(folder.write("padded.stl", bytes + std::string(7, '\0')));
     EXPECT_EQ(padded.triangle_count(), 2u);
-#endif
 }
 
 TEST(PlyModel, ReadsListsAttributesAndOddLines) {
     NEEDS_IMPORTER("roof.ply");
-#ifndef CLARITY_HAVE_OPENMESH
-    GTEST_SKIP() << "SKIPPED: lists of texture coordinates need the importer openmesh";
-#endif
     const Scene scene = import_file(data("roof.ply"));
     EXPECT_EQ(scene.triangle_count(), 3u);  // a square and a triangle; the third face uses a vertex that is not finite
     EXPECT_NEAR(scene.surface_area(), 1.5, 1e-6);

@@ -1,0 +1,350 @@
+// mesh_files_test.cpp -- OBJ, MTL, PLY, STL and OFF as other programs write them: byte order marks, all line ends, elements in
+// any order, names that hold keywords, blanks and '#'.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "import/import.hpp"
+#include "measure.hpp"
+
+namespace clarity::test {
+namespace {
+
+const std::string kMark = "\xEF\xBB\xBF";
+
+// The text with other line ends.
+std::string with_ends(std::string text, const std::string& end) {
+    for (size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + end.size())) text.replace(at, 1, end);
+    return text;
+}
+
+class MeshFiles : public testing::Test {
+ protected:
+    Scene import(const std::string& name, const std::string& bytes) {
+        static const PluginRegistry plugins = PluginRegistry::discover();
+        import::ImportOptions options;
+        options.in_process = true;
+        options.log_warnings = false;
+        Progress progress;
+        return import::import_scene(plugins, {folder_.write(name, bytes)}, options, progress);
+    }
+    // A square from (0,0,0) to (1,1,0), in two triangles.
+    void expect_square(const std::string& name, const std::string& bytes) {
+        try {
+            const Scene scene = import(name, bytes);
+            EXPECT_EQ(scene.triangle_count(), 2u) << name << "\n" << bytes;
+            EXPECT_NEAR(scene.surface_area(), 1, 1e-6) << name << "\n" << bytes;
+            EXPECT_EQ(bounds_error(scene.bounds(), {{0, 0, 0}, {1, 1, 0}}), 0) << name;
+        } catch (const Error& error) {
+            ADD_FAILURE() << error.what() << "\n" << bytes;
+        }
+    }
+    // With every line end, with and without a mark.
+    void expect_square_however_written(const std::string& name, const std::string& text) {
+        for (const char* end : {"\n", "\r\n", "\r"}) {
+            expect_square(name, with_ends(text, end));
+            expect_square(name, kMark + with_ends(text, end));
+        }
+    }
+    std::string refusal(const std::string& name, const std::string& bytes) {
+        try {
+            import(name, bytes);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    }
+    void expect_refused(const std::string& name, const std::string& bytes, const std::string& why) {
+        EXPECT_NE(refusal(name, bytes).find(why), std::string::npos) << refusal(name, bytes);
+    }
+    TemporaryFolder folder_;
+};
+
+bool warns(const Scene& scene, const std::string& of) {
+    return std::any_of(scene.warnings.begin(), scene.warnings.end(),
+                       [&](const std::string& warning) { return warning.find(of) != warning.npos; });
+}
+// The name of the material of each triangle.
+std::vector<std::string> materials(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const rt_u32 material : scene.triangle_materials) names.push_back(scene.materials[material].name);
+    return names;
+}
+std::string bytes_of(const std::vector<float>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+using Names = std::vector<std::string>;
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+// ---- line ends, marks, files with nothing in them
+
+TEST_F(MeshFiles, HaveAnyLineEnds) {
+    expect_square_however_written("a.obj", "# by hand\n\n" + kSquare + "f 1 2 \\\n3 4\n");
+    expect_square_however_written("a.off", "OFF # a square\n# made by hand\n\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
+    expect_square_however_written("b.off", "4 1\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1\n2 3");
+    expect_square_however_written("c.off",
+                                  "NOFF\n4 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n0 1 0 0 0 1\n4 0 1 2 3 0.5 0.5 1\n");
+    expect_square_however_written("d.off",
+                                  "COFF 4 1 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 1\n0 1 0 1 0 0 1\n4 0 1 2 3\n");
+}
+
+TEST_F(MeshFiles, WithoutASurfaceAreRefused) {
+    expect_refused("points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n", "contains no polygons, only 2 vertices and 1 point");
+    expect_refused("words.obj", "This is no model.\n", "expected a .obj file");
+    expect_refused("names.stl", "solid a\nendsolid a\n", "no facet");
+    expect_refused("empty.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "contains no polygons");
+    expect_refused("wide.obj", std::string("\xFF\xFEv\0 \0", 6), "UTF-16");
+    expect_refused("nothing.scene", "# a comment\n\n", "no statement");
+}
+
+// ---- PLY
+
+std::string ply(const std::string& elements, const std::string& data, const std::string& format = "ascii") {
+    return "ply\nformat " + format + " 1.0\n" + elements + "end_header\n" + data;
+}
+const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
+const std::string kIndices = "property list uchar int vertex_indices\n";
+const std::string kRows = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+TEST_F(MeshFiles, PlyHasElementsAndPropertiesInAnyOrder) {
+    const std::string vertices = "element vertex 4\n" + kXyz, faces = "element face 1\n" + kIndices;
+    expect_square_however_written("a.ply", ply(vertices + faces, kRows + "4 0 1 2 3\n"));
+    expect_square_however_written("b.ply", ply(faces + vertices, "4 0 1 2 3\n" + kRows));
+    expect_square_however_written(
+        "c.ply", ply("element camera 2\nproperty list int double pose\nelement empty 3\n" + vertices + "element edge 1\n" +
+                         "property int a\nproperty int b\n" + faces + "element tail 9\nproperty float never_there\n",
+                     "3 1 2 3\n0\n" + kRows + "7 8\n4 0 1 2 3"));
+    expect_square("d.ply",
+                  ply("element vertex 4\nproperty list uchar double weights\nproperty int z\nproperty list int uchar tag\n"
+                      "property short y\nproperty double x\n" +
+                          faces,
+                      "2 .5 .5 0 0 0 0\n0 0 2 1 2 0 1\n1 7 0 0 1 1\n0 0 1 255 1 0\n4 0 1 2 3\n"));
+    expect_square("e.ply", ply(vertices + "element face 2\nproperty uchar red\nproperty list uchar float texcoord\n"
+                                          "property list uint uint vertex_index\nproperty list uchar short more\n",
+                               kRows + "255 0 3 0 1 2 2 1 1\n0 6 0 0 1 0 1 1 3 0 2 3 0\n"));
+    const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    expect_square_however_written("f.ply", ply(vertices + strips, kRows + "7 0 1 2 -1 0 2 3\n"));
+    expect_square_however_written("g.ply", ply(strips + vertices, "4 1 2 0 3\n" + kRows));
+    // Elements in the middle of the file may go on in the next line.
+    expect_square("h.ply", ply(vertices + faces, "0\n0 0 extra\n1 0 0\n\n1 1\n0\n0 1 0\n4 0 1\n2 3\n"));
+}
+
+TEST_F(MeshFiles, PlyStripsKeepTheirSense) {
+    const Scene scene =
+        import("a.ply", ply("element vertex 4\n" + kXyz + "element tristrips 1\n" + "property list int int vertex_indices\n",
+                            "0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n"));
+    EXPECT_EQ(std::vector<rt_u32>(scene.triangles.begin(), scene.triangles.end()), (std::vector<rt_u32>{0, 1, 2, 2, 1, 3}));
+}
+
+// The bytes of a number, in either order.
+template <class T>
+std::string number(double value, bool big_endian) {
+    const T typed = static_cast<T>(value);
+    std::string bytes(reinterpret_cast<const char*>(&typed), sizeof typed);
+    if (big_endian) std::reverse(bytes.begin(), bytes.end());
+    return bytes;
+}
+
+TEST_F(MeshFiles, BinaryPlyHasListsAnywhere) {
+    for (const bool big : {false, true}) {
+        std::string data = number<uint16_t>(1, big) + number<float>(.25, big);
+        data += number<int8_t>(1, big) + number<uint8_t>(4, big);
+        for (const int v : {0, 1, 2, 3}) data += number<uint16_t>(v, big);
+        data += number<double>(0.5, big);
+        const double xy[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        int list = 0;
+        for (const auto& p : xy) {
+            data += number<int16_t>(p[0], big) + number<uint32_t>(list, big) + std::string(2 * size_t(list), 'x');
+            data += number<double>(p[1], big) + number<uint8_t>(0, big);
+            list = (list + 1) % 3;
+        }
+        const std::string header =
+            "element a 1\nproperty list ushort float b\nelement face 1\nproperty char flag\nproperty list uchar ushort "
+            "vertex_index\n"
+            "property double quality\nelement vertex 4\nproperty short x\nproperty list uint short words\nproperty double y\n"
+            "property uchar z\n";
+        const std::string file = ply(header, "", big ? "binary_big_endian" : "binary_little_endian");
+        for (const char* end : {"\n", "\r\n", "\r"}) {
+            expect_square("a.ply", with_ends(file, end) + data);
+            expect_square("b.ply", kMark + with_ends(file, end) + data);
+        }
+        const std::string message = refusal("short.ply", file + data.substr(0, data.size() - 3));
+        EXPECT_NE(message.find("3 of 4 vertices"), std::string::npos) << message;
+    }
+}
+
+TEST_F(MeshFiles, BinaryPlyBehindCrBeginsWithAnyByte) {
+    // The first byte of the data is the sign of a line end.
+    const std::string faces = "element face 1\nproperty uchar flag\n" + kIndices, vertices = "element vertex 4\n" + kXyz;
+    std::string data = std::string("\n\4", 2);
+    for (const int v : {0, 1, 2, 3}) data += number<int32_t>(v, false);
+    data += bytes_of({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+    expect_square("a.ply", with_ends(ply(faces + vertices, "", "binary_little_endian"), "\r") + data);
+}
+
+TEST_F(MeshFiles, PlyColoursAreNamed) {
+    const Scene scene = import("a.ply", ply("element vertex 3\n" + kXyz + "property uchar red\nproperty uchar green\n" +
+                                                "property uchar blue\nelement face 1\n" + kIndices,
+                                            "0 0 0 9 9 9\n1 0 0 9 9 9\n0 1 0 9 9 9\n3 0 1 2\n"));
+    EXPECT_TRUE(warns(scene, "its vertices have colours"));
+}
+
+// ---- STL
+
+std::string stl(const std::string& solid, const std::string& end, const std::string& body_end = "endloop\nendfacet\n") {
+    const auto facet = [&](const char* corners) {
+        return "facet normal 0 0 1\nouter loop\n" + std::string(corners) + body_end;
+    };
+    return solid + "\n" + facet("vertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n") +
+           facet("vertex 0 0 0\nvertex 1 1 0\nvertex 0 1 0\n") + end;
+}
+
+TEST_F(MeshFiles, StlNamesMayBeAnything) {
+    for (const char* name : {"", " router", " outer loop", " vertex 1 2", " endfacet facet", " solid", " facet normal",
+                             " a\tb # c", " end loop", " \"quoted\"", " endsolid"}) {
+        expect_square_however_written("a.stl", stl(std::string("solid") + name, std::string("endsolid") + name));
+    }
+    expect_square_however_written("b.stl", stl("  \tSolid x", "end solid x\n", "  End Loop\n\tEND FACET\n"));
+    expect_square_however_written("c.stl", stl("solid no end", ""));
+    expect_square_however_written("d.stl",
+                                  stl("a title\nsolid x\nCOLOR 0.5 0.5 0.5\n", "endsolid\nsolid empty\nendsolid empty\n"));
+    std::string upper = stl("SOLID X", "ENDSOLID X");
+    std::transform(upper.begin(), upper.end(), upper.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
+    expect_square("e.stl", upper);
+    std::string line = stl("solid a name", "endsolid");
+    expect_square("f.stl", with_ends(line, " "));
+    for (size_t at = line.find("0 0 1"); at != line.npos; at = line.find("0 0 1")) line.replace(at, 5, "nan -nan(ind) -1.#IND");
+    expect_square("g.stl", line);
+    // Two solids make one mesh.
+    expect_square("h.stl",
+                  "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex +1.0e+000 0 0\nvertex 1 1 "
+                  "0\nendloop\nendfacet\nendsolid "
+                  "a\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 "
+                  "0\nendloop\nendfacet\nendsolid b\n");
+}
+
+TEST_F(MeshFiles, BinaryStlMayBeginWithSolid) {
+    for (const std::string title : {"solid", "solid facet normal outer loop vertex", "SOLID AutoCAD\n", "facet", ""}) {
+        std::string bytes = title;
+        bytes.resize(80, ' ');
+        bytes += number<uint32_t>(2, false);
+        for (const std::vector<float>& corners :
+             {std::vector<float>{0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0}, std::vector<float>{0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 1, 0}})
+            bytes += bytes_of(corners) + std::string(2, '\0');
+        expect_square("a.stl", bytes);
+        expect_square("b.stl", bytes + "behind");
+    }
+}
+
+TEST_F(MeshFiles, StlThatStopsIsRefused) {
+    const std::string whole = stl("solid x", "");
+    for (const char* at : {"vertex 1 1", "endloop"})
+        expect_refused("a.stl",
+                       whole.substr(0, whole.find(at, 20)) + (std::strcmp(at, "endloop") == 0 ? "" : "\n") + "endsolid\n" +
+                           (std::strcmp(at, "endloop") == 0 ? "facet normal 0 0 1\n" : ""),
+                       "cut off");
+}
+
+// ---- OBJ and MTL
+
+TEST_F(MeshFiles, ObjFindsItsMaterialsWhereverTheyAreNamed) {
+    folder_.write("red.mtl", "newmtl red\nKd 1 0 0\n");
+    folder_.write("my two.mtl", kMark + with_ends("newmtl blue\nKd 0 0 1\nnewmtl red\nKd 0.5 0 0\n", "\r"));
+    folder_.write("c#.mtl",
+                  "newmtl Material #1\nKd 0 1 0\n\tnewmtl  padded name \t\nKd 1 1 0\nnewmtl a # the first\nKd 1 1 1\n");
+    const std::string face = "f 1 2 3\n";
+    const auto used = [&](const std::string& text) { return materials(import("a.obj", kSquare + text)); };
+    EXPECT_EQ(used("usemtl red\nmtllib red.mtl\n" + face), Names{"red"});
+    EXPECT_EQ(used("usemtl red\n" + face + "mtllib red.mtl"), Names{"red"});
+    EXPECT_EQ(used("mtllib red.mtl my two.mtl c#.mtl\nusemtl blue\n" + face + "usemtl Material #1\n" + face),
+              (Names{"blue", "Material #1"}));
+    EXPECT_EQ(used("mtllib \"my two.mtl\" # a comment\nusemtl blue # another\n" + face), Names{"blue # another"});
+    EXPECT_EQ(used("mtllib c#.mtl\nusemtl padded name\n" + face + "usemtl a\n" + face + "usemtl \"a\"\n" + face),
+              (Names{"padded name", "a", "a"}));
+    EXPECT_EQ(used("mtllib C:\\models\\red.mtl\nusemtl red\n" + face + face + "usemtl none\n" + face),
+              (Names{"red", "red", "default"}));
+    EXPECT_EQ(used(face + "usemtl red\nmtllib my two.mtl\n" + face), (Names{"default", "red"}));
+    // A name means the material of the library before it.
+    const Scene scene =
+        import("a.obj", kSquare + "mtllib red.mtl\nusemtl red\n" + face + "mtllib my two.mtl\nusemtl red\n" + face);
+    EXPECT_FLOAT_EQ(scene.materials[scene.triangle_materials[0]].values.color[0], 1);
+    EXPECT_FLOAT_EQ(scene.materials[scene.triangle_materials[1]].values.color[0], 0.5f);
+    EXPECT_TRUE(warns(import("a.obj", kSquare + "mtllib red.mtl\nusemtl rde\n" + face), "'rde' is not defined"));
+    EXPECT_TRUE(warns(import("a.obj", kSquare + "mtllib no such.mtl\n" + face), "'no such.mtl' cannot be read"));
+}
+
+// A picture of two texels: PNM.
+std::string picture() {
+    return std::string("P6\n2 1\n255\n") + std::string("\xFF\0\0\0\xFF\0", 6);
+}
+
+TEST_F(MeshFiles, MtlOptionsAreObeyedOrNamed) {
+    folder_.write("four.ppm", picture());
+    folder_.write("4 wood#1 four.ppm", picture());
+    const std::string mesh = "mtllib m.mtl\n" + kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
+    const auto with_map = [&](const std::string& statement) {
+        folder_.write("m.mtl", "newmtl m\nKd 1 1 1\n" + statement + "\n");
+        return import("a.obj", mesh);
+    };
+    const auto corner = [](const Scene& scene) {  // uv of (1, 1)
+        for (size_t v = 0; v < scene.positions.size() / 3; ++v)
+            if (scene.positions[3 * v] == 1 && scene.positions[3 * v + 1] == 1)
+                return std::pair<float, float>(scene.uvs[2 * v], scene.uvs[2 * v + 1]);
+        return std::pair<float, float>(-9, -9);
+    };
+    using Uv = std::pair<float, float>;
+    for (const char* silent :
+         {"map_Kd four.ppm", "map_kd \"four.ppm\"", "map_Kd .\\four.ppm \t", "map_Kd 4 wood#1 four.ppm",
+          "map_Kd -s 1 1 1 4 wood#1 four.ppm", "map_Kd -o 0 0 4 wood#1 four.ppm", "map_Kd four.ppm # a comment",
+          "map_Kd -blendu on -blendv on -mm 0 1.0 -bm 1.000 -cc off four.ppm", "map_Kd C:\\textures\\four.ppm"}) {
+        const Scene scene = with_map(silent);
+        EXPECT_EQ(scene.textures.size(), 1u) << silent;
+        EXPECT_EQ(corner(scene), Uv(1, 1)) << silent;
+        EXPECT_TRUE(scene.warnings.empty()) << silent << ": " << scene.warnings[0];
+    }
+    EXPECT_EQ(corner(with_map("map_Kd -s 2 3 1 four.ppm")), Uv(2, 3));
+    EXPECT_EQ(corner(with_map("map_Kd -s -2.000000 four.ppm")), Uv(-2, 1));
+    EXPECT_EQ(corner(with_map("map_Kd -o 0.5 0.25 -s 4 4 4 four.ppm")), Uv(4.5f, 4.25f));
+    for (const char* option : {"-mm 0.5 2", "-imfchan r", "-type cube_top", "-bm 2", "-texres 512", "-t 1 1 1", "-boost 2.5",
+                               "-cc on", "-blendu off"}) {
+        const Scene scene = with_map("map_Kd " + std::string(option) + " four.ppm");
+        const std::string word = std::string(option).substr(0, std::string(option).find(' '));
+        EXPECT_EQ(scene.textures.size(), 1u) << option;
+        EXPECT_TRUE(warns(scene, "map_Kd " + word)) << option;
+    }
+    EXPECT_TRUE(warns(with_map("map_d hole.ppm"), "map_d"));
+    EXPECT_TRUE(warns(with_map("bump -bm 0.5 four.ppm"), "bump -bm"));
+    const Scene halo = with_map("d -halo 0.25");
+    EXPECT_TRUE(warns(halo, "d -halo"));
+    EXPECT_FLOAT_EQ(halo.materials.back().values.refract, 0.75f);
+}
+
+TEST_F(MeshFiles, MtlMovesTheUvsOfItsOwnFaces) {
+    folder_.write("four.ppm", picture());
+    folder_.write("m.mtl", "newmtl a\nmap_Kd -s 2 2 2 four.ppm\nnewmtl b\nmap_Kd -clamp on four.ppm\n");
+    const Scene scene =
+        import("a.obj", "mtllib m.mtl\n" + kSquare +
+                            "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n");
+    ASSERT_EQ(scene.triangle_count(), 2u);
+    EXPECT_EQ(scene.uvs[2 * size_t(scene.triangles[2])], 2);  // the same corner in both
+    EXPECT_EQ(scene.uvs[2 * size_t(scene.triangles[4])], 1);
+}
+
+TEST_F(MeshFiles, ObjKeepsFacesOfAreaZeroAndFacesBeforeVertices) {
+    // ZBrush writes quads with two equal corners for triangles.
+    const Scene scene = import("a.obj", "f 1 2 3 3\n" + kSquare + "f 1 1 2\nf 1 3 4 4\n");
+    EXPECT_EQ(scene.triangle_count(), 5u);
+    EXPECT_NEAR(scene.surface_area(), 1, 1e-6);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST_F(MeshFiles, ObjColoursAreNamed) {
+    EXPECT_TRUE(warns(import("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n"), "colours"));
+    EXPECT_TRUE(import("b.obj", "v 0 0 0 1.0\nv 1 0 0 1.0\nv 0 1 0 1.0 # w\nf 1 2 3# a comment\n").warnings.empty());
+}
+
+}  // namespace
+}  // namespace clarity::test
