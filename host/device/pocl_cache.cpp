@@ -56,14 +56,6 @@ std::string why_unwritable(const fs::path& folder) {
     return why;
 }
 
-// Programs are loaded from the folder, so it must be safe.
-bool make_own_folder(const fs::path& folder) {
-    std::error_code ignored;
-    fs::create_directories(folder.parent_path(), ignored);
-    mkdir(folder.c_str(), 0700);
-    return is_own_folder(folder);
-}
-
 // Below the folders that others may write to, too.
 fs::path folder_of_user(const fs::path& parent) {
     return parent / ("clarity-pocl-" + std::to_string(geteuid()));

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
+#include "base/files/own_folder.hpp"
 #include "base/files/process_folder.hpp"
 #include "base/files/read_file.hpp"
 #include "base/log.hpp"
@@ -59,11 +60,12 @@ bool is_being_written(const std::string& path) {
 // Copies a library to a new name: my_tree.2.so.
 std::string private_copy(const std::string& path) {
     // Of this process. If it is killed, the next one that copies removes the folder.
-    static const std::unique_ptr<ProcessFolder> folder = [] {
+    static const std::unique_ptr<ProcessFolder> folder = []() -> std::unique_ptr<ProcessFolder> {
         std::error_code error;
         const fs::path named = fs::temp_directory_path(error);
         const fs::path parent = fs::canonical(error ? fs::path("/tmp") : named, error);  // as the loader names its files
-        return error ? nullptr : ProcessFolder::make(parent, "clarity-plugins");
+        const fs::path of_user = parent / ("clarity-plugins-" + std::to_string(geteuid()));
+        return error || !make_own_folder(of_user) ? nullptr : ProcessFolder::make(of_user, "process");
     }();
     static std::atomic<unsigned> number{1};
     if (!folder)

@@ -11,4 +11,11 @@ bool is_own_folder(const std::filesystem::path& folder) {
            (status.st_mode & 022) == 0;
 }
 
+bool make_own_folder(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    std::filesystem::create_directories(folder.parent_path(), ignored);
+    mkdir(folder.c_str(), 0700);
+    return is_own_folder(folder);
+}
+
 }  // namespace clarity
