@@ -23,7 +23,8 @@
  *   2  Structs and arrays that can grow. What a structure can do is data. The kernel contract has a number. Materials and lights
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
- *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink. */
+ *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
+ *      wrap_v of textures. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -337,12 +338,19 @@ typedef struct rt_material_desc {
     rt_u32 texture;    /* id that the sink's `texture` returned, which multiplies color; RT_NONE: none */
 } rt_material_desc;
 
+/* What a texture shows outside of its picture, along u or v. */
+enum {
+    RT_WRAP_REPEAT, /* the picture again */
+    RT_WRAP_CLAMP,  /* its border */
+    RT_WRAP_MIRROR  /* the picture again, every other time mirrored */
+};
 typedef struct rt_texture_desc {
     rt_u32 struct_bytes;
     const char *path;           /* relative to the file being imported; NULL: the image is in `bytes` */
     const uint8_t *bytes;       /* encoded (PNG, JPEG, ...) if height is 0, else width x height RGBA8 */
     uint64_t byte_count;
     rt_u32 width, height;
+    rt_u32 wrap_u, wrap_v; /* appended: RT_WRAP_... */
 } rt_texture_desc;
 
 typedef struct rt_camera {
