@@ -34,6 +34,7 @@ std::optional<Contents> read_truth(const std::string& path, const nlohmann::json
         if (held.at("triangles") == 0) return std::nullopt;
         Contents truth{};
         truth.triangles = held.at("triangles");
+        truth.undeformed = whole.contains("static");
         truth.area = held.contains("area") ? held.at("area") : held.at("area_fan");
         for (int k = 0; k < 3; ++k) {
             truth.lo[k] = held.at("bbox").at(0).at(k);

@@ -12,7 +12,8 @@ namespace clarity::check {
 // What a file holds, in its own units and axes.
 struct Contents {
     double triangles = 0, area = 0;
-    double lo[3], hi[3];  // bounding box
+    double lo[3], hi[3];      // bounding box
+    bool undeformed = false;  // it is of meshes as they are stored, without what skins and morphs do
 };
 
 // Files of the importer's extensions among these files and in these folders, the smallest first.
