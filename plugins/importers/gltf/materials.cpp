@@ -41,11 +41,14 @@ Materials::Materials(const Document& document, Accessors& accessors, const rt_sc
       ids_(materials_.size()) {}
 
 rt_u32 Materials::id(const Value& primitive) {
-    std::optional<size_t> index;
-    spared(sink_, "it gets the default material", [&] { index = primitive.index("material", materials_); });
-    if (!index) return RT_NONE;
-    if (!ids_[*index]) ids_[*index] = add(materials_[*index]);
-    return *ids_[*index];
+    rt_u32 id = RT_NONE;
+    spared(sink_, "it gets the default material", [&] {
+        const auto index = primitive.index("material", materials_);
+        if (!index) return;
+        if (!ids_[*index]) ids_[*index] = add(materials_[*index]);
+        id = *ids_[*index];
+    });
+    return id;
 }
 
 // Each group of values that the file has wrong keeps its defaults.
@@ -57,8 +60,9 @@ rt_u32 Materials::add(const Value& material) {
     importers::store_color(base, 1, 1, out.color);
     group([&] {
         const Value gloss = material.object("extensions").object("KHR_materials_pbrSpecularGlossiness");
-        base = gloss.numbers<4>("diffuseFactor",
-                                material.object("pbrMetallicRoughness").numbers<4>("baseColorFactor", {1, 1, 1, 1}));
+        const std::array<double, 4> factor = gloss.numbers<4>(
+            "diffuseFactor", material.object("pbrMetallicRoughness").numbers<4>("baseColorFactor", {1, 1, 1, 1}));
+        base = factor;
         importers::store_color(base, 1, 1, out.color);
     });
     group([&] { out.texture = texture(color_texture(material)); });

@@ -66,8 +66,10 @@ void Meshes::report() const {
         rt::warn(sink_, first_colored_ + ": colours of vertices are not read; they are left out" +
                             (colored_ > 1 ? ", in " + std::to_string(colored_) + " primitives" : ""));
     if (unweighted_ > 0)
-        rt::warn(sink_,
-                 std::to_string(unweighted_) + " vertices of meshes with a skin have no weights; they follow its first joint");
+        rt::warn(sink_, unweighted_ == 1 ? "a vertex of a mesh with a skin has no weights; it follows the first joint"
+                                         : std::to_string(unweighted_) +
+                                               " vertices of meshes with skins have no weights; they "
+                                               "follow the first joint");
     if (triangles_ == 0) {
         rt::warn(sink_, "contains no polygons" + std::string(points_and_lines_ ? " (points and lines were skipped)" : ""));
     } else if (points_and_lines_ > 0) {

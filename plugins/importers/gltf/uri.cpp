@@ -16,7 +16,7 @@ int hex_digit(char c) {
 
 // Whether `text` has the word, in small letters, at this place, in any case.
 bool has_word(std::string_view text, size_t at, std::string_view word) {
-    const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + 32 : a) == b; };
+    const auto same = [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b + 32 : b); };
     return at <= text.size() && word.size() <= text.size() - at &&
            std::equal(word.begin(), word.end(), text.begin() + at, same);
 }

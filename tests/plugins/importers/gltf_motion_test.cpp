@@ -2,6 +2,7 @@
 // linked, so that the calls can be looked at.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <map>
@@ -249,8 +250,8 @@ TEST(GltfMotion, LeavesWrongChannelsOut) {
         EXPECT_EQ(got.clips.size(), clips);
         EXPECT_EQ(got.channels.size(), channels);
         EXPECT_EQ(got.instances.size(), 1u);
-        ASSERT_FALSE(got.warnings.empty());
-        EXPECT_NE(got.warnings[0].find(warning), std::string::npos) << got.warnings[0];
+        const auto is_it = [&](const std::string& w) { return w.find(warning) != std::string::npos; };
+        EXPECT_TRUE(std::any_of(got.warnings.begin(), got.warnings.end(), is_it)) << got.warnings.at(0);
     };
     const auto channel = [](nlohmann::json& f, size_t i) -> nlohmann::json& { return f["animations"][0]["channels"][i]; };
     const auto sampler = [](nlohmann::json& f, size_t i) -> nlohmann::json& { return f["animations"][0]["samplers"][i]; };
@@ -297,7 +298,7 @@ TEST(GltfMotion, IgnoresSamplersThatNoChannelUses) {
     Recorder got;
     got.load(file.dump());
     EXPECT_EQ(got.channels.size(), 5u);
-    EXPECT_TRUE(got.warnings.empty()) << got.warnings[0];
+    EXPECT_EQ(got.warnings.size(), 1u) << "that of the vertex without weights";
     EXPECT_EQ(got.clips.at(0).end_s, 4);
 }
 

@@ -121,6 +121,7 @@ TEST_F(GltfParts, CostValuesOfMaterials) {
         "meshes[0].primitives[0].material: found 4, expected the index of one of 1 materials; it gets the "
         "default material",
         [](Model& m) { m.primitive()["material"] = 4; });
+    ASSERT_FALSE(none.triangle_materials.empty());
     EXPECT_EQ(none.triangle_materials[0], 0u);
 }
 
