@@ -179,7 +179,9 @@ class Animation {
 
 std::set<size_t> nodes_with_animated_weights(const Document& document) {
     std::set<size_t> nodes;
-    const Value animations = document.list("animations"), list = document.list("nodes");
+    const Value list = document.list("nodes");
+    if (!document.root().has("animations") || !document.root()["animations"].json().is_array()) return nodes;
+    const Value animations = document.list("animations");
     for (size_t i = 0; i < animations.size(); ++i) {
         try {
             const Value channels = animations[i]["channels"];
@@ -199,7 +201,7 @@ std::set<size_t> nodes_with_animated_weights(const Document& document) {
 
 void add_animations(const Document& document, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
                     const rt_scene_sink& sink) {
-    const Value animations = document.list("animations");
+    const Value animations = spared_list(document, "animations", sink);
     for (size_t i = 0; i < animations.size(); ++i)
         spared(sink, "the animation is left out", [&] { Animation(animations[i], accessors, tree, meshes, sink).add(); });
 }

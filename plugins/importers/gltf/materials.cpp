@@ -33,10 +33,10 @@ std::string image_path(const Value& uri, const std::string& folder) {
 Materials::Materials(const Document& document, Accessors& accessors, const rt_scene_sink& sink)
     : accessors_(accessors),
       folder_(document.folder()),
-      materials_(document.list("materials")),
-      textures_(document.list("textures")),
-      images_(document.list("images")),
-      samplers_(document.list("samplers")),
+      materials_(spared_list(document, "materials", sink)),
+      textures_(spared_list(document, "textures", sink)),
+      images_(spared_list(document, "images", sink)),
+      samplers_(spared_list(document, "samplers", sink)),
       sink_(sink),
       ids_(materials_.size()) {}
 
@@ -144,9 +144,10 @@ rt_u32 Materials::texture(const Value& info) {
         wrap_u = wrap_mode(samplers_[*sampler], "wrapS");
         wrap_v = wrap_mode(samplers_[*sampler], "wrapT");
     });
-    const auto [known, is_new] = texture_ids_.insert({{*image, wrap_u, wrap_v}, RT_NONE});
-    if (is_new) spared(sink_, "the image is left out", [&] { known->second = add_image(images_[*image], wrap_u, wrap_v); });
-    return known->second;
+    const auto known = texture_ids_.insert({{*image, wrap_u, wrap_v}, RT_NONE});
+    rt_u32& id = known.first->second;
+    if (known.second) spared(sink_, "the image is left out", [&] { id = add_image(images_[*image], wrap_u, wrap_v); });
+    return id;
 }
 
 rt_u32 Materials::wrap_mode(const Value& sampler, const char* key) const {

@@ -47,7 +47,7 @@ void add_light(const Value& light, const NodeTree& tree, size_t node, const rt_s
 }  // namespace
 
 void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_sink& sink) {
-    const Value cameras = document.list("cameras");
+    const Value cameras = spared_list(document, "cameras", sink);
     for (const size_t node : tree.shown()) {
         spared(sink, "the camera is left out", [&] {
             const auto index = tree.list()[node].index("camera", cameras);

@@ -307,7 +307,7 @@ TEST_F(Meshopt, SurvivesDamagedBytes) {
     const std::string good = text(model);
     json file = json::parse(good);
     uint32_t seed = 1;
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 25; ++round) {
         std::string bytes = model.bytes();
         for (int k = 0; k < 3; ++k) {
             seed = seed * 1664525 + 1013904223;
@@ -479,7 +479,7 @@ TEST_F(Draco, SurvivesDamagedBytes) {
     const Sheet sheet(5);
     const DracoSheet draco(sheet);
     uint32_t seed = 7;
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 25; ++round) {
         DracoSheet damaged = draco;
         for (int k = 0; k < 3; ++k) {
             seed = seed * 1664525 + 1013904223;

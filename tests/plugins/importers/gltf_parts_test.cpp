@@ -157,6 +157,15 @@ TEST_F(GltfParts, CostNormalsAndTextureCoordinates) {
     EXPECT_TRUE(spared("; the texture coordinates are left out", [](Model& m) { m["accessors"][3]["count"] = 3; }).uvs.empty());
 }
 
+TEST_F(GltfParts, CostListsThatAreNone) {
+    for (const char* name : {"cameras", "animations", "textures", "images", "samplers"})
+        spared(std::string(name) + ": found an object, expected an array; it counts as empty",
+               [&](Model& m) { m[name] = json::object(); });
+    EXPECT_EQ(spared("materials: found 5, expected an array", [](Model& m) { m["materials"] = 5; }).triangle_materials[0], 0u);
+    spared("extensions.KHR_lights_punctual.lights: found null, expected an array; the light is left out",
+           [](Model& m) { m["extensions"]["KHR_lights_punctual"]["lights"] = nullptr; });
+}
+
 // What nothing uses is not looked at; names are only names.
 TEST_F(GltfParts, ThatNothingUsesAreIgnored) {
     Model model = rich();
