@@ -57,10 +57,13 @@ typedef struct rt_light {
     rt_u32 pad;
 } rt_light;
 
-/* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. 16 B. */
+/* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may show
+ * one picture. 16 B. */
 typedef struct rt_texture {
-    rt_u32 first, width, height, pad;
+    rt_u32 first, width, height;
+    rt_u32 wrap; /* outside of the picture: RT_WRAP_... of rt_plugin.h along u, plus RT_WRAP_ALONG_V times that along v */
 } rt_texture;
+#define RT_WRAP_ALONG_V 4u
 
 /* Values that may change from frame to frame while program and scene stay the same. 176 B. */
 typedef struct rt_frame {

@@ -5,7 +5,7 @@ build_dir=build/release
 
 # Compiler and tools (make: cmake's default for plugins outside of the tree), the libraries for the build, and the packages that the
 # program needs at run time. libgl1-mesa-dri: OpenGL in software, so that the window also opens on a virtual display.
-build_packages="g++ cmake ninja-build make pkg-config
+build_packages="g++ cmake ninja-build make pkg-config libdraco-dev libmeshoptimizer-dev
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
     libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libxxhash-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core libjs-chart.js"

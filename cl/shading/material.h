@@ -26,18 +26,57 @@ RT_INLINE void rt_texels(vfloat x, vint size, vint *here, vint *next)
     *next = rt_select(RT_MASK(after == size), rt_vint(0), after);
 }
 
-/* Samples texture `index` at (u, v) in each of `lanes`: bilinear, repeating. Converts its RGBA8 texels from sRGB to linear RGB. */
+#ifdef RT_HAS_WRAPS
+#define RT_CLAMPS 1u /* as RT_WRAP_CLAMP and RT_WRAP_MIRROR in rt_plugin.h */
+#define RT_MIRRORS 2u
+/* Brings a coordinate into 0..1 as a wrap mode says. */
+RT_INLINE vfloat rt_wrap(vfloat u, uint mode)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    if (mode == RT_CLAMPS) return rt_min(rt_max(u, zero), one);
+    const vfloat within = u - floor(u);
+    if (mode != RT_MIRRORS) return within;
+    const vfloat half_turns = u * rt_vfloat(0.5f);
+    return rt_select(RT_MASK(half_turns - floor(half_turns) < rt_vfloat(0.5f)), within, one - within);
+}
+
+/* As rt_texels(), of texels that a wrap mode continues: beyond the border of a picture that is clamped or mirrored is the border. */
+RT_INLINE void rt_wrapped_texels(vfloat x, vint size, uint mode, vint *here, vint *next)
+{
+    if (mode != RT_CLAMPS && mode != RT_MIRRORS) {
+        rt_texels(x, size, here, next);
+        return;
+    }
+    const vint at = min(max(rt_to_int(x), rt_vint(-1)), size - rt_vint(1));
+    *here = max(at, rt_vint(0));
+    *next = min(at + rt_vint(1), size - rt_vint(1));
+}
+#endif
+
+/* Samples texture `index` at (u, v) in each of `lanes`: bilinear, and outside of its picture as its wrap modes say. Converts its
+ * RGBA8 texels from sRGB to linear RGB. */
 RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, vfloat u, vfloat v)
 {
     const rt_texture texture = ctx->textures[index];
     const global uint *texels = ctx->texels + texture.first;
     const vint w = rt_vint((int)texture.width), h = rt_vint((int)texture.height);
     const vfloat one = rt_vfloat(1.0f), middle = rt_vfloat(0.5f);
-    const vfloat x = (u - floor(u)) * rt_to_float(w) - middle, y = (one - (v - floor(v))) * rt_to_float(h) - middle;
+#ifdef RT_HAS_WRAPS
+    const uint mode_u = texture.wrap % RT_WRAP_ALONG_V, mode_v = texture.wrap / RT_WRAP_ALONG_V;
+    const vfloat s = rt_wrap(u, mode_u), t = rt_wrap(v, mode_v);
+#else
+    const vfloat s = u - floor(u), t = v - floor(v);
+#endif
+    const vfloat x = s * rt_to_float(w) - middle, y = (one - t) * rt_to_float(h) - middle;
     const vfloat left = floor(x), above = floor(y), fx = x - left, fy = y - above;
     vint x0, x1, y0, y1;
+#ifdef RT_HAS_WRAPS
+    rt_wrapped_texels(left, w, mode_u, &x0, &x1);
+    rt_wrapped_texels(above, h, mode_v, &y0, &y1);
+#else
     rt_texels(left, w, &x0, &x1);
     rt_texels(above, h, &y0, &y1);
+#endif
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
     for (int k = 0; k < 4; ++k) {
         int texel[RT_LANES];

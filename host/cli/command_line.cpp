@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "cli/help/bash_completion.hpp"
 #include "cli/help/man_page.hpp"
+#include "import/importer_choice.hpp"
 
 namespace clarity {
 namespace {
@@ -53,6 +54,9 @@ CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {
                    "Parameters of an importer (`clarity plugins` lists them); may be repeated")
         ->type_name("ID,key=value...")
         ->allow_extra_args(false);
+    app.add_flag_callback(
+        "--undeformed", [&scene] { scene.import.importers.push_back(import::kUndeformed); },
+        "At rest, show meshes as their files store them: neither skins nor morphs move them");
     app.add_flag("--import-in-process", scene.import.in_process,
                  "Run importers in this process, to debug them; a crash then ends the program");
     return app.add_option("scene", scene.files, "Scene or model files; several become one scene")->type_name("FILE");

@@ -68,7 +68,7 @@ struct Converted {
     std::vector<char> names;
 };
 
-constexpr uint32_t kSectionCount = 47;
+constexpr uint32_t kSectionCount = 50;
 // The one list of all sections: whoever writes, reads or compares scenes uses it, so that they always agree.
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {
@@ -79,8 +79,8 @@ void visit(S& s, C& c, Visitor&& v) {
     auto& m = s.motion;
     v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);
     v(m.weights), v(m.shares), v(m.morph_targets), v(m.morph_vertices), v(m.morph_positions), v(m.morph_normals), v(m.frames);
-    v(m.frame_times), v(m.frame_positions), v(m.sequence_numbers), v(c.sequences), v(c.warnings), v(c.edits), v(c.sources),
-        v(c.names);
+    v(m.frame_times), v(m.frame_positions), v(m.stored), v(m.stored_positions), v(m.stored_normals), v(m.sequence_numbers),
+        v(c.sequences), v(c.warnings), v(c.edits), v(c.sources), v(c.names);
 }
 
 // The members of a scene that are no plain arrays.

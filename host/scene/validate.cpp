@@ -169,6 +169,8 @@ std::string check_looks(const Scene& s) {
         if (texels == 0) return text("texture", i, "it is empty");
         if (texels > s.texels.size() || t.first > s.texels.size() - texels)
             return text("texture", i, "texels past the last one");
+        if (t.wrap % RT_WRAP_ALONG_V > RT_WRAP_MIRROR || t.wrap / RT_WRAP_ALONG_V > RT_WRAP_MIRROR)
+            return text("texture", i, "unknown wrap modes");
     }
     return {};
 }

@@ -528,7 +528,7 @@ typedef struct rt_weight {
 } rt_weight;
 enum { RT_SKIN_LINEAR, RT_SKIN_DUAL_QUATERNION, RT_SKIN_BLENDED };
 /* Bones move the vertices of a mesh; the node of its instance then has no effect on them. Vertices without weights stay with that
- * node. A mesh has one skin at most. It acts also without a clip, but not where the user asks for the file at rest. */
+ * node. A mesh has one skin at most. It acts also at rest, unless the user asks for meshes as they are stored. */
 typedef struct rt_skin_desc {
     rt_u32 struct_bytes;
     rt_u32 mesh; /* id that the sink's `mesh` returned */
@@ -548,13 +548,13 @@ typedef struct rt_morph_target {
     const float *normals;   /* 3 for each: how much its normal changes; or NULL */
     uint64_t pad;           /* 0 */
 } rt_morph_target;
-/* A morph: offsets of a mesh's vertices, times a weight. Between two of its targets the offsets are interpolated; the mesh at rest
- * is the target at weight 0. All morphs of a mesh are added, then its skin acts. */
+/* A morph: offsets of a mesh's vertices, times a weight. Between two of its targets the offsets are interpolated; the mesh as
+ * it is stored is the target at weight 0. All morphs of a mesh are added, then its skin acts. */
 typedef struct rt_morph_desc {
     rt_u32 struct_bytes;
     rt_u32 mesh;      /* id that the sink's `mesh` returned */
     const char *name; /* or NULL */
-    double weight;    /* at rest */
+    double weight;    /* at rest; there it acts as a skin does */
     const rt_morph_target *targets; /* in order of their weights */
     rt_u32 target_count, pad;
 } rt_morph_desc;

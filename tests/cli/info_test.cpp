@@ -89,3 +89,33 @@ TEST(Info, ImportInProcessGivesTheSameScene) {
     const std::string file = scratch.write("cube.obj", kCube);
     EXPECT_EQ(run_program({"info", "--json", file}).out, run_program({"info", "--json", "--import-in-process", file}).out);
 }
+
+// A triangle whose morph target, of weight 1, lifts it by 2: at rest it is lifted, and --undeformed shows it as stored.
+TEST(Info, ShowsMeshesAsStoredOnRequest) {
+    const Scratch scratch;
+    const std::string file =
+        scratch.write("lifted.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"weights": [1], "primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 1}]}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 36}],
+        "buffers": [{"byteLength": 72, "uri": "data:,%00%00%00%00%00%00%00%00%00%00%00%00%00%00%80%3f%00%00%00%00%00%00%00%00%00%00%00%00%00%00%80%3f%00%00%00%00%00%00%00%00%00%00%00%00%00%00%00%40%00%00%00%00%00%00%00%00%00%00%00%40%00%00%00%00%00%00%00%00%00%00%00%40"}]})");
+    const auto height = [&](const std::vector<std::string>& words) {
+        std::vector<std::string> all = {"info", file, "--json"};
+        all.insert(all.end(), words.begin(), words.end());
+        const ProgramResult result = run_program(all);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return nlohmann::json::parse(result.out)["bounds"]["max"][2].get<double>();
+    };
+    EXPECT_EQ(height({}), 2);
+    EXPECT_EQ(height({"--undeformed"}), 0);
+    EXPECT_EQ(height({"--importer", "gltf,undeformed=true"}), 0);
+    EXPECT_EQ(height({"--importer", "any,undeformed=1"}), 0);
+    EXPECT_EQ(height({"--importer", "gltf,undeformed=true", "--importer", "gltf,undeformed=false"}), 2);
+    EXPECT_EQ(height({"--importer", "scene,undeformed=true"}), 2) << "that is another importer";
+    EXPECT_EQ(height({"--undeformed", "--time", "0"}), 2) << "poses are of all that moves";
+    EXPECT_EQ(run_program({"info", file, "--importer", "any,units=1"}).exit_code, 2);
+    const ProgramResult wrong = run_program({"info", file, "--importer", "gltf,undeformed=maybe"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_NE(wrong.err.find("undeformed=maybe: expected true or false"), std::string::npos) << wrong.err;
+}

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "images/optics.hpp"
+#include "render/kernels/scene_features.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -68,6 +69,64 @@ TEST(Texture, RepeatsOutsideItsRange) {
     const Picture shifted = trace(scene, flat_view(), 64, 64, 1), plain = trace(textured_square(), flat_view(), 64, 64, 1);
     for (size_t i = 0; i < plain.image.pixels.size(); ++i)
         ASSERT_NEAR(shifted.image.pixels[i], plain.image.pixels[i], 1e-3) << i;
+}
+
+// What a texture with wrap modes shows at (u, v), computed in doubles from its definition.
+std::array<float, 3> texel(double u, double v, rt_u32 wrap_u, rt_u32 wrap_v) {
+    const auto place = [](double x, rt_u32 mode) {
+        if (mode == RT_WRAP_CLAMP) return std::min(std::max(x, 0.0), 1.0);
+        const double within = x - std::floor(x);
+        return mode == RT_WRAP_MIRROR && static_cast<long>(std::floor(x)) % 2 != 0 ? 1 - within : within;
+    };
+    constexpr std::array<float, 3> colors[] = {{0, 0, 1}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}};  // bottom row first
+    return colors[(place(v, wrap_v) < 0.5 ? 0 : 2) + (place(u, wrap_u) < 0.5 ? 0 : 1)];
+}
+
+// The square shows five pictures along each axis, of which the one in the middle is the texture itself.
+TEST(Texture, WrapsAlongEachAxisAsItSays) {
+    constexpr rt_u32 modes[] = {RT_WRAP_REPEAT, RT_WRAP_CLAMP, RT_WRAP_MIRROR};
+    for (const rt_u32 wrap_u : modes)
+        for (const rt_u32 wrap_v : modes)
+            for (const char* lanes : {"1", "8"}) {
+                if (wrap_u == RT_WRAP_REPEAT && wrap_v == RT_WRAP_REPEAT) continue;  // RepeatsOutsideItsRange
+                Scene scene = textured_square();
+                scene.textures.front().wrap = wrap_u + RT_WRAP_ALONG_V * wrap_v;
+                for (float& uv : scene.uvs.own()) uv = 5 * uv - 2;
+                const Picture picture = trace(scene, flat_view(), 100, 100, 1, {{"lanes", lanes}});
+                // The middle of each texel, where the neighbours have no share.
+                for (int y = 5; y < 100; y += 10)
+                    for (int x = 5; x < 100; x += 10) {
+                        const double u = 5 * (x + 0.5) / 100 - 2, v = 5 * (99.5 - y) / 100 - 2;
+                        const std::string where = std::to_string(wrap_u) + " " + std::to_string(wrap_v) + " at " +
+                                                  std::to_string(u) + " " + std::to_string(v);
+                        const std::array<float, 3> seen = picture.at(x, y), wanted = texel(u, v, wrap_u, wrap_v);
+                        for (int k = 0; k < 3; ++k) ASSERT_NEAR(seen[k], wanted[k], 0.15) << where << ", channel " << k;
+                    }
+            }
+}
+
+// Between a clamped or mirrored border and what lies beyond there is no seam, where repeating shows the other side.
+TEST(Texture, IsSmoothAtBordersThatAreClampedOrMirrored) {
+    for (const rt_u32 mode : {RT_WRAP_REPEAT, RT_WRAP_CLAMP, RT_WRAP_MIRROR}) {
+        Scene scene = textured_square();
+        scene.textures.front().wrap = mode * (1 + RT_WRAP_ALONG_V);
+        for (float& uv : scene.uvs.own()) uv += 0.5f;  // the border of u is in the middle
+        const std::array<float, 3> border = trace(scene, flat_view(), 64, 64, 1).at(31, 48);
+        if (mode == RT_WRAP_REPEAT)
+            EXPECT_NEAR(border[0], 0.5, 0.1) << "half of it is the texel on the other side";
+        else
+            EXPECT_NEAR(border[0], 0, 0.1) << mode;
+    }
+}
+
+// A scene whose textures all repeat has no code for the other modes.
+TEST(Texture, WrapModesCostNothingWhereAllRepeat) {
+    Scene scene = textured_square();
+    BuildScene build;
+    EXPECT_TRUE(features_of(scene, build).textures);
+    EXPECT_FALSE(features_of(scene, build).wraps);
+    scene.textures.front().wrap = RT_WRAP_CLAMP;
+    EXPECT_TRUE(features_of(scene, build).wraps);
 }
 
 TEST(Texture, RotatesWithTheMesh) {

@@ -135,6 +135,60 @@ TEST_F(PoseTest, WeightsAreDividedByTheirSum) {
     EXPECT_NEAR(corner(scene, 2)[1], 1 + 8, 1e-5) << "a vertex without weights stays with its node";
 }
 
+// At rest bones and the weights of morphs act as stored; poses start from the vertices of the file nevertheless.
+TEST_F(PoseTest, AtRestSkinsAndMorphsActAsStored) {
+    Motion& m = scene_.motion;
+    Skin skin;
+    skin.root = 0;
+    skin.bone_count = 1;
+    skin.weight_count = 3;
+    m.skins.push_back(skin);
+    m.bones.resize(1);
+    std::copy(kIdentityMatrix.begin(), kIdentityMatrix.end(), m.bones[0].bone_from_mesh);
+    m.bones[0].node = 2;
+    m.weights = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}};
+    m.nodes.push_back({"bone", still_node(0)});
+    m.nodes[2].values.translation[2] = 4;
+    m.nodes[1].values.translation[0] = 100;  // the node of the instance, which the skin makes of no effect
+    m.nodes[0].values.translation[1] = 7;    // the placement of the file
+    scene_.instances[0].world_from_object[3] = 100;
+    m.morphs.push_back({"grow", 0, 0, 1, 0.5});
+    m.morph_targets.push_back({1, 0, 1, 0, 0, 0});
+    m.morph_vertices = {1};
+    m.morph_positions = {2, 0, 0};
+    clip("move");
+    key(RT_MOVES_TRANSLATION, 2, 2, 10, 20);
+    const Scene stored = scene_;
+    EXPECT_EQ(deform_at_rest(scene_, {true}), 0u);
+    EXPECT_EQ(scene_.positions, stored.positions) << "the mesh is to stay as stored";
+    EXPECT_TRUE(scene_.motion.stored.empty());
+    EXPECT_EQ(deform_at_rest(scene_, {false}), 0u);
+    EXPECT_EQ(validate(scene_), "");
+    ASSERT_EQ(scene_.motion.stored.size(), 1u);
+    EXPECT_EQ(corner(scene_, 0), (std::array<float, 3>{0, 7, 4}));
+    EXPECT_EQ(corner(scene_, 1), (std::array<float, 3>{2, 7, 4})) << "the morph moves it by a half of 2";
+    EXPECT_FALSE(scene_.positions.shares(stored.positions));
+    for (const double time_s : {0.0, 0.5, 1.0}) {
+        const Scene from_rest = at(time_s), from_stored = posed(stored, evaluate(stored, "", time_s));
+        EXPECT_EQ(from_rest.positions, from_stored.positions);
+        EXPECT_EQ(from_rest.instances[0].world_from_object, from_stored.instances[0].world_from_object);
+    }
+    EXPECT_EQ(corner(at(1), 1), (std::array<float, 3>{2, 7, 20}));
+    scene_.motion.stored[0].first = 1;
+    EXPECT_NE(validate(scene_), "") << "vertices past the last one";
+}
+
+TEST_F(PoseTest, AtRestNothingIsCopiedWhereNothingDeforms) {
+    scene_.motion.morphs.push_back({"grow", 0, 0, 1, 0});
+    scene_.motion.morph_targets.push_back({1, 0, 1, 0, 0, 0});
+    scene_.motion.morph_vertices = {1};
+    scene_.motion.morph_positions = {2, 0, 0};
+    const Scene before = scene_;
+    EXPECT_EQ(deform_at_rest(scene_, {false}), 0u);
+    EXPECT_TRUE(scene_.positions.shares(before.positions));
+    EXPECT_TRUE(scene_.motion.stored.empty());
+}
+
 TEST_F(PoseTest, VertexFramesReplaceTheVertices) {
     Motion& m = scene_.motion;
     m.frames.push_back({0, 0, 0, 2, 0});

@@ -62,12 +62,14 @@ struct Import {
     size_t flat = 0;  // instances that flatten their mesh
 };
 
-Import import_file(const ImportInputs& inputs, const std::string& path, unsigned cancel_at = 0) {
+Import import_file(const ImportInputs& inputs, const std::string& path, unsigned cancel_at = 0, bool undeformed = false) {
     Import result;
+    import::ImporterParameters parameters;
+    if (undeformed) parameters = import::parse_importer_choices(inputs.plugins, {import::kUndeformed});
     Watch watch(cancel_at);
     try {
         const import::FileAccess access({path}, {});
-        import::SceneBuilder builder(inputs.plugins, {}, access, watch, &watch);
+        import::SceneBuilder builder(inputs.plugins, parameters, access, watch, &watch);
         builder.add_root(path);
         const size_t meshes = builder.scene().meshes.size();
         result.scene = builder.take();
@@ -166,7 +168,7 @@ Outcome truth(const ImportInputs& inputs, const Step& step) {
     for (const auto& [path, held] : inputs.truths) {
         keys.insert(held.keys);
         step("reading " + path, limit_of(path));
-        const Import result = import_file(inputs, path);
+        const Import result = import_file(inputs, path, 0, held.undeformed);
         std::string why = fault_of(inputs, path, result);
         if (why.empty()) why = difference(result.scene, held);
         if (!why.empty()) return Outcome::failed(name_of(path) + ": " + why);

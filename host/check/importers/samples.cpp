@@ -104,7 +104,9 @@ std::optional<Contents> read_truth(const std::string& path, const nlohmann::json
     const nlohmann::json& whole = json.contains("truth") && json["truth"].is_object() ? json["truth"] : json;
     const nlohmann::json& held = whole.contains("static") && whole["static"].is_object() ? whole["static"] : whole;
     if (whole.contains("ok") && whole["ok"] == false) return std::nullopt;
-    return TruthReader(path, held).read();
+    Contents truth = TruthReader(path, held).read();
+    truth.undeformed = whole.contains("static");
+    return truth;
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ struct Contents {
     };
     std::vector<Corner> corners;
     std::string keys;  // those that are there: "triangles, area"
+    bool undeformed = false;  // it is of meshes as they are stored, without what skins and morphs do
 };
 
 // Files of the importer's extensions among these files and in these folders, the smallest first.

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <set>
 #include <tuple>
+#include <utility>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/files/frame_path.hpp"
 #include "base/files/packed_file.hpp"
@@ -18,6 +20,7 @@
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 #include "scene/flatten.hpp"
+#include "scene/motion/pose.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -133,6 +136,8 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     progress_.stage(stage);
     if (observer_) observer_->running(path, plugin->id);
     open_.push_back(canonical);
+    as_stored_.resize(scene_.meshes.size(), stores_);
+    const bool outer_stores = std::exchange(stores_, !parameters_.deforms(plugin->id));
     auto content = std::make_unique<FileContent>();
     content->first_material = static_cast<rt_u32>(scene_.materials.size());
     reserve_arrays(path, scene_);
@@ -155,8 +160,8 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     }
     SceneSink sink(*this, services, path, *content);
     try {
-        const auto chosen = parameters_.find(plugin->id);
-        const ParameterValues parameters = chosen != parameters_.end() ? chosen->second : default_parameters(*plugin);
+        const auto chosen = parameters_.values.find(plugin->id);
+        const ParameterValues parameters = chosen != parameters_.values.end() ? chosen->second : default_parameters(*plugin);
         services.check(static_cast<int>(Exit::import_failed),
                        [&] { return plugin->importer->load(services.host(), name.c_str(), parameters.data(), sink.sink()); });
     } catch (const Cancelled&) {
@@ -170,6 +175,8 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     }
     const std::string why = sink.finish();
     if (!why.empty()) fail(path, why);
+    as_stored_.resize(scene_.meshes.size(), stores_);
+    stores_ = outer_stores;
     open_.pop_back();
     if (!open_.empty()) progress_.stage("importing " + file_name(open_.back()));
     return *(files_[canonical] = std::move(content));
@@ -267,24 +274,43 @@ rt_u32 SceneBuilder::shape_kind(const std::string& id) {
     return static_cast<rt_u32>(kinds.size() - 1);
 }
 
-rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string& path) {
+rt_u32 SceneBuilder::texture_of(rt_texture picture, rt_u32 wrap) {
+    if (picture.width == 0) return RT_NONE;
+    const auto [known, is_new] = textures_.insert({{picture.first, wrap}, static_cast<rt_u32>(scene_.textures.size())});
+    picture.wrap = wrap;
+    if (is_new) scene_.textures.push_back(picture);
+    return known->second;
+}
+
+rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_desc& d, rt_u32 wrap) {
+    Digest digest;
+    digest.add_value(d.width), digest.add_value(d.height);
+    digest.add_bytes(d.bytes, d.byte_count);
+    const auto [known, is_new] = pictures_of_bytes_.insert({digest.hex(), rt_texture{}});
+    rt_texture& picture = known->second;
+    if (!is_new) return texture_of(picture, wrap);
+    const std::string why = d.height == 0
+                                ? decode_texture(d.bytes, d.byte_count, scene_.texels.own(), picture)
+                                : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene_.texels.own(), picture);
+    if (!why.empty()) warn(from, "an embedded texture is left out: " + why);
+    return texture_of(picture, wrap);
+}
+
+rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string& path, rt_u32 wrap) {
     const FileAccess::Found found = access_.find_texture(from, path);
     const auto missing = [&](const std::string& why) {
         warn(from, "texture '" + path + "': " + why + "; the material stays without it");
         return RT_NONE;
     };
     if (found.path.empty()) return missing(found.why);
-    const auto known = textures_.find(found.path);
-    if (known != textures_.end()) return known->second;
+    const auto [known, is_new] = pictures_of_files_.insert({found.path, rt_texture{}});
+    rt_texture& picture = known->second;
+    if (!is_new) return texture_of(picture, wrap);
     std::string bytes;
-    rt_texture texture{};
     std::string why = try_read_file(found.path, kMaxTexelBytes, bytes);
     if (why.empty())
-        why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), texture);
-    const rt_u32 id = why.empty() ? static_cast<rt_u32>(scene_.textures.size()) : RT_NONE;
-    if (why.empty()) scene_.textures.push_back(texture);
-    textures_[found.path] = id;
-    return why.empty() ? id : missing(why);
+        why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), picture);
+    return why.empty() ? texture_of(picture, wrap) : missing(why);
 }
 
 // Channels of cameras and lights name them by `source` until here, because files that load each other mix their order.
@@ -319,8 +345,13 @@ Scene SceneBuilder::take() {
     scene_.cameras = std::move(world_.cameras);
     scene_.edits = std::move(world_.edits);
     for (const auto& [path, content] : files_) scene_.sources.push_back(path);
-    for (const auto& [path, texture] : textures_) scene_.sources.push_back(path);
+    for (const auto& [path, picture] : pictures_of_files_) scene_.sources.push_back(path);
     take_motion();
+    as_stored_.resize(scene_.meshes.size());
+    if (const size_t count = deform_at_rest(scene_, as_stored_); count > 0)
+        scene_.warnings.push_back(
+            std::to_string(count) +
+            " meshes are shown as they are stored: their skins or morphs lead to numbers that are too large");
     bake_flattened_instances(scene_);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {
         const rt_u32 corner_count = static_cast<rt_u32>(polygon.corners.size() / 3);

@@ -202,23 +202,12 @@ bool SceneSink::scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32
 
 rt_u32 SceneSink::texture(const rt_texture_desc& d) {
     if (!d.path && !d.bytes) return fail("a texture has neither a path nor bytes");
-    Scene& scene = builder_.scene();
-    rt_u32 index = RT_NONE;
-    if (d.bytes) {
-        rt_texture texture{};
-        const std::string why = d.height == 0
-                                    ? decode_texture(d.bytes, d.byte_count, scene.texels.own(), texture)
-                                    : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene.texels.own(), texture);
-        if (!why.empty()) {
-            builder_.warn(path_, "an embedded texture is left out: " + why);
-            return RT_NONE;
-        }
-        index = static_cast<rt_u32>(scene.textures.size());
-        scene.textures.push_back(texture);
-    } else {
-        index = builder_.texture_of_file(path_, d.path);
-        if (index == RT_NONE) return RT_NONE;
-    }
+    if (d.wrap_u > RT_WRAP_MIRROR || d.wrap_v > RT_WRAP_MIRROR)
+        return fail("a texture has the wrap modes " + std::to_string(d.wrap_u) + " and " + std::to_string(d.wrap_v) +
+                    ": expected RT_WRAP_ values");
+    const rt_u32 wrap = d.wrap_u + RT_WRAP_ALONG_V * d.wrap_v;
+    const rt_u32 index = d.bytes ? builder_.texture_of_bytes(path_, d, wrap) : builder_.texture_of_file(path_, d.path, wrap);
+    if (index == RT_NONE) return RT_NONE;
     textures_.push_back(index);
     return static_cast<rt_u32>(textures_.size() - 1);
 }

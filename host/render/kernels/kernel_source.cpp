@@ -38,6 +38,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_UVS", uvs);
     out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs);
     out.define_int("RT_HAS_TEXTURES", features.textures);
+    if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
 }
 

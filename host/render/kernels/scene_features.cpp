@@ -4,6 +4,8 @@
 
 namespace clarity {
 
+static_assert(RT_WRAP_REPEAT == 0 && RT_WRAP_CLAMP == 1 && RT_WRAP_MIRROR == 2, "cl/shading/material.h has these numbers");
+
 SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
     SceneFeatures f;
     f.instances = !build.instances.empty();
@@ -14,6 +16,8 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
     f.normals = !scene.normals.empty() && !build.attribute_triangle.empty();
     f.textures = std::any_of(scene.materials.begin(), scene.materials.end(),
                              [](const Material& m) { return m.values.texture != RT_NONE; });
+    f.wraps = f.textures && std::any_of(scene.textures.begin(), scene.textures.end(),
+                                        [](const rt_texture& texture) { return texture.wrap != RT_WRAP_REPEAT; });
     f.uvs = !scene.uvs.empty() && !build.attribute_triangle.empty();
     return f;
 }

@@ -84,16 +84,24 @@ void apply_skin(const Motion& motion, const Deformation& d, PosedMesh& mesh) {
 
 }  // namespace
 
-PosedMesh at_rest(const Scene& scene, rt_u32 index) {
-    const Mesh& mesh = scene.meshes[index];
+StoredVertices stored_vertices(const Scene& scene, rt_u32 mesh) {
+    const Motion& motion = scene.motion;
+    const auto found = std::lower_bound(motion.stored.begin(), motion.stored.end(), mesh,
+                                        [](const StoredMesh& stored, rt_u32 number) { return stored.mesh < number; });
+    const bool is_kept = found != motion.stored.end() && found->mesh == mesh;
+    const size_t first = 3 * (is_kept ? found->first : uint64_t(scene.meshes[mesh].first_vertex));
+    const SharedArray<float>&positions = is_kept ? motion.stored_positions : scene.positions,
+          &normals = is_kept ? motion.stored_normals : scene.normals;
+    return {positions.data() + first, normals.empty() ? nullptr : normals.data() + first};
+}
+
+PosedMesh stored_mesh(const Scene& scene, rt_u32 mesh) {
+    const StoredVertices from = stored_vertices(scene, mesh);
+    const size_t count = 3 * size_t(scene.meshes[mesh].vertex_count);
     PosedMesh out;
-    out.mesh = index;
-    const auto range = [&](const SharedArray<float>& values) {
-        const auto first = values.begin() + 3 * static_cast<std::ptrdiff_t>(mesh.first_vertex);
-        return std::vector<float>(first, first + 3 * static_cast<std::ptrdiff_t>(mesh.vertex_count));
-    };
-    out.positions = range(scene.positions);
-    if (!scene.normals.empty()) out.normals = range(scene.normals);
+    out.mesh = mesh;
+    out.positions.assign(from.positions, from.positions + count);
+    if (from.normals) out.normals.assign(from.normals, from.normals + count);
     return out;
 }
 
@@ -119,7 +127,7 @@ void renew_normals(const Scene& scene, PosedMesh& out) {
 }
 
 PosedMesh deformed(const Scene& scene, const Deformation& deformation) {
-    PosedMesh mesh = at_rest(scene, deformation.mesh);
+    PosedMesh mesh = stored_mesh(scene, deformation.mesh);
     if (deformation.frames != RT_NONE) {
         take_frames(scene.motion, deformation, mesh.positions);
         if (!mesh.normals.empty()) renew_normals(scene, mesh);

@@ -4,8 +4,14 @@
 
 namespace clarity {
 
-// A mesh as the scene has it.
-PosedMesh at_rest(const Scene& scene, rt_u32 mesh);
+// The vertices of a mesh as its file has them, 3 numbers each: what skins and morphs start from. In the scene, or in its motion
+// if deform_at_rest() has changed those of the scene.
+struct StoredVertices {
+    const float* positions;
+    const float* normals;  // nullptr: the scene has none
+};
+StoredVertices stored_vertices(const Scene& scene, rt_u32 mesh);
+PosedMesh stored_mesh(const Scene& scene, rt_u32 mesh);
 // Computes normals from positions: the mean of those of the triangles around a vertex, weighted by area. Vertices that have
 // none at rest keep none.
 void renew_normals(const Scene& scene, PosedMesh& mesh);

@@ -55,7 +55,7 @@ void add_sequences(const Scene& scene, double time_s, const FrameVertices& read,
         }
         const float* from = positions.data();
         for (rt_u32 m = sequence.first_mesh; m < sequence.first_mesh + sequence.mesh_count; ++m) {
-            PosedMesh mesh = at_rest(scene, m);
+            PosedMesh mesh = stored_mesh(scene, m);
             mesh.positions.assign(from, from + mesh.positions.size());
             from += mesh.positions.size();
             if (!mesh.normals.empty()) renew_normals(scene, mesh);

@@ -65,6 +65,12 @@ struct VertexFrames {
     uint64_t first_position = 0;               // in frame_positions: 3 for each vertex of each frame
 };
 
+// The vertices of a mesh as its file has them, where the scene at rest has those that skin and morphs make of them.
+struct StoredMesh {
+    rt_u32 mesh = 0, pad = 0;
+    uint64_t first = 0;  // three times in stored_positions, and in stored_normals if the scene has normals
+};
+
 // Numbered files, each with all vertices of the same meshes at another time. They are read when a pose needs them.
 struct FileSequence {
     std::string pattern;  // absolute, with a run of #: see base/files/frame_path.hpp
@@ -91,6 +97,8 @@ struct Motion {
     std::vector<VertexFrames> frames;  // of each mesh one at most
     SharedArray<double> frame_times;
     SharedArray<float> frame_positions;
+    std::vector<StoredMesh> stored;  // ascending by mesh
+    SharedArray<float> stored_positions, stored_normals;
     std::vector<FileSequence> sequences;
     std::vector<rt_u32> sequence_numbers;
 

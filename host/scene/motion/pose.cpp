@@ -12,6 +12,7 @@
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity {
 namespace {
@@ -172,6 +173,41 @@ Pose evaluate_without_vertices(const Scene& scene, const std::string& clip, doub
     pose.deformations = deformations(scene, deformers);
     if (read) add_sequences(scene, time_s, read, pose.meshes);
     return pose;
+}
+
+size_t deform_at_rest(Scene& scene, const std::vector<bool>& as_stored) {
+    Motion& motion = scene.motion;
+    MovingValues values = values_at_rest(scene);
+    Deformers deformers;
+    deformers.nodes = place_nodes(motion, values.nodes);
+    deformers.morph_weights = std::move(values.morph_weights);
+    size_t unusable = 0;
+    std::set<rt_u32> skinned;
+    for (Deformation& d : deformations(scene, deformers)) {
+        d.frames = RT_NONE;  // caches belong to times
+        if (as_stored[d.mesh] || (d.targets.empty() && d.skin == RT_NONE)) continue;
+        const PosedMesh mesh = deformed(scene, d);
+        if (!are_usable(mesh.positions) || !are_usable(mesh.normals)) {
+            ++unusable;
+            continue;
+        }
+        if (d.skin != RT_NONE) skinned.insert(d.mesh);
+        const auto first = 3 * static_cast<std::ptrdiff_t>(scene.meshes[d.mesh].first_vertex);
+        const auto keep = [&](const std::vector<float>& now, SharedArray<float>& values, SharedArray<float>& stored) {
+            if (now.empty()) return;
+            const auto begin = values.own().begin() + first;
+            stored.append(begin, begin + static_cast<std::ptrdiff_t>(now.size()));
+            std::copy(now.begin(), now.end(), begin);
+        };
+        motion.stored.push_back({d.mesh, 0, motion.stored_positions.size() / 3});
+        keep(mesh.positions, scene.positions, motion.stored_positions);
+        keep(mesh.normals, scene.normals, motion.stored_normals);
+    }
+    if (skinned.empty()) return unusable;
+    const std::vector<PosedInstance> posed = pose_instances(scene, deformers.nodes);
+    for (size_t i = 0; i < posed.size(); ++i)
+        if (skinned.count(posed[i].mesh) != 0) scene.instances[i].world_from_object = posed[i].world_from_object;
+    return unusable;
 }
 
 std::vector<bool> moving_instances(const Scene& scene) {

@@ -62,6 +62,12 @@ Pose evaluate_without_vertices(const Scene& scene, const std::string& clip, doub
 // Computes the vertices that were left out of a pose. scene: at rest.
 void add_vertices(const Scene& scene, Pose& pose);
 
+// Moves the vertices of meshes as their skins and the weights of their morphs do without a clip, and places what skins move.
+// The scene at rest then looks as its file says. The vertices of the file stay in the motion. as_stored: the meshes that are
+// left as they are. Returns how many others were left, because a vertex would not be usable. For a scene which no transform has
+// been baked into.
+size_t deform_at_rest(Scene& scene, const std::vector<bool>& as_stored);
+
 // Returns the scene in a pose. Its arrays keep their order. If the pose makes the transform of an instance flat, a flat copy of
 // its mesh is appended to the meshes. Vertices that the pose leaves out stay at rest. The result has no motion; the instances
 // of moving_instances(), and those that were marked before, are marked to be kept apart.

@@ -137,6 +137,21 @@ std::string check_frames(const Scene& s) {
     return {};
 }
 
+std::string check_stored(const Scene& s) {
+    const Motion& m = s.motion;
+    if (!all_finite(m.stored_positions) || !all_finite(m.stored_normals)) return "stored meshes: not a finite number";
+    for (size_t i = 0; i < m.stored.size(); ++i) {
+        const StoredMesh& stored = m.stored[i];
+        if (stored.mesh >= s.meshes.size() || (i > 0 && m.stored[i - 1].mesh >= stored.mesh))
+            return text("stored mesh", i, "no such mesh, or not in order");
+        const uint64_t vertex_count = s.meshes[stored.mesh].vertex_count;
+        if (!within(stored.first, vertex_count, m.stored_positions.size() / 3) ||
+            (!s.normals.empty() && !within(stored.first, vertex_count, m.stored_normals.size() / 3)))
+            return text("stored mesh", i, "vertices past the last one");
+    }
+    return {};
+}
+
 std::string check_sequences(const Scene& s) {
     for (size_t i = 0; i < s.motion.sequences.size(); ++i) {
         const FileSequence& q = s.motion.sequences[i];
@@ -172,7 +187,8 @@ std::string check_hung(const Scene& s) {
 
 std::string validate_motion(const Scene& scene) {
     std::string why = check_nodes(scene.motion);
-    for (const auto check : {check_channels, check_skins, check_morphs, check_frames, check_sequences, check_hung})
+    for (const auto check :
+         {check_channels, check_skins, check_morphs, check_frames, check_stored, check_sequences, check_hung})
         if (why.empty()) why = check(scene);
     return why;
 }

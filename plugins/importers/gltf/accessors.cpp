@@ -4,7 +4,9 @@
 #include <array>
 #include <cstring>
 
-#include "../common/base64.hpp"
+#include "compressed.hpp"
+#include "rt_plugin.hpp"
+#include "uri.hpp"
 
 namespace gltf_import {
 namespace {
@@ -54,12 +56,6 @@ void convert(const char* from, size_t stride, size_t components, uint64_t count,
     }
 }
 
-int hex_digit(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    c = static_cast<char>(c | 0x20);
-    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
 }  // namespace
 
 // `count` elements in a view.
@@ -92,8 +88,9 @@ struct Accessors::Range {
     }
 };
 
-Accessors::Accessors(const Document& document)
+Accessors::Accessors(const Document& document, const rt_scene_sink& sink)
     : document_(document),
+      sink_(sink),
       accessors_(document.list("accessors")),
       views_(document.list("bufferViews")),
       buffers_(document.list("buffers")),
@@ -111,16 +108,26 @@ bool Accessors::has_view(const Value& reference) const {
     return accessors_[reference.index(accessors_)].has("bufferView");
 }
 
+Accessors::Form Accessors::form(const Value& reference, std::string_view types, bool integers_only) const {
+    const Value accessor = accessors_[reference.index(accessors_)];
+    Form form;
+    form.components = type_of(accessor, types, reference);
+    form.component_type = component_of(accessor, integers_only).code;
+    form.count = accessor["count"].count();
+    form.is_normalized = accessor.has("normalized") && accessor["normalized"].json() == true;
+    return form;
+}
+
 template <class T>
 Elements<T> Accessors::read(const Value& reference, std::string_view types, uint64_t count, bool integers_only) {
     const Value accessor = accessors_[reference.index(accessors_)];
+    const Form form = this->form(reference, types, integers_only);
     Range range;
-    range.components = type_of(accessor, types, reference);
-    const Component& component = component_of(accessor, integers_only);
-    range.component_type = component.code;
-    range.component_bytes = component.bytes;
-    range.count = accessor["count"].count();
-    range.is_normalized = accessor.has("normalized") && accessor["normalized"].json() == true;
+    range.components = form.components;
+    range.component_type = form.component_type;
+    range.component_bytes = component_of(accessor, integers_only).bytes;
+    range.count = form.count;
+    range.is_normalized = form.is_normalized;
     if (count != kAnyCount && range.count != count)
         accessor["count"].refuse(std::to_string(count) + " for " + reference.path());
     const bool has_view = accessor.has("bufferView");
@@ -161,10 +168,18 @@ void Accessors::read_sparse(const Value& sparse, Range values, Elements<T>& out)
 
 // Finds the elements of `range` in the view that `owner` names.
 void Accessors::bind(const Value& owner, Range& range) {
-    const Value reference = owner["bufferView"], view = views_[reference.index(views_)];
+    const Value reference = owner["bufferView"];
+    const size_t index = reference.index(views_);
+    const Value view = views_[index];
     const std::string_view bytes = this->view(reference);
     const uint64_t offset = owner.count("byteOffset", 0), element = range.component_bytes * range.components;
-    const uint64_t stride = view.count("byteStride", element);
+    uint64_t stride = view.count("byteStride", element);
+    if (stride == 0) {
+        stride = element;
+        if (warned_.insert(index).second)
+            rt::warn(sink_, view["byteStride"].path() + ": found 0, expected " + std::to_string(element) +
+                                " or more, or no such member; its elements are read as if they follow each other");
+    }
     if (stride < element || stride > 65536)
         view["byteStride"].refuse(std::to_string(element) + ", the size of an element of " + owner.path() + ", to 65536");
     if (range.count == 0) return;
@@ -181,9 +196,34 @@ void Accessors::bind(const Value& owner, Range& range) {
 }
 
 std::string_view Accessors::view(const Value& reference) {
-    const Value view = views_[reference.index(views_)];
-    if (view.object("extensions").has("EXT_meshopt_compression"))
-        view.refuse("data compressed with EXT_meshopt_compression", "plain data: export the file again without compression");
+    const size_t index = reference.index(views_);
+    const Value view = views_[index], extensions = view.object("extensions");
+    // KHR_meshopt_compression is its later name.
+    const char* const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+    const auto name = std::find_if(std::begin(names), std::end(names), [&](const char* n) { return extensions.has(n); });
+    if (name == std::end(names)) return slice(view);
+    const auto known = decompressed_.find(index);
+    if (known != decompressed_.end()) return known->second;
+    const Value compressed = extensions[*name];
+    const size_t own_buffer = view["buffer"].index(buffers_);
+    // The view itself may have the same data without compression, for programs that do not know the extension.
+    const bool has_plain = own_buffer != compressed["buffer"].index(buffers_) && buffers_[own_buffer].has("uri");
+    if (const auto why = broken_.find(index); why != broken_.end()) {
+        if (has_plain) return slice(view);
+        throw Error(why->second);
+    }
+    try {
+        return decompressed_[index] = decode_meshopt(compressed, slice(compressed));
+    } catch (const Error& error) {
+        broken_[index] = error.what();
+        if (!has_plain) throw;
+        rt::warn(sink_, error.what() + std::string("; the data without compression is taken"));
+        return slice(view);
+    }
+}
+
+// The bytes of a buffer that `view` names.
+std::string_view Accessors::slice(const Value& view) {
     const size_t index = view["buffer"].index(buffers_);
     const std::string_view bytes = buffer(index);
     const uint64_t offset = view.count("byteOffset", 0), length = view["byteLength"].count();
@@ -197,6 +237,17 @@ std::string_view Accessors::view(const Value& reference) {
 std::string_view Accessors::buffer(size_t index) {
     Buffer& out = read_[index];
     if (out.is_read) return out.bytes;
+    if (!out.why.empty()) throw Error(out.why);
+    try {
+        read_buffer(index, out);
+    } catch (const Error& error) {
+        out.why = error.what();
+        throw;
+    }
+    return out.bytes;
+}
+
+void Accessors::read_buffer(size_t index, Buffer& out) {
     const Value buffer = buffers_[index];
     const uint64_t length = buffer["byteLength"].count();
     if (!buffer.has("uri")) {
@@ -206,7 +257,7 @@ std::string_view Accessors::buffer(size_t index) {
     } else if (const Value uri = buffer["uri"]; decode_data_uri(uri, out.decoded)) {
         out.bytes = out.decoded;
     } else {
-        const std::string name = relative_path(uri);
+        const std::string name = file_of_uri(uri, document_.folder());
         try {
             out.file = std::make_unique<importers::MappedFile>(document_.folder() + name);
         } catch (const std::runtime_error& error) {
@@ -219,45 +270,6 @@ std::string_view Accessors::buffer(size_t index) {
                                     ", the bytes that the buffer has: it is cut off or damaged");
     out.bytes = out.bytes.substr(0, length);
     out.is_read = true;
-    return out.bytes;
-}
-
-std::string percent_decoded(std::string_view text) {
-    std::string out;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const bool is_code =
-            text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 && hex_digit(text[i + 2]) >= 0;
-        out += is_code ? static_cast<char>(16 * hex_digit(text[i + 1]) + hex_digit(text[i + 2])) : text[i];
-        if (is_code) i += 2;
-    }
-    return out;
-}
-
-bool decode_data_uri(const Value& uri, std::string& out) {
-    if (!uri.json().is_string()) uri.refuse("a text");
-    const std::string_view text = uri.json().get_ref<const std::string&>();
-    if (text.substr(0, 5) != "data:") return false;
-    const size_t comma = text.find(',');
-    if (comma == text.npos) uri.refuse("a comma between the kind of the data and the data");
-    const std::string_view head = text.substr(0, comma), data = text.substr(comma + 1);
-    if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") {
-        out = percent_decoded(data);
-    } else if (const size_t bad = importers::decode_base64(data, out); bad != data.npos) {
-        uri.refuse(in_quotes(data.substr(bad, 1)) + " at character " + std::to_string(comma + 1 + bad), "base64");
-    }
-    return true;
-}
-
-std::string relative_path(const Value& uri) {
-    std::string path = percent_decoded(uri.text());
-    std::replace(path.begin(), path.end(), '\\', '/');
-    while (path.compare(0, 2, "./") == 0) path.erase(0, 2);
-    const size_t colon = path.find(':');
-    const bool has_scheme = colon != path.npos && path.find('/') >= colon;
-    const bool leaves = path.compare(0, 3, "../") == 0 || path.find("/../") != path.npos;
-    if (path.empty() || path[0] == '/' || has_scheme || leaves || path.find('\0') != path.npos)
-        uri.refuse("the name of a file in the scene's folder, or data");
-    return path;
 }
 
 }  // namespace gltf_import

@@ -2,12 +2,15 @@
 // against the bytes that are there before anything is read or allocated.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "document.hpp"
+#include "rt_plugin.h"
 
 namespace gltf_import {
 
@@ -22,7 +25,8 @@ struct Elements {
 
 class Accessors {
  public:
-    explicit Accessors(const Document& document);
+    // sink: gets warnings.
+    Accessors(const Document& document, const rt_scene_sink& sink);
 
     // Reads the accessor with the index `reference`. types: the types that are allowed there, "VEC2" or "VEC3 VEC4". count: how
     // many elements it must have. Normalised integers become -1..1 or 0..1.
@@ -31,8 +35,15 @@ class Accessors {
     Elements<uint32_t> integers(const Value& reference, std::string_view types, uint64_t count = kAnyCount);
     // Whether the accessor has data of its own, or is all zeros.
     bool has_view(const Value& reference) const;
-    // The bytes of the view with the index `reference`.
+    // The bytes of the view with the index `reference`, decompressed.
     std::string_view view(const Value& reference);
+    // What a primitive says of an accessor without reading its data.
+    struct Form {
+        uint64_t count = 0, component_type = 0;
+        size_t components = 0;
+        bool is_normalized = false;
+    };
+    Form form(const Value& reference, std::string_view types, bool integers_only) const;
 
  private:
     struct Range;
@@ -41,24 +52,25 @@ class Accessors {
     template <class T>
     void read_sparse(const Value& sparse, Range values, Elements<T>& out);
     void bind(const Value& owner, Range& range);
+    std::string_view slice(const Value& view);
     std::string_view buffer(size_t index);
-    std::string_view file(const Value& uri, size_t index);
+    struct Buffer;
+    void read_buffer(size_t index, Buffer& out);
 
     const Document& document_;
+    const rt_scene_sink& sink_;
     const Value accessors_, views_, buffers_;
     struct Buffer {
         bool is_read = false;
+        std::string why;      // it cannot be read
         std::string decoded;  // of a data URI
         std::unique_ptr<importers::MappedFile> file;
         std::string_view bytes;
     };
     std::vector<Buffer> read_;
+    std::map<size_t, std::string> decompressed_;  // by the number of the view
+    std::map<size_t, std::string> broken_;        // why, by the number of the view
+    std::set<size_t> warned_;                     // views of which a warning was given
 };
-
-// Decodes "data:...;base64,..." into `out`. Returns false if the text is no data URI. Throws Error if it is broken.
-bool decode_data_uri(const Value& uri, std::string& out);
-std::string percent_decoded(std::string_view text);  // replaces %20 and the like
-// Decodes it, and throws Error if it does not name a file beside the scene.
-std::string relative_path(const Value& uri);
 
 }  // namespace gltf_import

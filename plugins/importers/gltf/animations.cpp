@@ -6,11 +6,12 @@
 #include <utility>
 
 #include "../common/keys.hpp"
+#include "tolerant.hpp"
 
 namespace gltf_import {
 namespace {
 
-enum class Path { translation, rotation, scale, weights, other };
+enum class Path { translation, rotation, scale, weights };
 
 Path path_of(const Value& target) {
     const std::string path = target["path"].text();
@@ -18,7 +19,6 @@ Path path_of(const Value& target) {
     if (path == "rotation") return Path::rotation;
     if (path == "scale") return Path::scale;
     if (path == "weights") return Path::weights;
-    if (path == "pointer") return Path::other;  // KHR_animation_pointer
     target["path"].refuse("'translation', 'rotation', 'scale' or 'weights'");
 }
 
@@ -97,63 +97,81 @@ class Animation {
  public:
     Animation(const Value& animation, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
               const rt_scene_sink& sink)
-        : animation_(animation),
-          samplers_(animation["samplers"]),
-          accessors_(accessors),
-          tree_(tree),
-          meshes_(meshes),
-          sink_(sink) {}
+        : animation_(animation), accessors_(accessors), tree_(tree), meshes_(meshes), sink_(sink) {}
 
     void add() {
-        const Value channels = animation_["channels"];
-        double begin = 0, end = 0;
-        for (size_t i = 0; i < samplers_.size(); ++i) {
-            times_.push_back(read_times(samplers_[i]["input"], accessors_));
-            begin = i == 0 ? times_[i].front() : std::min(begin, times_[i].front());
-            end = i == 0 ? times_[i].back() : std::max(end, times_[i].back());
+        const Value samplers = animation_["samplers"], channels = animation_["channels"];
+        for (size_t i = 0; i < channels.size(); ++i)
+            spared(sink_, "the channel is left out", [&] { read_channel(channels[i], samplers); });
+        if (channels_.empty()) {
+            rt::warn(sink_, animation_.path() + ": found no channel that moves something; the animation is left out");
+            return;
         }
-        const std::string name = animation_.text("name", "");
+        double begin = channels_.front().keys.times.front(), end = begin;
+        for (const Channel& channel : channels_) {
+            begin = std::min(begin, channel.keys.times.front());
+            end = std::max(end, channel.keys.times.back());
+        }
+        const std::string name = animation_.name();
         rt_clip_desc out{};
         out.struct_bytes = sizeof out;
         out.name = name.empty() ? nullptr : name.c_str();
         out.begin_s = begin;
         out.end_s = end;
         const Clip clip(rt::id(sink_.clip(sink_.ctx, &out)), sink_);
-        for (size_t i = 0; i < channels.size(); ++i) add_channel(channels[i], clip);
+        for (const Channel& channel : channels_) pass(channel, clip);
     }
 
  private:
-    void add_channel(const Value& channel, const Clip& clip) {
+    struct Channel {
+        size_t node = 0;
+        Path path = Path::translation;
+        Sampler keys;
+    };
+
+    void read_channel(const Value& channel, const Value& samplers) {
         const Value target = channel["target"];
-        const auto node = target.index("node", tree_.list());
-        const Path path = path_of(target);
-        const size_t sampler = channel["sampler"].index(samplers_);
-        if (path == Path::other) {
-            const std::string text = target.path() + " moves what KHR_animation_pointer names; it is left out";
-            rt::warn(sink_, text);
+        if (target.text("path", "") == "pointer") {
+            rt::warn(sink_, target.path() + " moves what KHR_animation_pointer names; it is left out");
+            return;
         }
-        if (!node || path == Path::other) return;
-        if (!seen_.insert({*node, path}).second)
+        const auto node = target.index("node", tree_.list());
+        if (!node) target.refuse("no member 'node'", "the node that it moves");
+        Channel out;
+        out.node = *node;
+        out.path = path_of(target);
+        if (seen_.count({out.node, out.path}) > 0)
             target.refuse("a second channel for the " + target["path"].text() + " of " + tree_.list()[*node].path(), "one");
+        const Value sampler = samplers[channel["sampler"].index(samplers)];
+        const size_t morph_count = meshes_.morphs(*node).size();
+        if (out.path == Path::weights && morph_count == 0) return;  // it moves a mesh that is not shown
         const auto read = [&](const char* types, size_t width) {
-            return read_sampler(samplers_[sampler], times_[sampler], types, width, accessors_);
+            out.keys = read_sampler(sampler, read_times(sampler["input"], accessors_), types, width, accessors_);
         };
-        const rt_u32 id = tree_.id(*node);
-        if (path == Path::translation) clip.add_vector(read("VEC3", 3), RT_MOVES_TRANSLATION, id);
-        if (path == Path::scale) clip.add_vector(read("VEC3", 3), RT_MOVES_SCALE, id);
-        if (path == Path::rotation) clip.add(read("VEC4", 4), RT_MOVES_ROTATION, id, RT_ALL_COMPONENTS, 0, 4);
-        const std::vector<rt_u32>& morphs = meshes_.morphs(*node);
-        if (path != Path::weights || morphs.empty()) return;
-        const Sampler weights = read("SCALAR", morphs.size());
-        for (size_t k = 0; k < morphs.size(); ++k) clip.add(weights, RT_MOVES_MORPH, morphs[k], 0, k, 1);
+        if (out.path == Path::weights)
+            read("SCALAR", morph_count);
+        else
+            out.path == Path::rotation ? read("VEC4", 4) : read("VEC3", 3);
+        seen_.insert({out.node, out.path});
+        channels_.push_back(std::move(out));
     }
 
-    const Value animation_, samplers_;
+    void pass(const Channel& channel, const Clip& clip) const {
+        const rt_u32 id = tree_.id(channel.node);
+        if (channel.path == Path::translation) clip.add_vector(channel.keys, RT_MOVES_TRANSLATION, id);
+        if (channel.path == Path::scale) clip.add_vector(channel.keys, RT_MOVES_SCALE, id);
+        if (channel.path == Path::rotation) clip.add(channel.keys, RT_MOVES_ROTATION, id, RT_ALL_COMPONENTS, 0, 4);
+        if (channel.path != Path::weights) return;
+        const std::vector<rt_u32>& morphs = meshes_.morphs(channel.node);
+        for (size_t k = 0; k < morphs.size(); ++k) clip.add(channel.keys, RT_MOVES_MORPH, morphs[k], 0, k, 1);
+    }
+
+    const Value animation_;
     Accessors& accessors_;
     const NodeTree& tree_;
     const Meshes& meshes_;
     const rt_scene_sink& sink_;
-    std::vector<std::vector<double>> times_;
+    std::vector<Channel> channels_;
     std::set<std::pair<size_t, Path>> seen_;
 };
 
@@ -161,13 +179,21 @@ class Animation {
 
 std::set<size_t> nodes_with_animated_weights(const Document& document) {
     std::set<size_t> nodes;
-    const Value animations = document.list("animations"), list = document.list("nodes");
+    const Value list = document.list("nodes");
+    if (!document.root().has("animations") || !document.root()["animations"].json().is_array()) return nodes;
+    const Value animations = document.list("animations");
     for (size_t i = 0; i < animations.size(); ++i) {
-        const Value channels = animations[i]["channels"];
-        for (size_t k = 0; k < channels.size(); ++k) {
-            const Value target = channels[k]["target"];
-            const auto node = target.index("node", list);
-            if (node && path_of(target) == Path::weights) nodes.insert(*node);
+        try {
+            const Value channels = animations[i]["channels"];
+            for (size_t k = 0; k < channels.size(); ++k) {
+                try {
+                    const Value target = channels[k]["target"];
+                    const auto node = target.index("node", list);
+                    if (node && path_of(target) == Path::weights) nodes.insert(*node);
+                } catch (const Error&) {  // add_animations() says so
+                }
+            }
+        } catch (const Error&) {
         }
     }
     return nodes;
@@ -175,8 +201,9 @@ std::set<size_t> nodes_with_animated_weights(const Document& document) {
 
 void add_animations(const Document& document, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
                     const rt_scene_sink& sink) {
-    const Value animations = document.list("animations");
-    for (size_t i = 0; i < animations.size(); ++i) Animation(animations[i], accessors, tree, meshes, sink).add();
+    const Value animations = spared_list(document, "animations", sink);
+    for (size_t i = 0; i < animations.size(); ++i)
+        spared(sink, "the animation is left out", [&] { Animation(animations[i], accessors, tree, meshes, sink).add(); });
 }
 
 }  // namespace gltf_import

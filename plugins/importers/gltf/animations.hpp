@@ -12,6 +12,7 @@ namespace gltf_import {
 // The nodes that have weights of morphs which an animation changes.
 std::set<size_t> nodes_with_animated_weights(const Document& document);
 
+// A channel that is wrong is left out, with a warning; so is an animation that moves nothing then.
 void add_animations(const Document& document, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
                     const rt_scene_sink& sink);
 

@@ -16,6 +16,7 @@ namespace {
 
 std::vector<rt_bone> bones_of(const Value& skin, Accessors& accessors, const NodeTree& tree) {
     const Value joints = skin["joints"];
+    if (joints.size() == 0) joints.refuse("no joint", "one or more");
     std::vector<rt_bone> bones(joints.size());
     Elements<float> inverse;
     if (skin.has("inverseBindMatrices")) {
@@ -40,20 +41,28 @@ void Meshes::add_skin(const Value& skin, rt_u32 mesh, const std::vector<Part>& p
     passed.bones = bones_of(skin, accessors_, tree_);
     for (const Part& part : parts) {
         const Value attributes = part.primitive["attributes"];
+        std::vector<bool> has_weight(part.count);
         for (int set = 0;; ++set) {
             const std::string joints_key = "JOINTS_" + std::to_string(set), weights_key = "WEIGHTS_" + std::to_string(set);
             if (!attributes.has(joints_key.c_str())) break;
             const Value joints_of = attributes[joints_key.c_str()];
-            const Elements<uint32_t> joints = accessors_.integers(joints_of, "VEC4", part.count);
-            const Elements<float> shares = accessors_.floats(attributes[weights_key.c_str()], "VEC4", part.count);
+            const Elements<uint32_t> joints = integers(part, joints_key, "VEC4", part.count);
+            const Elements<float> shares = floats(part, weights_key, "VEC4", part.count);
             for (size_t i = 0; i < shares.values.size(); ++i) {
                 if (!(shares.values[i] > 0) || !std::isfinite(shares.values[i])) continue;
                 if (joints.values[i] >= passed.bones.size()) refuse_joint(joints_of, joints.values[i], i / 4, skin);
                 passed.weights.push_back({static_cast<rt_u32>(part.first + i / 4), joints.values[i], shares.values[i]});
+                has_weight[i / 4] = true;
             }
         }
+        // The node of a mesh with a skin has no effect, so these need a joint, too.
+        for (size_t v = 0; v < has_weight.size(); ++v) {
+            if (has_weight[v]) continue;
+            passed.weights.push_back({static_cast<rt_u32>(part.first + v), 0, 1});
+            ++unweighted_;
+        }
     }
-    if (!passed.weights.empty()) passed.pass(mesh, sink_);
+    passed.pass(mesh, sink_);
 }
 
 // One target at a time, because all of them together may be much larger than the file: most vertices move in few of them.

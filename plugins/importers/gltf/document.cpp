@@ -21,8 +21,9 @@ uint32_t read_u32(std::string_view bytes, size_t at) {
 // surface looks different.
 bool is_known(const std::string& name) {
     for (const char* known :
-         {"KHR_mesh_quantization", "KHR_lights_punctual", "KHR_texture_transform", "KHR_texture_basisu", "EXT_texture_webp",
-          "EXT_texture_avif", "MSFT_texture_dds", "EXT_mesh_gpu_instancing", "KHR_xmp_json_ld"}) {
+         {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_mesh_quantization",
+          "KHR_lights_punctual", "KHR_texture_transform", "KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif",
+          "MSFT_texture_dds", "EXT_mesh_gpu_instancing", "KHR_xmp_json_ld"}) {
         if (name == known) return true;
     }
     return name.compare(0, 14, "KHR_materials_") == 0 || name.compare(0, 3, "VRM") == 0;

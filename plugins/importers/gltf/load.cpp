@@ -17,7 +17,7 @@ constexpr float kMeshShare = 0.8f;
 void load_document(const Document& document, const rt_host* host, const rt_scene_sink& sink) {
     if (!RT_HAS(&sink, rt_scene_sink, vertex_frames)) throw Error("this importer needs a newer version of the program");
     const NodeTree tree(document, sink);
-    Accessors accessors(document);
+    Accessors accessors(document, sink);
     Materials materials(document, accessors, sink);
     Meshes meshes(document, accessors, materials, tree, sink, nodes_with_animated_weights(document));
     size_t done = 0;

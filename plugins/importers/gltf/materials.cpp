@@ -6,6 +6,8 @@
 #include "../common/materials.hpp"
 #include "nodes.hpp"
 #include "rt_plugin.hpp"
+#include "tolerant.hpp"
+#include "uri.hpp"
 
 namespace gltf_import {
 namespace {
@@ -17,59 +19,112 @@ Value color_texture(const Value& material) {
     return material.object("pbrMetallicRoughness").object("baseColorTexture");
 }
 
+// Paths out of the folder are passed on as they are: the host finds pictures by their names alone, too.
+std::string image_path(const Value& uri, const std::string& folder) {
+    try {
+        return file_of_uri(uri, folder);
+    } catch (const Error&) {
+        return percent_decoded(uri.text());
+    }
+}
+
 }  // namespace
 
 Materials::Materials(const Document& document, Accessors& accessors, const rt_scene_sink& sink)
     : accessors_(accessors),
-      materials_(document.list("materials")),
-      textures_(document.list("textures")),
-      images_(document.list("images")),
+      folder_(document.folder()),
+      materials_(spared_list(document, "materials", sink)),
+      textures_(spared_list(document, "textures", sink)),
+      images_(spared_list(document, "images", sink)),
+      samplers_(spared_list(document, "samplers", sink)),
       sink_(sink),
-      ids_(materials_.size()),
-      image_ids_(images_.size()) {}
+      ids_(materials_.size()) {}
 
 rt_u32 Materials::id(const Value& primitive) {
-    const auto index = primitive.index("material", materials_);
-    if (!index) return RT_NONE;
-    if (!ids_[*index]) ids_[*index] = add(materials_[*index]);
-    return *ids_[*index];
+    rt_u32 id = RT_NONE;
+    spared(sink_, "it gets the default material", [&] {
+        const auto index = primitive.index("material", materials_);
+        if (!index) return;
+        if (!ids_[*index]) ids_[*index] = add(materials_[*index]);
+        id = *ids_[*index];
+    });
+    return id;
 }
 
+// Each group of values that the file has wrong keeps its defaults.
 rt_u32 Materials::add(const Value& material) {
-    const std::string name = material.text("name", "");
-    const Value pbr = material.object("pbrMetallicRoughness"), extensions = material.object("extensions");
-    const Value gloss = extensions.object("KHR_materials_pbrSpecularGlossiness");
+    const std::string name = material.name();
     rt_material_desc out = rt::material(name.c_str());
-    const std::array<double, 4> base = gloss.numbers<4>("diffuseFactor", pbr.numbers<4>("baseColorFactor", {1, 1, 1, 1}));
+    std::array<double, 4> base = {1, 1, 1, 1};
+    const auto group = [&](const auto& read) { spared(sink_, "the material keeps the default there", read); };
     importers::store_color(base, 1, 1, out.color);
-    out.texture = texture(color_texture(material));
-    importers::apply_metallic(pbr.number("metallicFactor", 1), pbr.number("roughnessFactor", 1), out);
-    // The host has one texture, which multiplies the colour. A picture that confines emission to a part of the surface is lost.
-    const std::array<double, 3> emission = material.numbers<3>("emissiveFactor", {0, 0, 0});
-    const double strength = extensions.object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
-    const bool shines = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
-    if (shines && material.has("emissiveTexture")) {
-        const std::string text = material.path() + " shines as a picture says (emissiveTexture); that light is left out";
-        rt::warn(sink_, text);
-    } else {
-        importers::store_color(emission, strength, 1000, out.emission);
-    }
-    const double opacity = material.text("alphaMode", "OPAQUE") == "BLEND" ? base[3] : 1;
-    const double transmission = extensions.object("KHR_materials_transmission").number("transmissionFactor", 0);
-    importers::apply_transparency(opacity, transmission, extensions.object("KHR_materials_ior").number("ior", 0), out);
+    group([&] {
+        const Value gloss = material.object("extensions").object("KHR_materials_pbrSpecularGlossiness");
+        const std::array<double, 4> factor = gloss.numbers<4>(
+            "diffuseFactor", material.object("pbrMetallicRoughness").numbers<4>("baseColorFactor", {1, 1, 1, 1}));
+        base = factor;
+        importers::store_color(base, 1, 1, out.color);
+    });
+    group([&] { out.texture = texture(color_texture(material)); });
+    group([&] {
+        const Value pbr = material.object("pbrMetallicRoughness");
+        importers::apply_metallic(pbr.number("metallicFactor", 1), pbr.number("roughnessFactor", 1), out);
+    });
+    group([&] {
+        // The host has one texture, which multiplies the colour. A picture that confines emission to a part of the surface is
+        // lost.
+        const std::array<double, 3> emission = material.numbers<3>("emissiveFactor", {0, 0, 0});
+        const double strength =
+            material.object("extensions").object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+        const bool shines = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
+        if (shines && material.has("emissiveTexture"))
+            rt::warn(sink_, material.path() + " shines as a picture says (emissiveTexture); that light is left out");
+        else
+            importers::store_color(emission, strength, 1000, out.emission);
+    });
+    group([&] {
+        const Value extensions = material.object("extensions");
+        const double opacity = material.text("alphaMode", "OPAQUE") == "BLEND" ? base[3] : 1;
+        const double transmission = extensions.object("KHR_materials_transmission").number("transmissionFactor", 0);
+        importers::apply_transparency(opacity, transmission, extensions.object("KHR_materials_ior").number("ior", 0), out);
+        warn_of_alpha(material, out, base[3]);
+    });
     return rt::id(sink_.material(sink_.ctx, &out));
+}
+
+// The host takes one opacity for a whole material. What a texture has of it is lost.
+void Materials::warn_of_alpha(const Value& material, const rt_material_desc& out, double opacity) const {
+    const std::string mode = material.text("alphaMode", "OPAQUE");
+    const bool has_texture = out.texture != RT_NONE;
+    if (mode == "MASK" && (has_texture || opacity < material.number("alphaCutoff", 0.5)))
+        rt::warn(sink_, material.path() + ".alphaMode: MASK is not read: what its alpha cuts out is shown");
+    else if (mode == "BLEND" && has_texture)
+        rt::warn(sink_, material.path() +
+                            ".alphaMode: BLEND is not read for the alpha of its texture: what that makes "
+                            "transparent is shown");
+    else if (mode != "MASK" && mode != "BLEND" && mode != "OPAQUE")
+        rt::warn(sink_, material.path() + ".alphaMode: found " + in_quotes(mode) +
+                            ", expected 'OPAQUE', 'MASK' or 'BLEND'; it counts as opaque");
 }
 
 TextureMapping Materials::mapping(const Value& primitive) const {
     TextureMapping mapping;
-    const auto index = primitive.index("material", materials_);
-    if (!index) return mapping;
-    const Value info = color_texture(materials_[*index]), transform = info.object("extensions").object("KHR_texture_transform");
-    mapping.set = transform.count("texCoord", info.count("texCoord", 0));
-    const std::array<double, 2> offset = transform.numbers<2>("offset", {0, 0}), scale = transform.numbers<2>("scale", {1, 1});
-    // Counter-clockwise where v points down.
-    const double angle = transform.number("rotation", 0), c = std::cos(angle), s = std::sin(angle);
-    mapping.matrix = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    if (!primitive.has("material") || primitive["material"].json().is_null()) return mapping;
+    const auto read = [&] {
+        const Value info = color_texture(materials_[*primitive.index("material", materials_)]);
+        const Value transform = info.object("extensions").object("KHR_texture_transform");
+        const std::array<double, 2> offset = transform.numbers<2>("offset", {0, 0}),
+                                    scale = transform.numbers<2>("scale", {1, 1});
+        mapping.set = transform.count("texCoord", info.count("texCoord", 0));
+        // Counter-clockwise where v points down.
+        const double angle = transform.number("rotation", 0), c = std::cos(angle), s = std::sin(angle);
+        mapping.matrix = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    };
+    try {
+        read();
+    } catch (const Error&) {
+        return {};  // add() names what is wrong
+    }
     return mapping;
 }
 
@@ -82,13 +137,32 @@ rt_u32 Materials::texture(const Value& info) {
         const std::string text = texture.path() + " has no 'source', so the material stays without it";
         return rt::warn(sink_, text), RT_NONE;
     }
-    if (!image_ids_[*image]) image_ids_[*image] = add_image(images_[*image]);
-    return *image_ids_[*image];
+    rt_u32 wrap_u = RT_WRAP_REPEAT, wrap_v = RT_WRAP_REPEAT;
+    spared(sink_, "the texture repeats", [&] {
+        const auto sampler = texture.index("sampler", samplers_);
+        if (!sampler) return;
+        wrap_u = wrap_mode(samplers_[*sampler], "wrapS");
+        wrap_v = wrap_mode(samplers_[*sampler], "wrapT");
+    });
+    const auto known = texture_ids_.insert({{*image, wrap_u, wrap_v}, RT_NONE});
+    rt_u32& id = known.first->second;
+    if (known.second) spared(sink_, "the image is left out", [&] { id = add_image(images_[*image], wrap_u, wrap_v); });
+    return id;
 }
 
-rt_u32 Materials::add_image(const Value& image) {
+rt_u32 Materials::wrap_mode(const Value& sampler, const char* key) const {
+    constexpr std::pair<uint64_t, rt_u32> kModes[] = {{10497, RT_WRAP_REPEAT}, {33071, RT_WRAP_CLAMP}, {33648, RT_WRAP_MIRROR}};
+    const uint64_t code = sampler.count(key, 10497);
+    for (const auto& [known, mode] : kModes)
+        if (known == code) return mode;
+    sampler[key].refuse("10497 (repeat), 33071 (clamp to edge) or 33648 (mirrored repeat)");
+}
+
+rt_u32 Materials::add_image(const Value& image, rt_u32 wrap_u, rt_u32 wrap_v) {
     rt_texture_desc out{};
     out.struct_bytes = sizeof out;
+    out.wrap_u = wrap_u;
+    out.wrap_v = wrap_v;
     std::string bytes_or_path;
     std::string_view bytes;
     if (image.has("bufferView")) {
@@ -97,7 +171,7 @@ rt_u32 Materials::add_image(const Value& image) {
         bytes = bytes_or_path;
     } else {
         // The host decides what may be read, and looks in the usual places for textures.
-        bytes_or_path = percent_decoded(uri.text());
+        bytes_or_path = image_path(uri, folder_);
         out.path = bytes_or_path.c_str();
         return sink_.texture(sink_.ctx, &out);
     }

@@ -1,7 +1,9 @@
 // materials.hpp -- converts metallic-roughness materials to Whitted materials of the host, and images to its textures.
 #pragma once
 #include <array>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "accessors.hpp"
@@ -26,13 +28,17 @@ class Materials {
 
  private:
     rt_u32 add(const Value& material);
+    void warn_of_alpha(const Value& material, const rt_material_desc& out, double opacity) const;
     rt_u32 texture(const Value& info);
-    rt_u32 add_image(const Value& image);
+    rt_u32 wrap_mode(const Value& sampler, const char* key) const;
+    rt_u32 add_image(const Value& image, rt_u32 wrap_u, rt_u32 wrap_v);
 
     Accessors& accessors_;
-    const Value materials_, textures_, images_;
+    const std::string folder_;
+    const Value materials_, textures_, images_, samplers_;
     const rt_scene_sink& sink_;
-    std::vector<std::optional<rt_u32>> ids_, image_ids_;
+    std::vector<std::optional<rt_u32>> ids_;
+    std::map<std::tuple<size_t, rt_u32, rt_u32>, rt_u32> texture_ids_;  // by image and wrap modes
 };
 
 }  // namespace gltf_import

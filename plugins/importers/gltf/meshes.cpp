@@ -5,6 +5,7 @@
 
 #include "../common/mesh_arrays.hpp"
 #include "rt_plugin.hpp"
+#include "tolerant.hpp"
 
 namespace gltf_import {
 namespace {
@@ -43,7 +44,7 @@ void Meshes::place(size_t node) {
     copies_left_out_ = copies_left_out_ || value.object("extensions").has("EXT_mesh_gpu_instancing");
     const bool has_own_weights = value.has("weights") || animated_.count(node) > 0;
     const std::tuple key(*mesh, skin.value_or(kNone), has_own_weights ? node : kNone);
-    const std::string name = value.text("name", meshes_[*mesh].text("name", ""));
+    const std::string name = value.name().empty() ? meshes_[*mesh].name() : value.name();
     auto known = built_.find(key);
     if (known == built_.end()) known = built_.emplace(key, build(meshes_[*mesh], value, name)).first;
     of_node_[node] = &known->second;
@@ -61,6 +62,14 @@ const std::vector<rt_u32>& Meshes::morphs(size_t node) const {
 
 void Meshes::report() const {
     if (copies_left_out_) rt::warn(sink_, "copies by EXT_mesh_gpu_instancing are left out: one of each is there");
+    if (colored_ > 0)
+        rt::warn(sink_, first_colored_ + ": colours of vertices are not read; they are left out" +
+                            (colored_ > 1 ? ", in " + std::to_string(colored_) + " primitives" : ""));
+    if (unweighted_ > 0)
+        rt::warn(sink_, unweighted_ == 1 ? "a vertex of a mesh with a skin has no weights; it follows the first joint"
+                                         : std::to_string(unweighted_) +
+                                               " vertices of meshes with skins have no weights; they "
+                                               "follow the first joint");
     if (triangles_ == 0) {
         rt::warn(sink_, "contains no polygons" + std::string(points_and_lines_ ? " (points and lines were skipped)" : ""));
     } else if (points_and_lines_ > 0) {
@@ -92,59 +101,109 @@ void Meshes::add_primitive(const Value& primitive, Geometry& g) {
         ++points_and_lines_;
         return;
     }
-    uint64_t count = 0;
-    const rt_u32 first = add_vertices(primitive, g, count);
-    add_faces(primitive, first, count, g);
+    if (attributes.has("COLOR_0") && colored_++ == 0) first_colored_ = attributes.path() + ".COLOR_0";
+    add_faces(primitive, add_vertices(primitive, g), g);
 }
 
-// Returns the first vertex of the primitive. Primitives with the same attributes share their vertices.
-rt_u32 Meshes::add_vertices(const Value& primitive, Geometry& g, uint64_t& count) {
+std::shared_ptr<const DracoMesh> Meshes::draco_of(const Value& primitive) {
+    const Value extensions = primitive.object("extensions");
+    if (!extensions.has("KHR_draco_mesh_compression")) return nullptr;
+    const Value draco = extensions["KHR_draco_mesh_compression"];
+    std::shared_ptr<const DracoMesh> mesh;
+    const auto decode = [&] { mesh = std::make_shared<DracoMesh>(draco, accessors_.view(draco["bufferView"])); };
+    // The accessors may also have the data without compression, for programs that do not know the extension.
+    if (accessors_.has_view(primitive["attributes"]["POSITION"]))
+        spared(sink_, "the data without compression is taken", decode);
+    else
+        decode();
+    return mesh;
+}
+
+Elements<float> Meshes::floats(const Part& part, const std::string& attribute, std::string_view types, uint64_t count) {
+    const Value reference = part.primitive["attributes"][attribute.c_str()];
+    if (!part.draco) return accessors_.floats(reference, types, count);
+    const Value ids = part.primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"];
+    if (!ids.has(attribute.c_str())) return accessors_.floats(reference, types, count);
+    const Accessors::Form form = accessors_.form(reference, types, false);
+    Elements<float> out;
+    out.components = form.components;
+    out.count = part.draco->vertex_count();
+    out.values = part.draco->floats(ids[attribute.c_str()], form.components, form.is_normalized, form.component_type);
+    return out;
+}
+
+Elements<uint32_t> Meshes::integers(const Part& part, const std::string& attribute, std::string_view types, uint64_t count) {
+    const Value reference = part.primitive["attributes"][attribute.c_str()];
+    if (!part.draco) return accessors_.integers(reference, types, count);
+    const Value ids = part.primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"];
+    if (!ids.has(attribute.c_str())) return accessors_.integers(reference, types, count);
+    Elements<uint32_t> out;
+    out.components = accessors_.form(reference, types, true).components;
+    out.count = part.draco->vertex_count();
+    out.values = part.draco->integers(ids[attribute.c_str()], out.components);
+    return out;
+}
+
+// Primitives with the same attributes share their vertices.
+const Part& Meshes::add_vertices(const Value& primitive, Geometry& g) {
     const Value attributes = primitive["attributes"];
     const TextureMapping mapping = materials_.mapping(primitive);
     if (!g.parts.empty()) {
         const Part& last = g.parts.back();
         const Value before = last.primitive;
-        if (before["attributes"].json() == attributes.json() &&
+        const bool is_draco = last.draco || primitive.object("extensions").has("KHR_draco_mesh_compression");
+        if (!is_draco && before["attributes"].json() == attributes.json() &&
             before.list("targets").json() == primitive.list("targets").json() && last.mapping == mapping) {
-            count = last.count;
-            return last.first;
+            return last;
         }
     }
-    const bool is_draco = primitive.object("extensions").has("KHR_draco_mesh_compression");
-    if (is_draco && !accessors_.has_view(attributes["POSITION"]))
-        primitive.refuse("data compressed with KHR_draco_mesh_compression",
-                         "plain data: export the file again without compression");
-    const Elements<float> positions = accessors_.floats(attributes["POSITION"], "VEC3");
-    count = positions.count;
+    Part part = {primitive, 0, 0, mapping, draco_of(primitive)};
+    const Elements<float> positions = floats(part, "POSITION", "VEC3", kAnyCount);
+    if (const uint64_t stated = accessors_.form(attributes["POSITION"], "VEC3", false).count; stated != positions.count)
+        rt::warn(sink_, attributes.path() + ".POSITION: found " + std::to_string(stated) + " vertices, but " +
+                            std::to_string(positions.count) + " in what Draco has compressed, which are taken");
+    const uint64_t count = part.count = positions.count;
     const size_t first = g.positions.size() / 3;
+    part.first = static_cast<rt_u32>(first);
     if (first + count >= RT_NONE) attributes["POSITION"].refuse("more than 4 billion vertices in one mesh", "fewer");
     g.positions.insert(g.positions.end(), positions.values.begin(), positions.values.end());
+    // Without them the shape is the same, but not its look.
     if (attributes.has("NORMAL")) {
-        const Elements<float> normals = accessors_.floats(attributes["NORMAL"], "VEC3", count);
-        g.normals.resize(3 * first);
-        g.normals.insert(g.normals.end(), normals.values.begin(), normals.values.end());
-        g.has_normals = true;
+        spared(sink_, "the normals are left out", [&] {
+            const Elements<float> normals = floats(part, "NORMAL", "VEC3", count);
+            g.normals.resize(3 * first);
+            g.normals.insert(g.normals.end(), normals.values.begin(), normals.values.end());
+            g.has_normals = true;
+        });
     }
     const std::string set = "TEXCOORD_" + std::to_string(mapping.set);
     const char* const uv = attributes.has(set.c_str()) ? set.c_str() : "TEXCOORD_0";
     if (attributes.has(uv)) {
-        const Elements<float> uvs = accessors_.floats(attributes[uv], "VEC2", count);
-        g.uvs.resize(2 * first);
-        const auto& m = mapping.matrix;
-        for (size_t i = 0; i < count; ++i) {
-            const double u = uvs.values[2 * i], v = uvs.values[2 * i + 1];
-            g.uvs.push_back(to_float(m[0] * u + m[1] * v + m[2]));
-            g.uvs.push_back(to_float(1 - (m[3] * u + m[4] * v + m[5])));  // (0, 0) is at the top left in glTF
-        }
-        g.has_uvs = true;
+        spared(sink_, "the texture coordinates are left out", [&] {
+            const Elements<float> uvs = floats(part, uv, "VEC2", count);
+            g.uvs.resize(2 * first);
+            const auto& m = mapping.matrix;
+            for (size_t i = 0; i < count; ++i) {
+                const double u = uvs.values[2 * i], v = uvs.values[2 * i + 1];
+                g.uvs.push_back(to_float(m[0] * u + m[1] * v + m[2]));
+                g.uvs.push_back(to_float(1 - (m[3] * u + m[4] * v + m[5])));  // (0, 0) is at the top left in glTF
+            }
+            g.has_uvs = true;
+        });
     }
-    g.parts.push_back({primitive, static_cast<rt_u32>(first), count, mapping});
-    return static_cast<rt_u32>(first);
+    g.parts.push_back(std::move(part));
+    return g.parts.back();
 }
 
-void Meshes::add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geometry& g) {
+void Meshes::add_faces(const Value& primitive, const Part& part, Geometry& g) {
+    const rt_u32 first = part.first;
+    const uint64_t count = part.count;
     std::vector<rt_u32> corners;
-    if (primitive.has("indices")) {
+    uint64_t mode = primitive.count("mode", kTriangles);
+    if (part.draco) {
+        corners = part.draco->indices();
+        mode = kTriangles;
+    } else if (primitive.has("indices")) {
         corners = accessors_.integers(primitive["indices"], "SCALAR").values;
     } else {
         corners.resize(count);
@@ -156,7 +215,6 @@ void Meshes::add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geo
         found = "the index " + std::to_string(*wrong) + " at position " + std::to_string(wrong - corners.begin()) +
                 " of its indices";
     for (rt_u32& i : corners) i = i < count ? first + i : RT_NONE;  // the host leaves such faces out, and counts them
-    const uint64_t mode = primitive.count("mode", kTriangles);
     const size_t n = corners.size(), step = mode == kTriangles ? 3 : 1;
     if (mode == kTriangles && n % 3 != 0)
         rt::warn(sink_, primitive.path() + ": found " + std::to_string(n) +

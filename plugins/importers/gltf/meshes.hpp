@@ -1,11 +1,13 @@
 // meshes.hpp -- joins the primitives of a mesh to one mesh of the host, which nodes with the same mesh share.
 #pragma once
 #include <map>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <vector>
 
 #include "accessors.hpp"
+#include "compressed.hpp"
 #include "materials.hpp"
 #include "nodes.hpp"
 #include "rt_plugin.h"
@@ -18,6 +20,7 @@ struct Part {
     rt_u32 first;
     uint64_t count;
     TextureMapping mapping;
+    std::shared_ptr<const DracoMesh> draco;  // its data, if Draco has compressed it
 };
 
 class Meshes {
@@ -41,8 +44,12 @@ class Meshes {
     };
     Built build(const Value& mesh, const Value& node, const std::string& name);
     void add_primitive(const Value& primitive, Geometry& geometry);
-    rt_u32 add_vertices(const Value& primitive, Geometry& geometry, uint64_t& count);
-    void add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geometry& geometry);
+    const Part& add_vertices(const Value& primitive, Geometry& geometry);
+    void add_faces(const Value& primitive, const Part& part, Geometry& geometry);
+    std::shared_ptr<const DracoMesh> draco_of(const Value& primitive);
+    // An attribute's values, as Accessors has them, or from what Draco has compressed.
+    Elements<float> floats(const Part& part, const std::string& attribute, std::string_view types, uint64_t count);
+    Elements<uint32_t> integers(const Part& part, const std::string& attribute, std::string_view types, uint64_t count);
     void add_skin(const Value& skin, rt_u32 mesh, const std::vector<Part>& parts);
     std::vector<rt_u32> add_morphs(const Value& mesh, const Value& node, rt_u32 id, const std::vector<Part>& parts);
 
@@ -55,7 +62,8 @@ class Meshes {
     // By mesh, skin, and node if its weights are its own; size_t(-1): none.
     std::map<std::tuple<size_t, size_t, size_t>, Built> built_;
     std::map<size_t, const Built*> of_node_;
-    uint64_t points_and_lines_ = 0, triangles_ = 0;
+    uint64_t points_and_lines_ = 0, triangles_ = 0, colored_ = 0, unweighted_ = 0;
+    std::string first_colored_;  // place of the first primitive with colours
     bool copies_left_out_ = false;
 };
 

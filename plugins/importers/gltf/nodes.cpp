@@ -11,7 +11,7 @@ namespace {
 
 // A node has either `matrix`, or translation, rotation and scale. What it lacks keeps the default.
 rt_u32 pass(const Value& node, rt_u32 parent, const rt_scene_sink& sink) {
-    const std::string name = node.text("name", "");
+    const std::string name = node.name();
     rt_node_desc out{};
     out.struct_bytes = sizeof out;
     out.parent = parent;

@@ -19,7 +19,7 @@ class NodeTree {
     const std::vector<size_t>& shown() const { return shown_; }
     // The sink's id of a node.
     rt_u32 id(size_t node) const { return nodes_[node].id; }
-    std::string name(size_t node) const { return list_[node].text("name", ""); }
+    std::string name(size_t node) const { return list_[node].name(); }
 
  private:
     struct Node {

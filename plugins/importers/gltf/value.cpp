@@ -60,6 +60,10 @@ std::string Value::text(const char* key, const std::string& otherwise) const {
     return has(key) ? (*this)[key].text() : otherwise;
 }
 
+std::string Value::name() const {
+    return has("name") && (*this)["name"].json().is_string() ? (*this)["name"].text() : "";
+}
+
 std::optional<size_t> Value::index(const char* key, const Value& list) const {
     if (!has(key)) return std::nullopt;
     return (*this)[key].index(list);

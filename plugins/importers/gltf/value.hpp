@@ -28,6 +28,7 @@ class Value {
     double number(const char* key, double otherwise) const;
     uint64_t count(const char* key, uint64_t otherwise) const;
     std::string text(const char* key, const std::string& otherwise) const;
+    std::string name() const;  // its member 'name'; empty if that is left out, or no text
     template <size_t n>
     std::array<double, n> numbers(const char* key, std::array<double, n> otherwise) const {
         if (!has(key)) return otherwise;

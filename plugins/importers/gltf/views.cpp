@@ -3,52 +3,69 @@
 
 #include "nodes.hpp"
 #include "rt_plugin.hpp"
+#include "tolerant.hpp"
 
 namespace gltf_import {
 namespace {
 
 std::string label(const Value& value) {
-    return value.has("name") ? in_quotes(value["name"].text()) : value.path();
+    const std::string name = value.name();
+    return name.empty() ? value.path() : in_quotes(name);
+}
+
+// The name of a camera or light, or else that of its node.
+std::string name_of(const Value& value, const NodeTree& tree, size_t node) {
+    const std::string name = value.name();
+    return name.empty() ? tree.name(node) : name;
+}
+
+void add_camera(const Value& camera, const NodeTree& tree, size_t node, const rt_scene_sink& sink) {
+    const std::string name = name_of(camera, tree, node);
+    rt_camera out{};
+    out.struct_bytes = sizeof out;
+    out.name = name.c_str();
+    out.node = tree.id(node);
+    out.target[2] = -1;
+    out.up[1] = 1;
+    out.fov_y_rad = importers::angle_of_view(camera.object("perspective").number("yfov", 0), label(camera), sink);
+    rt::id(sink.camera(sink.ctx, &out));
+}
+
+void add_light(const Value& light, const NodeTree& tree, size_t node, const rt_scene_sink& sink, importers::Lights& passed) {
+    const std::string type = light["type"].text();
+    if (type != "directional" && type != "point" && type != "spot") light["type"].refuse("'directional', 'point' or 'spot'");
+    rt_light_desc out = rt::light(type == "directional" ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT, nullptr);
+    out.node = tree.id(node);
+    out.direction[1] = 0;
+    out.direction[2] = -1;
+    const std::array<double, 3> color = light.numbers<3>("color", {1, 1, 1});
+    const double intensity = light.number("intensity", 1);
+    if (type == "spot") rt::warn(sink, "the spot light " + label(light) + " became a point light");
+    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity);
 }
 
 }  // namespace
 
 void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_sink& sink) {
-    const Value cameras = document.list("cameras");
-    for (const size_t i : tree.shown()) {
-        const auto index = tree.list()[i].index("camera", cameras);
-        if (!index) continue;
-        const Value camera = cameras[*index];
-        const std::string name = camera.text("name", tree.name(i));
-        rt_camera out{};
-        out.struct_bytes = sizeof out;
-        out.name = name.c_str();
-        out.node = tree.id(i);
-        out.target[2] = -1;
-        out.up[1] = 1;
-        out.fov_y_rad = importers::angle_of_view(camera.object("perspective").number("yfov", 0), label(camera), sink);
-        rt::id(sink.camera(sink.ctx, &out));
+    const Value cameras = spared_list(document, "cameras", sink);
+    for (const size_t node : tree.shown()) {
+        spared(sink, "the camera is left out", [&] {
+            const auto index = tree.list()[node].index("camera", cameras);
+            if (index) add_camera(cameras[*index], tree, node, sink);
+        });
     }
 }
 
 void add_lights(const Document& document, const NodeTree& tree, const rt_host* host, const rt_scene_sink& sink) {
     constexpr const char* kExtension = "KHR_lights_punctual";
-    const Value lights = document.root().object("extensions").object(kExtension).list("lights");
     importers::Lights passed;
-    for (const size_t i : tree.shown()) {
-        const auto index = tree.list()[i].object("extensions").object(kExtension).index("light", lights);
-        if (!index) continue;
-        const Value light = lights[*index];
-        const std::string type = light["type"].text();
-        if (type != "directional" && type != "point" && type != "spot")
-            light["type"].refuse("'directional', 'point' or 'spot'");
-        if (type == "spot") rt::warn(sink, "the spot light " + label(light) + " became a point light");
-        rt_light_desc out = rt::light(type == "directional" ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT, nullptr);
-        out.node = tree.id(i);
-        out.direction[1] = 0;
-        out.direction[2] = -1;
-        const std::array<double, 3> color = light.numbers<3>("color", {1, 1, 1});
-        passed.add(out, light.text("name", tree.name(i)), {color[0], color[1], color[2]}, light.number("intensity", 1));
+    for (const size_t node : tree.shown()) {
+        spared(sink, "the light is left out", [&] {
+            const Value own = tree.list()[node].object("extensions").object(kExtension);
+            if (!own.has("light")) return;
+            const Value lights = document.root().object("extensions").object(kExtension).list("lights");
+            add_light(lights[own["light"].index(lights)], tree, node, sink, passed);
+        });
     }
     passed.pass(host, sink);
 }

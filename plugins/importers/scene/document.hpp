@@ -29,6 +29,7 @@ struct Material {
     Name name;
     rt_material_desc values{};  // without name and texture
     std::string texture;        // path as in the file; empty: no texture
+    rt_u32 wrap_u = RT_WRAP_REPEAT, wrap_v = RT_WRAP_REPEAT;
 };
 struct Sphere {
     Vec3 center{0, 0, 0};

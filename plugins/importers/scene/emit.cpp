@@ -1,7 +1,9 @@
 #include "emit.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -59,17 +61,19 @@ void Emitter::info() const {
 }
 
 bool Emitter::materials() {
-    std::unordered_map<std::string, rt_u32> texture_ids;
+    std::map<std::tuple<std::string, rt_u32, rt_u32>, rt_u32> texture_ids;
     for (const Material& material : document_.materials) {
         position_ = material.name.position;
         rt_material_desc desc = material.values;
         desc.struct_bytes = sizeof desc;
         desc.name = material.name.text.c_str();
         if (!material.texture.empty()) {
-            auto [known, is_new] = texture_ids.emplace(material.texture, RT_NONE);
+            auto [known, is_new] = texture_ids.insert({{material.texture, material.wrap_u, material.wrap_v}, RT_NONE});
             if (is_new) {
                 auto texture = sized<rt_texture_desc>();
                 texture.path = material.texture.c_str();
+                texture.wrap_u = material.wrap_u;
+                texture.wrap_v = material.wrap_v;
                 known->second = sink_.texture(sink_.ctx, &texture);  // RT_NONE: the host has already warned
             }
             desc.texture = known->second;

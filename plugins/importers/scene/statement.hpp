@@ -28,6 +28,8 @@ class Statement {
     // The position of the last word that was read.
     Position last() const { return tokens_[at_ - 1].position; }
     bool done() const { return at_ == tokens_.size(); }
+    // Whether the next word is a key of this statement.
+    bool at_key() const;
 
     // Sets the keys of this statement. key() returns the index of the next one. A list of numbers ends where one of these keys
     // follows.
@@ -58,7 +60,6 @@ class Statement {
  private:
     const Token& take(const std::string& expected);
     void check_range(std::string_view what, float value, float least, float most) const;
-    bool at_key() const;
     std::string text(std::string_view what, size_t most_bytes);
     std::vector<std::string_view> key_names() const;
 

@@ -117,9 +117,17 @@ void read_ambient(Statement& s, Document& document, Diagnostics&) {
 }
 
 void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
-    enum { kColor, kReflect, kRefract, kIor, kSpecular, kShininess, kEmission, kTexture, kChecker };
-    s.expect_keys(
-        {{"color"}, {"reflect"}, {"refract"}, {"ior"}, {"specular"}, {"shininess"}, {"emission"}, {"texture"}, {"checker"}});
+    enum { kColor, kReflect, kRefract, kIor, kSpecular, kShininess, kEmission, kTexture, kChecker, kWrap };
+    s.expect_keys({{"color"},
+                   {"reflect"},
+                   {"refract"},
+                   {"ior"},
+                   {"specular"},
+                   {"shininess"},
+                   {"emission"},
+                   {"texture"},
+                   {"checker"},
+                   {"wrap"}});
     // Register the name before the keys are read, so that an error in a key does not make every use of the name an error.
     Material& material = document.materials.emplace_back();
     material.name = s.name("the material's name");
@@ -130,7 +138,7 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
     values.ior = 1.5f;
     values.shininess = 32;
     values.texture = RT_NONE;
-    Position refract_position = material.name.position;
+    Position refract_position = material.name.position, wrap_position;
     while (!s.done()) {
         switch (s.key()) {
             case kColor:
@@ -161,10 +169,20 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
             case kChecker:
                 values.flags |= RT_MATERIAL_CHECKER;
                 break;
+            case kWrap: {
+                const std::vector<std::string_view> modes = {"repeat", "clamp", "mirror"};
+                material.wrap_u = material.wrap_v = static_cast<rt_u32>(s.choice("wrap mode", modes));
+                wrap_position = s.last();
+                if (!s.done() && !s.at_key()) material.wrap_v = static_cast<rt_u32>(s.choice("wrap mode along v", modes));
+                break;
+            }
         }
     }
     // The texture is multiplied by the colour. Without a given colour, white leaves the texture unchanged.
     if (!material.texture.empty() && !s.given(kColor)) copy({1, 1, 1}, values.color);
+    if (s.given(kWrap) && material.texture.empty())
+        diagnostics.warning(wrap_position,
+                            "`wrap` has no effect, because material " + in_quotes(material.name.text) + " has no `texture`");
     const float sum = values.reflect + values.refract;
     if (sum > 1) {
         // .1 + .9 is not exactly 1, so a small excess is no reason for a warning.

@@ -2,6 +2,7 @@
 // linked, so that the calls can be looked at.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <map>
@@ -176,7 +177,9 @@ TEST(GltfMotion, PassesSkinsAndMorphs) {
     EXPECT_EQ(got.bones[0].node, 3u);
     EXPECT_EQ(got.bones[0].bone_from_mesh[3], 5);
     EXPECT_EQ(got.bones[0].bone_from_mesh[7], 6);
-    ASSERT_EQ(got.weights.size(), 2u);  // the third vertex has none
+    ASSERT_EQ(got.weights.size(), 3u);
+    EXPECT_EQ(got.weights[2].vertex, 2u) << "it has no weights, so it follows the first joint";
+    EXPECT_EQ(got.weights[2].bone, 0u);
     EXPECT_EQ(got.weights[0].weight, 2);
     EXPECT_EQ(got.weights[1].vertex, 1u);
     ASSERT_EQ(got.morph_vertices.size(), 1u);
@@ -213,7 +216,7 @@ TEST(GltfMotion, PassesChannelsAsBezierCurves) {
     EXPECT_TRUE(got.channels[4].spans.empty());
 }
 
-TEST(GltfMotion, ChecksJointsAndKeys) {
+TEST(GltfMotion, ChecksJoints) {
     const auto refusal = [](const std::function<void(nlohmann::json&)>& edit) {
         nlohmann::json file = everything();
         edit(file);
@@ -227,16 +230,76 @@ TEST(GltfMotion, ChecksJointsAndKeys) {
     EXPECT_EQ(refusal([](auto& f) { f["buffers"][1]["uri"] = data_uri(std::string("\0\0\0\0\7\0\0\0\0\0\0\0", 12)); }),
               "meshes[0].primitives[0].attributes.JOINTS_0: found joint number 7 at vertex 1, expected one of the 1 joints of "
               "skins[0]");
-    EXPECT_NE(refusal([](auto& f) {
-                  f["buffers"][5]["uri"] = data_uri(floats({4, 1}));
-              }).find("animations[0].samplers[0].input: found the time"),
-              std::string::npos);
-    EXPECT_EQ(refusal([](auto& f) { f["accessors"][8]["count"] = 1; }),
-              "accessors[8].count: found 1, expected 2 for animations[0].samplers[2].output");
     EXPECT_EQ(refusal([](auto& f) {
                   f["skins"][0]["joints"] = {2, 1};
               }),
               "skins[0].inverseBindMatrices: found 1 matrices, expected 2, one for each joint");
+    EXPECT_EQ(refusal([](auto& f) { f["skins"][0]["joints"] = nlohmann::json::array(); }),
+              "skins[0].joints: found no joint, expected one or more");
+}
+
+// A channel that is wrong is left out, with a warning of its place; the others are there.
+TEST(GltfMotion, LeavesWrongChannelsOut) {
+    const auto expect = [](const std::string& warning, size_t clips, size_t channels,
+                           const std::function<void(nlohmann::json&)>& edit) {
+        SCOPED_TRACE(warning);
+        nlohmann::json file = everything();
+        edit(file);
+        Recorder got;
+        got.load(file.dump());
+        EXPECT_EQ(got.clips.size(), clips);
+        EXPECT_EQ(got.channels.size(), channels);
+        EXPECT_EQ(got.instances.size(), 1u);
+        const auto is_it = [&](const std::string& w) { return w.find(warning) != std::string::npos; };
+        EXPECT_TRUE(std::any_of(got.warnings.begin(), got.warnings.end(), is_it)) << got.warnings.at(0);
+    };
+    const auto channel = [](nlohmann::json& f, size_t i) -> nlohmann::json& { return f["animations"][0]["channels"][i]; };
+    const auto sampler = [](nlohmann::json& f, size_t i) -> nlohmann::json& { return f["animations"][0]["samplers"][i]; };
+    // All three samplers have the times of one accessor.
+    expect(
+        "animations[0].samplers[0].input: found the time 1.000000 s of key 1 after 4.000000 s, expected times that increase; "
+        "the channel is left out",
+        0, 0, [](auto& f) {
+            f["buffers"][5]["uri"] = data_uri(floats({4, 1}));
+        });
+    expect("accessors[8].count: found 1, expected 2 for animations[0].samplers[2].output; the channel is left out", 1, 4,
+           [](auto& f) { f["accessors"][8]["count"] = 1; });
+    expect(
+        "animations[0].channels[1].target.path: found 'color', expected 'translation', 'rotation', 'scale' or 'weights'; the "
+        "channel is left out",
+        1, 2, [&](auto& f) { channel(f, 1)["target"]["path"] = "color"; });
+    expect("animations[0].channels[1].target: found no member 'node', expected the node that it moves; the channel", 1, 2,
+           [&](auto& f) { channel(f, 1)["target"].erase("node"); });
+    expect("animations[0].channels[1].target.node: found 7, expected the index of one of 3 nodes; the channel", 1, 2,
+           [&](auto& f) { channel(f, 1)["target"]["node"] = 7; });
+    expect("animations[0].channels[3].target: found a second channel for the scale of nodes[1], expected one; the channel", 1,
+           5, [&](auto& f) { f["animations"][0]["channels"].push_back(channel(f, 1)); });
+    expect("animations[0].channels[0].sampler: found 9, expected the index of one of 3 animations[0].samplers", 1, 4,
+           [&](auto& f) { channel(f, 0)["sampler"] = 9; });
+    expect("animations[0].samplers[1].interpolation: found 'SMOOTH'", 1, 2,
+           [&](auto& f) { sampler(f, 1)["interpolation"] = "SMOOTH"; });
+    expect("animations[0].samplers[1]: found no member 'output'", 1, 2, [&](auto& f) { sampler(f, 1).erase("output"); });
+    expect("animations[0].channels[2]: found no member 'target'", 1, 4, [&](auto& f) { channel(f, 2).erase("target"); });
+    expect("animations[0]: found no member 'samplers', expected it there; the animation is left out", 0, 0,
+           [](auto& f) { f["animations"][0].erase("samplers"); });
+    expect("animations[0].channels: found 5, expected an array; the animation is left out", 0, 0,
+           [](auto& f) { f["animations"][0]["channels"] = 5; });
+    expect("animations[0]: found no channel that moves something; the animation is left out", 0, 0,
+           [](auto& f) { f["animations"][0]["channels"] = nlohmann::json::array(); });
+    expect("animations[1].samplers: found", 1, 5, [](auto& f) {
+        f["animations"].push_back(
+            {{"samplers", "none"}, {"channels", nlohmann::json::array({f["animations"][0]["channels"][0]})}});
+    });
+}
+
+TEST(GltfMotion, IgnoresSamplersThatNoChannelUses) {
+    nlohmann::json file = everything();
+    file["animations"][0]["samplers"].push_back({{"input", 6}, {"output", 77}});
+    Recorder got;
+    got.load(file.dump());
+    EXPECT_EQ(got.channels.size(), 5u);
+    EXPECT_EQ(got.warnings.size(), 1u) << "that of the vertex without weights";
+    EXPECT_EQ(got.clips.at(0).end_s, 4);
 }
 
 // The host places what stands still (Gltf.PlacesWhatStandsStill).

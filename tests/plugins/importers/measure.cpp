@@ -9,15 +9,18 @@
 #include <stdexcept>
 
 #include "import/import.hpp"
+#include "import/importer_choice.hpp"
 
 namespace clarity::test {
 using namespace import;
 namespace fs = std::filesystem;
 
-Scene import_file(const std::string& path) {
+Scene import_file(const std::string& path, bool undeformed) {
     static const PluginRegistry plugins = PluginRegistry::discover();
     Progress progress;
-    return import_scene(plugins, {path}, ImportOptions{}, progress);
+    ImportOptions options;
+    if (undeformed) options.importers.push_back(kUndeformed);
+    return import_scene(plugins, {path}, options, progress);
 }
 
 TemporaryFolder::TemporaryFolder() {

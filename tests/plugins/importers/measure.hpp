@@ -8,8 +8,9 @@
 
 namespace clarity::test {
 
-// Imports through the built plugins, in the worker process. Throws what import_scene() throws.
-Scene import_file(const std::string& path);
+// Imports through the built plugins, in the worker process. undeformed: as the option --undeformed does. Throws what
+// import_scene() throws.
+Scene import_file(const std::string& path, bool undeformed = false);
 
 // A folder in the system's folder for temporary files. The destructor removes it and its contents.
 class TemporaryFolder {

@@ -81,6 +81,10 @@ TEST_P(MotionTruth, PosesMatchTheRecord) {
     if (!has_importer_for(file)) GTEST_SKIP() << "SKIPPED: the importer for " << file << " was not built";
     const Scene scene = import_file(file);
     expect_clips(scene, record["animations"]);
+    if (record["animations"].empty()) {
+        SCOPED_TRACE("at rest, as imported");
+        expect_pose(scene, record["times"][0]);
+    }
     for (const json& time : record["times"]) {
         SCOPED_TRACE("at " + time["t"].dump() + " s");
         expect_pose(posed(scene, evaluate(scene, "", time["t"])), time);

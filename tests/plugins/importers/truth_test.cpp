@@ -103,7 +103,8 @@ TEST_P(Truth, ImportMatchesTheRecord) {
     ASSERT_TRUE(truth["ok"].get<bool>());
     const bool is_fbx = truth.value("format", "") == "fbx";
 
-    const Scene scene = import_file(model.path());
+    // The records have the geometry as files store it, without what skins and morphs do.
+    const Scene scene = import_file(model.path(), true);
     const json& expected = truth.contains("static") ? truth["static"] : truth;
     EXPECT_EQ(scene.placed_triangle_count(), expected["triangles"].get<uint64_t>());
     if (expected["triangles"] > 0) {

@@ -21,7 +21,7 @@ light directional direction 0 -1 .5 color .5
 background 0.2 0.3 0.5
 ambient .1
 material glass color .9 1 1 reflect .1 refract .9 ior 1.5 specular 1 shininess 100 emission 0
-material "wood floor" texture "tex/wood floor.png" checker
+material "wood floor" texture "tex/wood floor.png" wrap clamp mirror checker
 sphere center 0 1 0 radius 1 material glass
 plane normal 0 1 0 offset 0 material "wood floor"
 polygon material glass vertices 0 0 0  2 0 0  2 2 0  0 2 0

@@ -86,6 +86,7 @@ void add_look_calls(rt_scene_sink& sink) {
     sink.texture = [](void* ctx, const rt_texture_desc* texture) -> rt_u32 {
         Recording& r = recording_of(ctx);
         r.textures.push_back(texture->path);
+        r.wraps.push_back({texture->wrap_u, texture->wrap_v});
         return r.refuse_textures ? RT_NONE : id_of(r.textures.size());
     };
     sink.material = [](void* ctx, const rt_material_desc* material) -> rt_u32 {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rt_plugin.h"
@@ -52,6 +53,7 @@ struct Recording {
     std::string why;  // the first failure
     std::vector<std::string> log, warnings;
     std::vector<std::string> textures;
+    std::vector<std::pair<rt_u32, rt_u32>> wraps;  // of the textures
     std::vector<RecordedMaterial> materials;
     std::vector<RecordedMesh> meshes;
     std::vector<rt_u32> instanced_meshes;

@@ -165,6 +165,25 @@ TEST(SceneFormat, ReadsEveryMaterialKey) {
     EXPECT_EQ(r.textures, std::vector<std::string>{"my wood.png"});  // the importer asks for a texture only once
 }
 
+TEST(SceneFormat, ReadsWrapModesOfTextures) {
+    const Recording r = import_good(
+        "material a texture t.png wrap clamp\n"
+        "material b wrap repeat mirror texture t.png\n"
+        "material c texture t.png\n"
+        "material d texture t.png wrap mirror color .5\n"
+        "material e texture t.png wrap clamp clamp\n");
+    using Wraps = std::vector<std::pair<rt_u32, rt_u32>>;
+    EXPECT_EQ(r.wraps, (Wraps{{RT_WRAP_CLAMP, RT_WRAP_CLAMP},
+                              {RT_WRAP_REPEAT, RT_WRAP_MIRROR},
+                              {RT_WRAP_REPEAT, RT_WRAP_REPEAT},
+                              {RT_WRAP_MIRROR, RT_WRAP_MIRROR}}));
+    EXPECT_EQ(r.materials.at(4).values.texture, r.materials.at(0).values.texture);
+    EXPECT_TRUE(r.warnings.empty());
+    const Recording none = import_good("material a wrap clamp\n");
+    ASSERT_EQ(none.warnings.size(), 1u);
+    EXPECT_NE(none.warnings[0].find("1:17"), std::string::npos) << none.warnings[0];
+}
+
 TEST(SceneFormat, MissingTextureIsNoError) {
     Recording r;
     r.refuse_textures = true;

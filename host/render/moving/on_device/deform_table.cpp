@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/motion/deform.hpp"
+
 namespace clarity {
 namespace {
 
@@ -49,13 +51,10 @@ DeformTable::DeformTable(const Scene& rest)
         place_of_mesh[m] = static_cast<rt_u32>(first_number.size());
         first_number.push_back(static_cast<rt_u32>(first));
         first += mesh.vertex_count;
-        const auto add = [&](const SharedArray<float>& from, std::vector<float>& to) {
-            if (from.empty()) return;
-            const auto begin = from.begin() + 3 * static_cast<std::ptrdiff_t>(mesh.first_vertex);
-            to.insert(to.end(), begin, begin + 3 * static_cast<std::ptrdiff_t>(mesh.vertex_count));
-        };
-        add(rest.positions, positions);
-        add(rest.normals, normals);
+        const StoredVertices stored = stored_vertices(rest, m);
+        const size_t numbers = 3 * size_t(mesh.vertex_count);
+        positions.insert(positions.end(), stored.positions, stored.positions + numbers);
+        if (stored.normals) normals.insert(normals.end(), stored.normals, stored.normals + numbers);
     }
     list_morphs(rest);
     list_weights(rest);

@@ -47,7 +47,7 @@ struct DeformTable {
     std::vector<rt_u32> first_number;   // of each of them
     std::vector<rt_u32> place_of_mesh;  // of each mesh of the scene: its place among those above; RT_NONE
     size_t vertices = 0;
-    std::vector<float> positions, normals;  // by number, at rest, 3 each; no normals if the scene has none
+    std::vector<float> positions, normals;  // by number, as stored, 3 each; no normals if the scene has none
     std::vector<float> dual_shares;         // by number, of skins that are blended
     ListsByVertex<MorphEntry> entries;      // ascending by target
     ListsByVertex<BoneWeight> weights;

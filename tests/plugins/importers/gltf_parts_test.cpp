@@ -1,0 +1,352 @@
+// gltf_parts_test.cpp -- one wrong part of a file costs that part, with a warning of its place, and the rest is read.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "gltf_model.hpp"
+#include "import/import.hpp"
+#include "measure.hpp"
+
+namespace clarity::test {
+namespace {
+
+// A picture of two by two texels, as TGA: red, green / blue, white from the top left.
+std::string picture() {
+    std::string tga = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0x20};
+    return tga + std::string("\x00\x00\xff\x00\xff\x00\xff\x00\x00\xff\xff\xff", 12);
+}
+
+// The square with a material that has everything, a camera and a light.
+Model rich() {
+    Model model = quad();
+    model.indices({0, 1, 3, 0, 3, 2});
+    model.primitive()["attributes"]["NORMAL"] =
+        model.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126, 3);
+    model.primitive()["attributes"]["TEXCOORD_0"] = model.add(std::vector<float>{0, 1, 1, 1, 0, 0, 1, 0}, "VEC2", 5126, 2);
+    model.primitive()["material"] = 0;
+    model["images"] = {{{"uri", "data:image/tga;base64," + base64(picture())}}};
+    model["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+    model["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    model["materials"] = {
+        {{"name", "paint"},
+         {"emissiveFactor", {0.5, 0.25, 0}},
+         {"pbrMetallicRoughness",
+          {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}}};
+    model["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    model["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
+    model["nodes"] = {{{"mesh", 0}}, {{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+    model["scenes"][0]["nodes"] = {0, 1};
+    return model;
+}
+
+class GltfParts : public testing::Test {
+ protected:
+    Scene import(Model& model) { return import_file(folder_.write("model.gltf", model.text())); }
+    // The scene after an edit, which has a warning with these words.
+    Scene spared(const std::string& warning, const std::function<void(Model&)>& edit) {
+        SCOPED_TRACE(warning);
+        Model model = rich();
+        edit(model);
+        try {
+            const Scene scene = import(model);
+            EXPECT_EQ(scene.placed_triangle_count(), 2u);
+            EXPECT_NEAR(scene.surface_area(), 1, 1e-6);
+            EXPECT_TRUE(has_warning(scene, warning)) << (scene.warnings.empty() ? "no warning" : scene.warnings[0]);
+            return scene;
+        } catch (const Error& error) {
+            ADD_FAILURE() << error.what();
+            return {};
+        }
+    }
+    static bool has_warning(const Scene& scene, const std::string& part) {
+        return std::any_of(scene.warnings.begin(), scene.warnings.end(),
+                           [&](const std::string& warning) { return warning.find(part) != std::string::npos; });
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(GltfParts, AreAllReadWhereNothingIsWrong) {
+    Model model = rich();
+    model["extensionsUsed"] = {"KHR_materials_nobody_knows", "KHR_lights_punctual"};
+    model["extras"] = 5;
+    model["materials"][0]["extensions"]["KHR_materials_nobody_knows"] = {{"factor", "often"}};
+    model["materials"][0]["extras"] = "x";
+    const Scene scene = import(model);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    EXPECT_EQ(scene.cameras.size(), 1u);
+    EXPECT_EQ(scene.lights.size(), 1u);
+    ASSERT_EQ(scene.textures.size(), 1u);
+    EXPECT_EQ(scene.textures[0].wrap, RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_MIRROR);
+    EXPECT_FALSE(scene.normals.empty());
+    EXPECT_FALSE(scene.uvs.empty());
+}
+
+TEST_F(GltfParts, CostCamerasAndLights) {
+    EXPECT_TRUE(
+        spared("nodes[1].camera: found 3, expected the index of one of 1 cameras; the camera is left out", [](Model& m) {
+            m["nodes"][1]["camera"] = 3;
+        }).cameras.empty());
+    EXPECT_TRUE(spared("cameras[0].perspective.yfov: found 'wide', expected a number; the camera", [](Model& m) {
+                    m["cameras"][0]["perspective"]["yfov"] = "wide";
+                }).cameras.empty());
+    const Scene dark = spared(
+        "extensions.KHR_lights_punctual.lights[0].type: found 'area', expected 'directional', 'point' or "
+        "'spot'; the light is left out",
+        [](Model& m) { m["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "area"; });
+    EXPECT_TRUE(dark.lights.empty());
+    EXPECT_EQ(dark.cameras.size(), 1u);
+    EXPECT_TRUE(spared("light: found 1, expected the index of one of 1", [](Model& m) {
+                    m["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 1;
+                }).lights.empty());
+    EXPECT_TRUE(spared("color: found an array of 2, expected 3 numbers", [](Model& m) {
+                    m["extensions"]["KHR_lights_punctual"]["lights"][0]["color"] = {1, 1};
+                }).lights.empty());
+}
+
+TEST_F(GltfParts, CostValuesOfMaterials) {
+    const Scene plain =
+        spared("baseColorFactor: found an array of 3, expected 4 numbers; the material keeps the default there", [](Model& m) {
+            m["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0, 0};
+        });
+    ASSERT_EQ(plain.materials.size(), 2u);
+    EXPECT_EQ(plain.materials[1].values.color[0], 1);
+    EXPECT_EQ(plain.materials[1].values.emission[0], 0.5f) << "the rest of it";
+    EXPECT_NE(plain.materials[1].values.texture, RT_NONE);
+    spared("emissiveFactor: found 'much', expected an array", [](Model& m) { m["materials"][0]["emissiveFactor"] = "much"; });
+    spared("metallicFactor: found null, expected a number",
+           [](Model& m) { m["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = nullptr; });
+    const Scene none = spared(
+        "meshes[0].primitives[0].material: found 4, expected the index of one of 1 materials; it gets the "
+        "default material",
+        [](Model& m) { m.primitive()["material"] = 4; });
+    ASSERT_FALSE(none.triangle_materials.empty());
+    EXPECT_EQ(none.triangle_materials[0], 0u);
+}
+
+TEST_F(GltfParts, CostTexturesAndImages) {
+    const auto texture_of = [](const Scene& scene) { return scene.materials.at(1).values.texture; };
+    EXPECT_EQ(texture_of(spared("baseColorTexture.index: found 9, expected the index of one of 1 textures",
+                                [](Model& m) { m["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 9; })),
+              RT_NONE);
+    EXPECT_EQ(texture_of(spared("images[0]: found no member 'uri', expected it there; the image is left out",
+                                [](Model& m) { m["images"][0] = json::object(); })),
+              RT_NONE);
+    EXPECT_EQ(texture_of(spared("at character 23, expected base64; the image is left out",
+                                [](Model& m) { m["images"][0]["uri"] = "data:image/png;base64,A!BC"; })),
+              RT_NONE);
+    EXPECT_EQ(texture_of(spared("'gone.png'", [](Model& m) { m["images"][0]["uri"] = "gone.png"; })), RT_NONE);
+    EXPECT_EQ(texture_of(spared("images[0].bufferView: found 44",
+                                [](Model& m) {
+                                    m["images"][0] = {{"bufferView", 44}};
+                                })),
+              RT_NONE);
+    const Scene wrong = spared(
+        "samplers[0].wrapT: found 7, expected 10497 (repeat), 33071 (clamp to edge) or 33648 (mirrored "
+        "repeat); the texture repeats",
+        [](Model& m) { m["samplers"][0]["wrapT"] = 7; });
+    EXPECT_NE(texture_of(wrong), RT_NONE);
+    spared("textures[0].sampler: found 2, expected the index of one of 1 samplers",
+           [](Model& m) { m["textures"][0]["sampler"] = 2; });
+}
+
+TEST_F(GltfParts, CostNormalsAndTextureCoordinates) {
+    EXPECT_TRUE(
+        spared("attributes.NORMAL: found 99", [](Model& m) { m.primitive()["attributes"]["NORMAL"] = 99; }).normals.empty());
+    EXPECT_TRUE(spared("; the texture coordinates are left out", [](Model& m) { m["accessors"][3]["count"] = 3; }).uvs.empty());
+}
+
+TEST_F(GltfParts, CostListsThatAreNone) {
+    for (const char* name : {"cameras", "animations", "textures", "images", "samplers"})
+        spared(std::string(name) + ": found an object, expected an array; it counts as empty",
+               [&](Model& m) { m[name] = json::object(); });
+    EXPECT_EQ(spared("materials: found 5, expected an array", [](Model& m) { m["materials"] = 5; }).triangle_materials[0], 0u);
+    spared("extensions.KHR_lights_punctual.lights: found null, expected an array; the light is left out",
+           [](Model& m) { m["extensions"]["KHR_lights_punctual"]["lights"] = nullptr; });
+}
+
+// What nothing uses is not looked at; names are only names.
+TEST_F(GltfParts, ThatNothingUsesAreIgnored) {
+    Model model = rich();
+    model["accessors"].push_back({{"bufferView", 1000}, {"componentType", 1}, {"count", -4}, {"type", "VEC9"}});
+    model["bufferViews"].push_back({{"buffer", 7}, {"byteLength", "long"}});
+    model["skins"] = {{{"joints", {55}}}};
+    model["images"].push_back({{"uri", "gone.png"}});
+    model["textures"].push_back({{"source", 44}});
+    model["materials"].push_back({{"pbrMetallicRoughness", 5}});
+    model["cameras"].push_back(17);
+    model["meshes"].push_back({{"name", 5}});
+    model["nodes"][0]["name"] = 12;
+    const Scene scene = import(model);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    EXPECT_EQ(scene.placed_triangle_count(), 2u);
+}
+
+TEST_F(GltfParts, AStrideOfZeroIsPacked) {
+    Model model = rich();
+    for (json& view : model["bufferViews"]) view["byteStride"] = 0;
+    const Scene scene = import(model);
+    EXPECT_NEAR(scene.surface_area(), 1, 1e-6);
+    EXPECT_TRUE(has_warning(scene, "bufferViews[0].byteStride: found 0, expected 12 or more")) << scene.warnings.at(0);
+    EXPECT_EQ(scene.warnings.size(), 4u) << "one for each view";
+}
+
+TEST_F(GltfParts, ThatAreNotReadYetAreNamed) {
+    spared("meshes[0].primitives[0].attributes.COLOR_0: colours of vertices are not read",
+           [](Model& m) { m.primitive()["attributes"]["COLOR_0"] = m.add(std::vector<float>(12, 1), "VEC3", 5126, 3); });
+    spared("materials[0].alphaMode: MASK is not read", [](Model& m) { m["materials"][0]["alphaMode"] = "MASK"; });
+    spared("materials[0].alphaMode: BLEND is not read for the alpha of its texture",
+           [](Model& m) { m["materials"][0]["alphaMode"] = "BLEND"; });
+    spared("materials[0].alphaMode: found 'GLASS'", [](Model& m) { m["materials"][0]["alphaMode"] = "GLASS"; });
+    Model opaque = rich();
+    opaque["materials"][0]["alphaMode"] = "OPAQUE";
+    EXPECT_TRUE(import(opaque).warnings.empty());
+}
+
+// What makes geometry doubtful stays an error.
+TEST_F(GltfParts, OfGeometryAreStillRefused) {
+    const auto refused = [&](const std::string& part, const std::function<void(Model&)>& edit) {
+        Model model = rich();
+        edit(model);
+        try {
+            import(model);
+            ADD_FAILURE() << "was imported; expected " << part;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        }
+    };
+    refused("accessors[0].bufferView: found 90", [](Model& m) { m["accessors"][0]["bufferView"] = 90; });
+    refused("bufferViews[0].byteStride: found 4", [](Model& m) { m["bufferViews"][0]["byteStride"] = 4; });
+    refused("meshes[0].primitives[0].indices: found 70", [](Model& m) { m.primitive()["indices"] = 70; });
+    refused("nodes[0].translation", [](Model& m) { m["nodes"][0]["translation"] = {1, 2}; });
+    refused("nodes[0].skin: found 3", [](Model& m) { m["nodes"][0]["skin"] = 3; });
+}
+
+TEST_F(GltfParts, TexturesThatDifferInWrapShareTheirPicture) {
+    Model model = rich();
+    model["samplers"].push_back({{"wrapS", 10497}});
+    model["textures"].push_back({{"source", 0}, {"sampler", 1}});
+    model["textures"].push_back({{"source", 0}});
+    model["textures"].push_back({{"source", 0}, {"sampler", 0}});
+    json second = model.primitive();
+    for (size_t i = 1; i < 4; ++i) {
+        model["materials"].push_back(model["materials"][0]);
+        model["materials"][i]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = i;
+        second["material"] = i;
+        model["meshes"][0]["primitives"].push_back(second);
+    }
+    const Scene scene = import(model);
+    ASSERT_EQ(scene.textures.size(), 2u);
+    EXPECT_EQ(scene.textures[0].first, scene.textures[1].first);
+    EXPECT_EQ(scene.texels.size(), 4u);
+    EXPECT_NE(scene.materials.at(1).values.texture, scene.materials.at(2).values.texture);
+    EXPECT_EQ(scene.materials.at(2).values.texture, scene.materials.at(3).values.texture);
+    EXPECT_EQ(scene.materials.at(1).values.texture, scene.materials.at(4).values.texture);
+}
+
+// ---- URIs
+
+class GltfUri : public GltfParts {
+ protected:
+    // Whether the square is found in a file of this name that `uri` names.
+    void expect_found(const std::string& file, const std::string& uri) {
+        Model model = quad();
+        model.indices({0, 1, 3, 0, 3, 2});
+        json text = json::parse(model.text());
+        text["buffers"][0]["uri"] = uri;
+        std::filesystem::create_directories(std::filesystem::path(folder_.path(file)).parent_path());
+        folder_.write(file, model.bytes());
+        try {
+            EXPECT_NEAR(import_file(folder_.write("model.gltf", text.dump())).surface_area(), 1, 1e-6) << uri;
+        } catch (const Error& error) {
+            ADD_FAILURE() << uri << ": " << error.what();
+        }
+        std::filesystem::remove(folder_.path(file));
+    }
+};
+
+TEST_F(GltfUri, MayBePercentEncodedOrNot) {
+    expect_found("a b.bin", "a%20b.bin");
+    expect_found("a b.bin", "a b.bin");
+    expect_found("100%.bin", "100%25.bin");
+    expect_found("100%.bin", "100%.bin");
+    expect_found("a%20b.bin", "a%2520b.bin");
+    expect_found("a%20b.bin", "a%20b.bin");
+    expect_found("p\xC5\x99\xC3\xADvod.bin", "p%C5%99%C3%ADvod.bin");
+    expect_found("p\xC5\x99\xC3\xADvod.bin", "p%c5%99%c3%advod.bin");
+    expect_found("p\xC5\x99\xC3\xADvod.bin", "p\xC5\x99\xC3\xADvod.bin");
+    expect_found("\xE6\xA8\xA1\xE5\x9E\x8B.bin", "%E6%A8%A1%E5%9E%8B.bin");
+    expect_found("parts/one.bin", "parts%2Fone.bin");
+    expect_found("parts/one.bin", "./parts/../parts/one.bin");
+    expect_found("parts/one.bin", "parts\\one.bin");
+    expect_found("a#1+b.bin", "a%231+b.bin");
+    expect_found("a#1.bin", "a#1.bin");
+    expect_found("one.bin", "one.bin?v=1");
+    expect_found("a:b.bin", "a:b.bin");
+}
+
+TEST_F(GltfUri, StaysInTheFolder) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    std::filesystem::create_directories(folder_.path("in"));
+    folder_.write("out.bin", model.bytes());
+    json text = json::parse(model.text());
+    for (const char* uri : {"..%2Fout.bin", "%2e%2e/out.bin", "a/%2E%2E/../out.bin", "..\\out.bin", "%2Fetc%2Fhostname",
+                            "file:///etc/hostname", "out%00.bin"}) {
+        text["buffers"][0]["uri"] = uri;
+        try {
+            import_file(folder_.write("in/model.gltf", text.dump()));
+            ADD_FAILURE() << uri << " was read";
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("expected the name of a file in the scene's folder"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
+TEST_F(GltfUri, MayBeDataInManyForms) {
+    Model model = quad();
+    model.indices({0, 1, 3, 0, 3, 2});
+    json text = json::parse(model.text());
+    const std::string plain = base64(model.bytes());
+    std::string encoded, broken_lines, percent;
+    for (size_t i = 0; i < plain.size(); ++i) {
+        const char c = plain[i];
+        encoded += c == '+' ? "%2B" : c == '/' ? "%2f" : c == '=' ? "%3D" : std::string(1, c);
+        broken_lines += c + std::string(i % 20 == 19 ? "\r\n " : "");
+    }
+    for (const char c : model.bytes()) {
+        char code[4];
+        std::snprintf(code, sizeof code, "%%%02x", static_cast<unsigned char>(c));
+        percent += code;
+    }
+    for (const std::string& uri : {"data:;base64," + plain, "DATA:application/gltf-buffer;BASE64," + plain,
+                                   "data:;base64," + encoded, "data:application/octet-stream;name=ab.bin;base64," + plain,
+                                   "data:a/b;charset=x;base64," + broken_lines, "data:application/octet-stream," + percent}) {
+        text["buffers"][0]["uri"] = uri;
+        try {
+            EXPECT_NEAR(import_file(folder_.write("model.gltf", text.dump())).surface_area(), 1, 1e-6) << uri;
+        } catch (const Error& error) {
+            ADD_FAILURE() << uri.substr(0, 50) << ": " << error.what();
+        }
+    }
+}
+
+TEST_F(GltfUri, OfImagesAreDecodedToo) {
+    Model model = rich();
+    for (const auto& [file, uri] : std::vector<std::pair<std::string, std::string>>{{"wood 1.tga", "wood%201.tga"},
+                                                                                    {"50%.tga", "50%25.tga"},
+                                                                                    {"a%20b.tga", "a%20b.tga"},
+                                                                                    {"h\xC3\xA4.tga", "h%C3%A4.tga"}}) {
+        folder_.write(file, picture());
+        model["images"][0] = {{"uri", uri}};
+        const Scene scene = import(model);
+        EXPECT_EQ(scene.textures.size(), 1u) << uri;
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        std::filesystem::remove(folder_.path(file));
+    }
+}
+
+}  // namespace
+}  // namespace clarity::test
