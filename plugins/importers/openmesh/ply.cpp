@@ -292,7 +292,7 @@ Reading read_ply(const Source& source, FlatMesh& mesh) {
     // Triangles of strips have no uvs of corners.
     if (!mesh.uv_of_corner.empty()) mesh.uv_of_corner.resize(mesh.corners.size(), RT_NONE);
     for (const Element& element : header.elements)
-        if (element.has(Role::color))
+        if (element.has_colors() && element.kind != Kind::other)
             warn(source, std::string("its ") + (element.kind == Kind::faces ? "faces" : "vertices") +
                              " have colours, which are left out");
     Reading reading;

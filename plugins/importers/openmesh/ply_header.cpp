@@ -50,9 +50,6 @@ constexpr NamedRole kRoles[] = {
     {"v", Kind::vertices, false, Role::v},
     {"t", Kind::vertices, false, Role::v},
     {"texture_v", Kind::vertices, false, Role::v},
-    {"red", Kind::vertices, false, Role::color},
-    {"diffuse_red", Kind::vertices, false, Role::color},
-    {"red", Kind::faces, false, Role::color},
     {"vertex_indices", Kind::faces, true, Role::indices},
     {"vertex_index", Kind::faces, true, Role::indices},
     {"texcoord", Kind::faces, true, Role::texcoords},
@@ -157,6 +154,17 @@ void check(const Header& header) {
 
 bool Element::has(Role role) const {
     return std::any_of(properties.begin(), properties.end(), [&](const Property& p) { return p.role == role; });
+}
+
+bool Element::has_colors() const {
+    for (const std::string prefix : {"", "diffuse_"}) {
+        const auto named = [&](const char* name) {
+            return std::any_of(properties.begin(), properties.end(),
+                               [&](const Property& p) { return p.name == prefix + name; });
+        };
+        if (named("red") && named("green") && named("blue")) return true;
+    }
+    return false;
 }
 
 const Element* Header::find(Kind kind) const {

@@ -14,7 +14,7 @@ struct Type {
     bool is_float() const { return number == Number::float32 || number == Number::float64; }
 };
 // What the importer takes from a property. Others are passed over.
-enum class Role { none, x, y, z, nx, ny, nz, u, v, indices, texcoords, color };
+enum class Role { none, x, y, z, nx, ny, nz, u, v, indices, texcoords };
 struct Property {
     std::string name;
     const Type* type = nullptr;
@@ -29,6 +29,7 @@ struct Element {
     std::vector<Property> properties;
     Kind kind = Kind::other;
     bool has(Role role) const;
+    bool has_colors() const;  // red, green and blue
 };
 
 struct Header {

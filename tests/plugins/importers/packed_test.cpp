@@ -45,7 +45,7 @@ std::string refusal(const std::string& path) {
         import_file(path);
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), Exit::import_failed);
-        EXPECT_EQ(std::string(error.what()).compare(0, path.size() + 2, path + ": "), 0) << error.what();
+        EXPECT_EQ(std::string(error.what()).compare(0, path.size() + 1, path + ":"), 0) << error.what();
         return error.what();
     }
     return "";
@@ -78,7 +78,7 @@ TEST(PackedFile, IsLoadedByOtherFiles) {
     const std::string text = "load roof.ply.gz\nload roof.ply.gz\n";
     EXPECT_EQ(import_file(folder.write("two.scene", text)).instances.size(), 2u);
     EXPECT_EQ(import_file(folder.write("two.scene.gz", packed(text))).instances.size(), 2u);
-    const std::string path = folder.write("bad.scene.gz", packed("light point 0 0 0\nwrong 1\n"));
+    const std::string path = folder.write("bad.scene.gz", packed("light position 0 0 0\nwrong 1\n"));
     EXPECT_NE(refusal(folder.write("deep.scene", "load bad.scene.gz\n")).find("bad.scene.gz"), std::string::npos);
     try {
         import_file(path);
