@@ -132,10 +132,13 @@ std::string difference(const Scene& scene, const Contents& truth) {
     const Bounds bounds = scene.bounds();
     double size = 0;
     for (int k = 0; k < 3; ++k) size = std::max(size, truth.hi[k] - truth.lo[k]);
-    for (int k = 0; k < 3; ++k)
-        if (!(std::fabs(bounds.min[k] - truth.lo[k]) <= 1e-3 * size && std::fabs(bounds.max[k] - truth.hi[k]) <= 1e-3 * size))
-            return std::string("goes from ") + exact_text(bounds.min[k]) + " to " + exact_text(bounds.max[k]) + " along " +
-                   "xyz"[k] + ", not from " + exact_text(truth.lo[k]) + " to " + exact_text(truth.hi[k]);
+    for (int k = 0; k < 3; ++k) {
+        const double lo = bounds.min[k] + scene.origin[k], hi = bounds.max[k] + scene.origin[k];
+        if (!(std::fabs(lo - truth.lo[k]) <= 1e-3 * size && std::fabs(hi - truth.hi[k]) <= 1e-3 * size))
+            return std::string("goes from ") + exact_text(static_cast<float>(lo)) + " to " +
+                   exact_text(static_cast<float>(hi)) + " along " + "xyz"[k] + ", not from " + exact_text(truth.lo[k]) +
+                   " to " + exact_text(truth.hi[k]);
+    }
     return {};
 }
 
