@@ -95,10 +95,11 @@ std::string difference_of_corners(const Scene& scene, const Contents& truth) {
     const double room = kRoom * double(scene.bounds().diagonal());
     std::vector<std::vector<std::string>> there(truth.corners.size());
     std::vector<uint8_t> found(truth.corners.size(), 0);
+    const Vec origin{scene.origin[0], scene.origin[1], scene.origin[2]};
     for_each_triangle(scene, [&](const WorldCorner(&corners)[3], double) {
         for (const WorldCorner& corner : corners)
             for (size_t i = 0; i < truth.corners.size(); ++i) {
-                if (found[i] || length(corner.at - truth.corners[i].at) > room) continue;
+                if (found[i] || length(corner.at - (truth.corners[i].at - origin)) > room) continue;
                 if (has_all(corner, truth.corners[i])) {
                     found[i] = 1;
                     continue;
@@ -176,11 +177,13 @@ std::string difference(const Scene& scene, const Contents& truth) {
         const Bounds bounds = scene.bounds();
         double size = 0;
         for (size_t k = 0; k < 3; ++k) size = std::max(size, hi[k] - lo[k]);
-        for (size_t k = 0; k < 3; ++k)
-            if (!(std::fabs(double(bounds.min[k]) - lo[k]) <= kRoom * size &&
-                  std::fabs(double(bounds.max[k]) - hi[k]) <= kRoom * size))
-                return std::string("goes from ") + exact_text(bounds.min[k]) + " to " + exact_text(bounds.max[k]) + " along " +
-                       "xyz"[k] + ", not from " + exact_text(lo[k]) + " to " + exact_text(hi[k]);
+        for (size_t k = 0; k < 3; ++k) {
+            const double least = bounds.min[k] + scene.origin[k], most = bounds.max[k] + scene.origin[k];
+            if (!(std::fabs(least - lo[k]) <= kRoom * size && std::fabs(most - hi[k]) <= kRoom * size))
+                return std::string("goes from ") + exact_text(static_cast<float>(least)) + " to " +
+                       exact_text(static_cast<float>(most)) + " along " + "xyz"[k] + ", not from " + exact_text(lo[k]) + " to " +
+                       exact_text(hi[k]);
+        }
     }
     if (truth.volume) why = difference_of_volume(scene, *truth.volume);
     return why.empty() ? difference_of_corners(scene, truth) : why;

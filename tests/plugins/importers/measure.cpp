@@ -85,7 +85,9 @@ std::vector<InstanceMeasure> measure_instances(const Scene& scene) {
             for (int i = 0; i < 3; ++i) {
                 p[i] = transform_point(instance.world_from_object,
                                        &scene.positions[3 * size_t(scene.triangles[3 * size_t(t) + i])]);
-                measure.bounds.add(p[i].data());
+                float in_file[3];
+                for (int k = 0; k < 3; ++k) in_file[k] = static_cast<float>(p[i][k] + scene.origin[k]);
+                measure.bounds.add(in_file);
             }
             double e[3], f[3];
             for (int k = 0; k < 3; ++k) {
