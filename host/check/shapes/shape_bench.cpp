@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

@@ -1,8 +1,8 @@
 // frame_parts.hpp -- programs that do less of a frame, or some of it twice: what the difference takes is what that part takes.
 #pragma once
 #include "device/device.hpp"
-#include "render/frame/prepared.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/launch/prepared.hpp"
 
 namespace clarity {
 

@@ -13,13 +13,13 @@
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
 #include "render/film/overflow_counter.hpp"
-#include "render/frame/frame_constants.hpp"
-#include "render/frame/launch.hpp"
-#include "render/frame/view_buffers.hpp"
-#include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
-#include "render/queries/ray_queries.hpp"
+#include "render/launch/frame_constants.hpp"
+#include "render/launch/launch.hpp"
+#include "render/launch/view_buffers.hpp"
 #include "render/settings/aov.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
+#include "render/tracers/wavefront/wavefront.hpp"
 
 namespace clarity {
 namespace {

@@ -10,10 +10,10 @@
 #include "render/film/async_readback.hpp"
 #include "render/film/image_io.hpp"
 #include "render/frame/frame_stats.hpp"
-#include "render/frame/prepared.hpp"
-#include "render/queries/ray_query.hpp"
+#include "render/launch/prepared.hpp"
 #include "render/settings/false_color_scale.hpp"
 #include "render/settings/view.hpp"
+#include "render/tracers/rays/ray_query.hpp"
 
 namespace clarity {
 

@@ -7,13 +7,13 @@
 #include "render/accel/memory_plan.hpp"
 #include "render/film/film.hpp"
 #include "render/film/overflow_counter.hpp"
-#include "render/frame/device_scene.hpp"
-#include "render/frame/frame_constants.hpp"
-#include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/launch/device_scene.hpp"
+#include "render/launch/frame_constants.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/view.hpp"
+#include "render/tracers/wavefront/wavefront.hpp"
 #include "render/trial/trial.hpp"
 
 #include <algorithm>

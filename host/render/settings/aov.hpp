@@ -10,7 +10,7 @@ namespace clarity {
 
 // One row of the table.
 struct Aov {
-    // The program that computes it: the chosen tracer; the iterative tracer, counting generations; or cl/tracers/aov.cl.
+    // The program that computes it: the chosen tracer; the iterative tracer, counting generations; or cl/tracers/aov/aov.cl.
     enum class Program { color, generations, camera_rays };
     // The format of a film's pixel. colors: sums of r, g, b and the number of samples. numbers: the bits of an int, -1: none.
     // vectors: three floats. distances, amounts: one float.

@@ -40,8 +40,8 @@ std::vector<const rt_plugin*> plugins_with_kernels(const Prepared& prepared) {
     return plugins;
 }
 
-// What has to be tried: "cl/tracers/iterative.cl, changed from line 12 on". Empty: these kernels are the program's own, and the
-// driver is trusted.
+// What has to be tried: "cl/tracers/iterative/iterative.cl, changed from line 12 on". Empty: these kernels are the program's
+// own, and the driver is trusted.
 struct Suspects {
     std::string text;
     SourceLocation first;  // of what was edited; without a message

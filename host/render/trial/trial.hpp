@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "base/progress.hpp"
-#include "render/frame/prepared.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/launch/prepared.hpp"
 
 namespace clarity {
 

@@ -45,8 +45,8 @@ TEST(KernelTable, ColorsByPartTracerAndLayout) {
     const auto headers = [&](const Layout& layout) {
         return std::string(kernel_row({KernelKind::color, FramePart::whole, settings, layout}).headers.back());
     };
-    EXPECT_EQ(headers(gpu), "tracers/iterative_single.h") << "one pixel a work-item";
-    EXPECT_EQ(headers(cpu), "tracers/generations.h");
+    EXPECT_EQ(headers(gpu), "tracers/iterative/iterative_single.h") << "one pixel a work-item";
+    EXPECT_EQ(headers(cpu), "tracers/iterative/generations.h");
 }
 
 // Kernels of several lanes do not compile for GPUs.

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/log.hpp"
-#include "render/frame/inspect.hpp"
-#include "render/queries/ray_blocks.hpp"
+#include "render/tracers/inspect/inspect.hpp"
+#include "render/tracers/rays/ray_blocks.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"

@@ -1,0 +1,114 @@
+#include "render/tracers/inspect/inspect.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
+#include "render/film/overflow_counter.hpp"
+#include "render/kernels/program_cache.hpp"
+#include "render/launch/frame_constants.hpp"
+#include "render/launch/view_buffers.hpp"
+#include "render/trial/trial.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr cl_uint kMostRecords = 4096;  // 400 kB; a pixel of a typical picture has fewer than 100
+constexpr unsigned kSummaryWords = 5;   // as inspect.cl writes them
+
+std::array<float, 3> three(const rt_f32* v) {
+    return {v[0], v[1], v[2]};
+}
+
+RayRecord record_of(const rt_ray_record& r) {
+    RayRecord record;
+    record.kind = static_cast<RayRecord::Kind>(r.kind);
+    record.fate = static_cast<RayRecord::Fate>(r.fate);
+    record.parent = r.parent;
+    record.generation = r.generation;
+    record.origin = three(r.origin);
+    record.direction = three(r.direction);
+    record.t = r.t;
+    record.weight = three(r.weight);
+    record.light = three(r.light);
+    record.prim = r.prim;
+    record.instance = r.instance;
+    record.material = r.material;
+    record.light_index = r.light_index;
+    record.occluded = r.occluded != 0;
+    record.steps = r.steps;
+    record.leaf_tests = r.leaf_tests;
+    return record;
+}
+
+}  // namespace
+
+static_assert(sizeof(rt_ray_record) == 96);
+static_assert(RT_RAY_SHADOW == static_cast<rt_u32>(RayRecord::Kind::shadow) &&
+              RT_FATE_UNASKED == static_cast<rt_u32>(RayRecord::Fate::unasked));
+
+struct Inspector::Impl {
+    explicit Impl(std::shared_ptr<Device> d)
+        : device(std::move(d)), programs(device), queue(device->context(), device->info().cl_device) {}
+
+    std::shared_ptr<Device> device;
+    ProgramCache programs;
+    cl::CommandQueue queue;  // its own, so that frames continue in the device's queue
+    ViewBuffers view;
+    GrowingBuffer records{CL_MEM_READ_WRITE}, summary{CL_MEM_WRITE_ONLY}, distances{CL_MEM_READ_WRITE};
+};
+
+Inspector::Inspector(std::shared_ptr<Device> device) {
+    wrap_cl_errors(*device, "preparing the inspector", [&] { impl_ = std::make_unique<Impl>(device); });
+}
+Inspector::~Inspector() {
+    if (impl_ && impl_->device->loss()->stuck()) never_release(std::shared_ptr<Impl>(std::move(impl_)));
+}
+
+RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y) {
+    Impl& im = *impl_;
+    const unsigned width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
+    if (x >= width || y >= height)
+        throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
+                                     std::to_string(width) + "x" + std::to_string(height));
+    const Layout& layout = prepared.layout;
+    Progress never_cancelled;
+    const auto program = tried_program(im.programs, prepared, KernelKind::inspect, never_cancelled);
+    return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
+        const cl::Context& context = im.device->context();
+        im.view.write(im.queue, *prepared.scene, *prepared.on_device, {make_frame(view, settings, layout, *prepared.accel, 0)},
+                      view);
+        const cl::Buffer& records = im.records.fit(context, kMostRecords * sizeof(rt_ray_record));
+        const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
+        const PixelPlace place = layout.place_of(x, y, width);
+        cl::Kernel kernel = program->kernel();
+        cl_uint at = 0;
+        kernel.setArg(at++, im.view.frame());
+        kernel.setArg(at++, cl_uint(place.group));
+        kernel.setArg(at++, cl_uint(place.packet));
+        kernel.setArg(at++, cl_uint(place.pixel));
+        kernel.setArg(at++, records);
+        kernel.setArg(at++, kMostRecords);
+        kernel.setArg(at++, summary);
+        kernel.setArg(at++, im.distances.fit(context, layout.rays() * sizeof(float)));
+        im.view.bind(*prepared.on_device, kernel, at);
+        const size_t items = layout.local_size();
+        im.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(items));
+        finish(*im.device, im.queue, "following the rays of a pixel");
+
+        rt_u32 found[kSummaryWords] = {};
+        im.queue.enqueueReadBuffer(summary, CL_TRUE, 0, sizeof found, found);
+        std::vector<rt_ray_record> read(std::min<size_t>(found[0], kMostRecords));
+        if (!read.empty()) im.queue.enqueueReadBuffer(records, CL_TRUE, 0, read.size() * sizeof(rt_ray_record), read.data());
+        RayTree tree;
+        tree.truncated = found[0] > kMostRecords;
+        std::memcpy(tree.color.data(), found + 1, sizeof tree.color);
+        tree.overflowed = found[4];
+        report_overflows(tree.overflowed, prepared.accel->plugin->id);
+        for (const rt_ray_record& record : read) tree.rays.push_back(record_of(record));
+        return tree;
+    });
+}
+
+}  // namespace clarity

@@ -1,0 +1,68 @@
+// ray_queries.hpp -- traces the caller's own rays with the traversals that pictures use.
+#pragma once
+#include <map>
+#include <tuple>
+
+#include "device/device.hpp"
+#include "render/film/overflow_counter.hpp"
+#include "render/kernels/kernel_source.hpp"
+#include "render/kernels/layout.hpp"
+#include "render/kernels/program_cache.hpp"
+#include "render/launch/launch.hpp"
+#include "render/launch/prepared.hpp"
+#include "render/launch/view_buffers.hpp"
+#include "render/tracers/rays/autotuner.hpp"
+#include "render/tracers/rays/dynamic_fetch.hpp"
+#include "render/tracers/rays/ray_blocks.hpp"
+#include "render/tracers/rays/ray_query.hpp"
+#include "render/tracers/rays/requeued_rays.hpp"
+
+namespace clarity {
+
+// Ray queries on one device, and the choice of the fastest kernel for them. Used from one thread.
+class RayQueries {
+ public:
+    explicit RayQueries(std::shared_ptr<Device> device)
+        : device_(device), programs_(device), requeued_rays_(device), dynamic_fetch_(device) {}
+    // Traces the rays and returns the kernel's time, ms by the device's clock. If `hits` is null, the answers stay on the
+    // device. Throws Error(failed) if the rays were packed for another number of lanes. If traversal stacks of a debug program
+    // were full, this is logged as an error.
+    double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
+    // How the last trace() ran.
+    RayTuning tuning() const { return tuning_; }
+    // How many traversal stacks were full in the last trace(). 0 for programs that are not for debugging.
+    uint64_t overflows() const { return overflowed_; }
+
+ private:
+    LaunchTimes trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout, size_t blocks,
+                              bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out);
+
+    std::shared_ptr<Device> device_;
+    ProgramCache programs_;  // of all kinds of kernels for ray queries
+    ViewBuffers view_;
+    std::map<KernelKind, Launcher> launchers_;  // for variants of one launch
+    RequeuedRays requeued_rays_;
+    DynamicFetch dynamic_fetch_;
+    // What the launchers' pace depends on. If it stays the same, a short query is a single launch.
+    struct Asked {
+        std::shared_ptr<const DeviceScene> scene;
+        std::shared_ptr<const TraceProgram> program;  // the program of pictures: it changes with the settings
+        size_t blocks = 0;
+        bool any_hit = false, count = false, brief = false;
+        bool operator==(const Asked& o) const {
+            return std::tie(scene, program, blocks, any_hit, count, brief) ==
+                   std::tie(o.scene, o.program, o.blocks, o.any_hit, o.count, o.brief);
+        }
+    };
+    Asked last_;
+    // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
+    uint64_t packing_ = 0;
+    std::vector<KernelKind> kinds_;
+    Autotuner autotuner_;
+    RayTuning tuning_;
+    uint64_t overflowed_ = 0;
+    OverflowCounter overflows_;  // used for debug programs
+    GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
+};
+
+}  // namespace clarity
