@@ -37,7 +37,7 @@ RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, v
 }
 
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_aov(const constant rt_frame *frame, const uint first_group, global float *out, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+trace_aov(const constant rt_frame *frame, const uint first_group, global float *film, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint blocks = RT_BLOCKS(frame);
@@ -59,7 +59,7 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
             RT_COUNT_OVERFLOW(hits + b)
             vint in_x, in_y;
             const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));
-            if (bits != 0u) rt_store_aov(&ctx, frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b, hits + b, bits, out);
+            if (bits != 0u) rt_store_aov(&ctx, frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b, hits + b, bits, film);
         }
     }
 }

@@ -1,10 +1,10 @@
-/* inspect.h -- records the rays of one pixel while its packet is traced.
+/* recorder.h -- records the rays of one pixel while its packet is traced.
  *
- * Only the inspector's program has it (RT_INSPECT). The tracer calls these functions where rays begin, hit and add light, so
- * the records show the real rays. They work lane by lane and are slow, which does not matter for one packet. */
-#ifndef RT_INSPECT_H
-#define RT_INSPECT_H
-#ifdef RT_INSPECT
+ * Only the inspector's program has it. The tracer calls these functions, and those of record_hits.h, where rays begin, hit and
+ * add light (RT_RECORD), so the records show the real rays. They work lane by lane and are slow, which does not matter for one
+ * packet. */
+#ifndef RT_RECORDER_H
+#define RT_RECORDER_H
 
 typedef struct rt_recorder {
     global rt_ray_record *records;
@@ -14,7 +14,6 @@ typedef struct rt_recorder {
     int too_deep;         /* whether the next generation is beyond the depth */
     int record[RT_LANES]; /* index for each lane's ray; -1: the ray of another pixel, or no room */
     rt_vec weight;        /* for each lane's ray */
-    uint steps, leaf_tests;
 } rt_recorder;
 
 /* One lane of a vector, through memory. */
@@ -57,87 +56,44 @@ RT_INLINE int rt_begin_record(rt_recorder *rec, uint kind, uint fate, int parent
     return (int)index;
 }
 
-/* Adds a record for the camera ray of the recorded pixel. */
-RT_INLINE void rt_watch_camera(rt_recorder *rec, const rt_rays *ray, vint pixel, uint bits)
+/* Begins with the rays of a packet: adds a record for the camera ray of the recorded pixel, or looks up those of a later
+ * generation, which were added when their rays were spawned. */
+RT_INLINE void rt_record_rays(rt_recorder *rec, uint generation, const rt_queue *queue, uint base, const rt_rays *ray, vint pixel,
+                              uint bits, rt_vec weight)
 {
-    rec->weight = rt_splat(1.0f, 1.0f, 1.0f);
+    rec->generation = generation + 1u;
+    rec->weight = weight;
     for (uint l = 0; l < RT_LANES; ++l) {
         rec->record[l] = -1;
-        if ((bits >> l & 1u) != 0u && rt_lane_int(pixel, l) == rec->pixel)
+        if ((bits >> l & 1u) == 0u) continue;
+        if (generation != 0u)
+            rec->record[l] = queue->record[base + l];
+        else if (rt_lane_int(pixel, l) == rec->pixel)
             rec->record[l] = rt_begin_record(rec, RT_RAY_CAMERA, RT_FATE_TRACED, -1, 1u, l, rt_vec_of(ray->ox, ray->oy, ray->oz),
-                                             rt_vec_of(ray->dx, ray->dy, ray->dz), rec->weight);
-    }
-}
-
-/* Looks up the records of rays of a later generation. They were added when the rays were spawned. */
-RT_INLINE void rt_watch_queue(rt_recorder *rec, const rt_queue *queue, uint base, uint bits, rt_vec weight)
-{
-    rec->weight = weight;
-    for (uint l = 0; l < RT_LANES; ++l) rec->record[l] = bits >> l & 1u ? queue->record[base + l] : -1;
-}
-
-/* Records what the rays hit, and the light from there that needs no light source: emission and ambient light, or the
- * background. */
-RT_INLINE void rt_record_hit(rt_recorder *rec, const rt_hits *hit, vint prim, vint material, rt_vec light)
-{
-    const rt_vec added = rt_mul(rec->weight, light);
-    for (uint l = 0; l < RT_LANES; ++l) {
-        if (rec->record[l] < 0) continue;
-        global rt_ray_record *out = rec->records + rec->record[l];
-        out->prim = rt_lane_int(prim, l);
-        out->t = out->prim >= 0 ? rt_lane(hit->t, l) : INFINITY;
-        if (out->prim >= 0) {
-            out->instance = rt_lane_int(hit->instance, l);
-            out->material = rt_lane_int(material, l);
-        }
-        rt_lane_vec(added, l, out->light);
-        out->steps = hit->steps;
-        out->leaf_tests = hit->leaf_tests;
+                                             rt_vec_of(ray->dx, ray->dy, ray->dz), weight);
     }
 }
 
 /* Records the shadow rays to a light of the lanes in `bits`. lit: the lanes that the light reaches. light: the light that then
- * returns along the ray that hit the surface. asked: whether a query was made; then the recorder has its counts. */
-RT_INLINE void rt_record_shadow(rt_recorder *rec, uint light_index, int asked, uint bits, uint lit, rt_vec origin, rt_vec direction,
-                                vfloat distance, rt_vec light)
+ * returns along the ray that hit the surface. asked: whether a query was made; then shadow_hit has its counts. */
+RT_INLINE void rt_record_shadow(rt_recorder *rec, uint light_index, int asked, uint bits, uint lit, const rt_rays *shadow,
+                                const rt_hits *shadow_hit, vfloat distance, rt_vec light)
 {
     const rt_vec added = rt_mul(rec->weight, light);
     for (uint l = 0; l < RT_LANES; ++l) {
         if (rec->record[l] < 0 || (bits >> l & 1u) == 0u) continue;
         const int index = rt_begin_record(rec, RT_RAY_SHADOW, asked ? RT_FATE_TRACED : RT_FATE_UNASKED, rec->record[l],
-                                          rec->generation, l, origin, direction, rec->weight);
+                                          rec->generation, l, rt_vec_of(shadow->ox, shadow->oy, shadow->oz),
+                                          rt_vec_of(shadow->dx, shadow->dy, shadow->dz), rec->weight);
         if (index < 0) continue;
         global rt_ray_record *out = rec->records + index;
         out->t = rt_lane(distance, l);
         out->light_index = (int)light_index;
         out->occluded = (lit >> l & 1u) == 0u;
         if (!out->occluded) rt_lane_vec(added, l, out->light);
-        out->steps = asked ? rec->steps : 0u;
-        out->leaf_tests = asked ? rec->leaf_tests : 0u;
+        out->steps = asked ? shadow_hit->steps : 0u;
+        out->leaf_tests = asked ? shadow_hit->leaf_tests : 0u;
     }
 }
 
-/* Records mirrored or refracted rays, before they are appended to the queue. bits: the lanes that have such a ray. followed:
- * those with a large enough weight. They take the next elements of the queue as far as there is room. */
-RT_INLINE void rt_record_spawn(rt_recorder *rec, rt_queue *next, uint capacity, uint count, uint kind, uint bits, uint followed,
-                               rt_vec origin, rt_vec direction, rt_vec weight)
-{
-    uint at = count;
-    for (uint l = 0; l < RT_LANES; ++l) {
-        if ((bits >> l & 1u) == 0u) continue;
-        const int heavy = (followed >> l & 1u) != 0u;
-        int index = -1;
-        if (rec->record[l] >= 0) {
-            const uint fate = !heavy           ? RT_FATE_TOO_LIGHT
-                              : rec->too_deep  ? RT_FATE_TOO_DEEP
-                              : at >= capacity ? RT_FATE_DROPPED
-                                               : RT_FATE_TRACED;
-            index = rt_begin_record(rec, kind, fate, rec->record[l], rec->generation + 1u, l, origin, direction, weight);
-        }
-        if (!heavy || at >= capacity) continue;
-        next->record[at++] = index;
-    }
-}
-
-#endif
 #endif

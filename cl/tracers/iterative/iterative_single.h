@@ -29,9 +29,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
         rt_prepare(&ray, 1u);
         rt_clear_hits(&hit, -1);
         rt_trace_closest(ctx, frame, &ray, &hit);
-#ifdef RT_DEBUG
-        tally->overflow += hit.overflow;
-#endif
+        RT_TALLY_OVERFLOW(tally, &hit)
         if (generation == 0u && frame->sample == 0u) *distance = hit.t;
 
         rt_vec light;

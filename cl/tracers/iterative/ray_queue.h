@@ -10,9 +10,7 @@ typedef struct rt_queue {
 #ifdef RT_SPLITS_INCOHERENT
     float area[RT_QUEUE_ROOM];     /* rt_surface.area of the surface that the ray starts on */
 #endif
-#ifdef RT_INSPECT
-    int record[RT_QUEUE_ROOM];
-#endif
+    RT_RECORD(int record[RT_QUEUE_ROOM])
 } rt_queue;
 
 /* rt_compress: moves the lanes in `bits` to the front. */
@@ -56,6 +54,17 @@ RT_INLINE uint rt_append(rt_queue *queue, uint capacity, uint count, uint bits, 
     rt_store(rt_as_vint(rt_compress(rt_as_vfloat(pixel), bits)), queue->pixel + count);
     return count + taken;
 }
+
+/* The area of the surface that rays start on travels with them, for structures that trace incoherent packets differently. */
+#ifdef RT_SPLITS_INCOHERENT
+#define RT_KEEP_AREA(queue, first, count, point, bits)                                                                         \
+    if ((count) != (first)) rt_store(rt_compress((point)->area, bits), (queue)->area + (first));
+#define RT_USE_AREA(generation, queue, base, ray, active)                                                                      \
+    if ((generation) != 0u) (ray)->incoherent = rt_incoherent(ray, rt_load((queue)->area + (base)), rt_bits(active));
+#else
+#define RT_KEEP_AREA(queue, first, count, point, bits) (void)(first);
+#define RT_USE_AREA(generation, queue, base, ray, active)
+#endif
 
 /* Loads RT_LANES rays from `base` on. */
 RT_INLINE void rt_take(const rt_queue *queue, uint base, rt_rays *ray, rt_vec *weight, vint *pixel)

@@ -94,9 +94,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 rt_prepare(&ray, bits);
                 rt_clear_hits(&hit, active);
                 rt_trace_closest(&ctx, frame, &ray, &hit);
-#ifdef RT_DEBUG
-                tally.overflow += hit.overflow;
-#endif
+                RT_TALLY_OVERFLOW(&tally, &hit)
                 if (level == 0u && step == 0u && frame->sample == 0u) {
                     const uint packet = unit / RT_BLOCKS(frame);
                     uint group = first_group + packet / group_packets;

@@ -2,27 +2,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/error.hpp"
 #include "render/accel/memory_plan.hpp"
+#include "render/kernels/scene_buffers.hpp"
 
 namespace clarity {
 namespace {
 
-// Places in DeviceScene::before_lights_, which are those of the context's arguments: see kernel_source.cpp.
-enum : size_t { kLeaves, kInstances, kPolygons, kPolygonCorners, kMaterials = 5, kTriangles, kNormals };
+// Names of buffers as arguments of kernels. In the constructor they are those of scene_buffers.hpp.
+constexpr const char *kLeaves = "ctx_leaves", *kInstances = "ctx_instances", *kPolygons = "ctx_polygons",
+                     *kPolygonCorners = "ctx_polygon_corners", *kMaterials = "ctx_materials", *kTriangles = "ctx_triangles",
+                     *kNormals = "ctx_normals";
 
 constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two progress reports
 
-// A buffer to be made, and its content.
-struct Content {
-    MemoryPiece piece;
+// The content of a buffer.
+struct Bytes {
+    uint64_t count;
     const void* data;
 };
 
 template <class Array>
-Content content(const char* what, const Array& data) {
-    return {{what, data.size() * sizeof(typename Array::value_type)}, data.data()};
+Bytes bytes_of(const Array& data) {
+    return {data.size() * sizeof(typename Array::value_type), data.data()};
+}
+
+Bytes leaves_of(const AccelData& accel) {
+    return {(accel.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), accel.leaves.data()};
+}
+
+// A buffer to be made.
+struct Content {
+    std::string argument;
+    MemoryPiece piece;
+    const void* data;
+};
+
+// bytes: of the buffer that the table calls `name`.
+Content content(const std::string& name, const Bytes& bytes) {
+    for (const SceneBuffer& buffer : kSceneBuffers)
+        if (name == buffer.name) return {"ctx_" + name, {buffer.what, bytes.count}, bytes.data};
+    throw std::logic_error("the scene buffer " + name + " is not in scene_buffers.hpp");
 }
 
 // Makes read-only buffers. On a CPU they are the host's own memory. On other devices they are filled piece by piece, because a
@@ -94,16 +116,13 @@ std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build
     return normals;
 }
 
-Content leaves_of(const AccelData& accel) {
-    return {{"leaves", (accel.leaf_count + kLeafPadding) * sizeof(rt_packed_prim)}, accel.leaves.data()};
-}
-
 void add_slots(const AccelData& accel, std::vector<Content>& contents) {
     const rt_accel& table = *accel.layout->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
         if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
-            contents.push_back(
-                {{table.slots[s].name, accel.slots[s].count * table.slots[s].elem_bytes}, accel.slots[s].memory.data()});
+            contents.push_back({std::string("ctx_") + table.slots[s].name,
+                                {table.slots[s].name, accel.slots[s].count * table.slots[s].elem_bytes},
+                                accel.slots[s].memory.data()});
 }
 
 }  // namespace
@@ -122,32 +141,34 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     const bool moved = !scene_->normals.empty() && !build.flattened.empty();
     if (moved) normals_ = normals_as_placed(*scene_, build);
     std::vector<Content> contents = {
-        leaves_of(*accel_),
-        content("instances", accel_->instances),
-        content("polygons", build.polygon_table),
-        content("polygon corners", build.polygon_corners),
-        content("planes", build.planes),
-        content("materials", materials_),
-        content("triangles", attributes_),
-        moved ? content("normals", normals_) : content("normals", scene_->normals),
-        content("texture coordinates", scene_->uvs),
-        content("texture table", scene_->textures),
-        content("textures", scene_->texels),
+        content("leaves", leaves_of(*accel_)),
+        content("instances", bytes_of(accel_->instances)),
+        content("polygons", bytes_of(build.polygon_table)),
+        content("polygon_corners", bytes_of(build.polygon_corners)),
+        content("planes", bytes_of(build.planes)),
+        content("materials", bytes_of(materials_)),
+        content("triangles", bytes_of(attributes_)),
+        content("normals", moved ? bytes_of(normals_) : bytes_of(scene_->normals)),
+        content("uvs", bytes_of(scene_->uvs)),
+        content("textures", bytes_of(scene_->textures)),
+        content("texels", bytes_of(scene_->texels)),
     };
-    const size_t before_lights = contents.size();
     if (!build.shapes.empty()) {
-        contents.push_back(content("shapes", build.shapes));
-        contents.push_back(content("numbers of shapes", scene_->shape_numbers));
-        shape_buffers_ = 2;
+        contents.push_back(content("shapes", bytes_of(build.shapes)));
+        contents.push_back(content("shape_numbers", bytes_of(scene_->shape_numbers)));
     }
+    const size_t first_slot = contents.size();
     add_slots(*accel_, contents);
     std::vector<MemoryPiece> pieces;
     for (const Content& content : contents) pieces.push_back(content.piece);
     check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);
 
     Uploader uploader(device, contents, progress);
-    for (size_t i = 0; i < contents.size(); ++i)
-        (i < before_lights ? before_lights_ : slots_).push_back(uploader.upload(contents[i]));
+    for (size_t i = 0; i < first_slot; ++i) buffers_[contents[i].argument] = uploader.upload(contents[i]);
+    for (size_t i = first_slot; i < contents.size(); ++i) {
+        slots_.push_back(uploader.upload(contents[i]));
+        slot_arguments_.push_back(contents[i].argument);
+    }
     bytes_ = uploader.total();
     if (device.info().cpu) return;
     // Only the upload needed these copies.
@@ -158,15 +179,14 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
 DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
     : loss_(at_rest.loss_),
       still_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
-      before_lights_(at_rest.before_lights_),
-      slots_(at_rest.slots_),
-      shape_buffers_(at_rest.shape_buffers_),
+      buffers_(at_rest.buffers_),
+      slots_(std::move(moving.slots)),
+      slot_arguments_(at_rest.slot_arguments_),
       has_triangles_(at_rest.has_triangles_),
       bytes_(at_rest.bytes_) {
-    before_lights_[kLeaves] = std::move(moving.leaves);
-    before_lights_[kInstances] = std::move(moving.instances);
-    before_lights_[kNormals] = std::move(moving.normals);
-    std::move(moving.slots.begin(), moving.slots.end(), slots_.begin() + static_cast<std::ptrdiff_t>(shape_buffers_));
+    buffers_[kLeaves] = std::move(moving.leaves);
+    buffers_[kInstances] = std::move(moving.instances);
+    buffers_[kNormals] = std::move(moving.normals);
     bounds_ = std::move(moving.bounds);
     roots_ = std::move(moving.roots);
 }
@@ -175,27 +195,22 @@ DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
 DeviceScene::~DeviceScene() {
     if (!loss_->stuck()) return;
     struct Kept {
-        std::vector<cl::Buffer> buffers;
+        std::map<std::string, cl::Buffer> buffers;
+        std::vector<cl::Buffer> more;
         std::shared_ptr<const Scene> scene;
         std::shared_ptr<const AccelData> accel;
     };
-    auto kept = std::make_shared<Kept>(Kept{std::move(before_lights_), std::move(scene_), std::move(accel_)});
-    kept->buffers.insert(kept->buffers.end(), slots_.begin(), slots_.end());
-    kept->buffers.insert(kept->buffers.end(), {bounds_, roots_});
+    auto kept = std::make_shared<Kept>(Kept{std::move(buffers_), std::move(slots_), std::move(scene_), std::move(accel_)});
+    kept->more.insert(kept->more.end(), {bounds_, roots_});
     never_release(std::move(kept));
 }
 
 DeviceScene::Fixed DeviceScene::fixed() const {
-    return {before_lights_[kPolygons], before_lights_[kPolygonCorners], before_lights_[kTriangles]};
+    return {buffers_.at(kPolygons), buffers_.at(kPolygonCorners), buffers_.at(kTriangles)};
 }
 
 DeviceScene::Moving DeviceScene::moving() const {
-    return {before_lights_[kLeaves],
-            before_lights_[kInstances],
-            before_lights_[kNormals],
-            {slots_.begin() + static_cast<std::ptrdiff_t>(shape_buffers_), slots_.end()},
-            bounds_,
-            roots_};
+    return {buffers_.at(kLeaves), buffers_.at(kInstances), buffers_.at(kNormals), slots_, bounds_, roots_};
 }
 
 void DeviceScene::complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
@@ -213,36 +228,35 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> stil
       still_(std::move(still)),
       scene_(still_->scene_),
       accel_(std::move(accel)),
-      before_lights_(still_->before_lights_),
-      slots_(still_->slots_),
-      shape_buffers_(still_->shape_buffers_),
+      buffers_(still_->buffers_),
+      slot_arguments_(still_->slot_arguments_),
       has_triangles_(still_->has_triangles_),
       bytes_(still_->bytes_) {
-    std::vector<Content> contents = {leaves_of(*accel_), content("instances", accel_->instances)};
+    std::vector<Content> contents = {content("leaves", leaves_of(*accel_)), content("instances", bytes_of(accel_->instances))};
     add_slots(*accel_, contents);
     Uploader uploader(device, contents, progress);
-    before_lights_[kLeaves] = uploader.upload(contents[0]);
-    before_lights_[kInstances] = uploader.upload(contents[1]);
-    for (size_t i = 2; i < contents.size(); ++i) slots_[shape_buffers_ + i - 2] = uploader.upload(contents[i]);  // shapes stay
+    buffers_[kLeaves] = uploader.upload(contents[0]);
+    buffers_[kInstances] = uploader.upload(contents[1]);
+    for (size_t i = 2; i < contents.size(); ++i) slots_.push_back(uploader.upload(contents[i]));
     if (scene_->normals.empty() || deformed.empty()) return;
     // A copy on the device, into which the normals of the deformed meshes are written.
     const size_t normal_bytes = scene_->normals.size() * sizeof(float);
     const cl::Buffer normals(device.context(), CL_MEM_READ_ONLY, normal_bytes);
     cl::CommandQueue queue(device.context(), device.info().cl_device);
-    queue.enqueueCopyBuffer(before_lights_[kNormals], normals, 0, 0, normal_bytes);
+    queue.enqueueCopyBuffer(buffers_[kNormals], normals, 0, 0, normal_bytes);
     for (const PosedMesh& mesh : deformed)
         if (!mesh.normals.empty())
             queue.enqueueWriteBuffer(normals, CL_FALSE, 3 * sizeof(float) * size_t(scene_->meshes[mesh.mesh].first_vertex),
                                      mesh.normals.size() * sizeof(float), mesh.normals.data());
     queue.finish();
-    before_lights_[kNormals] = normals;
+    buffers_[kNormals] = normals;
 }
 
-void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {
-    for (size_t i = 0; i < before_lights_.size(); ++i)
-        kernel.setArg(first++, materials && i == kMaterials ? *materials : before_lights_[i]);
-    kernel.setArg(first++, lights);
-    for (const cl::Buffer& buffer : slots_) kernel.setArg(first++, buffer);
+void DeviceScene::bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials) const {
+    for (const auto& [argument, buffer] : buffers_)
+        kernel.set(argument, materials && argument == kMaterials ? *materials : buffer);
+    kernel.set("ctx_lights", lights);
+    for (size_t i = 0; i < slots_.size(); ++i) kernel.set(slot_arguments_[i], slots_[i]);
 }
 
 }  // namespace clarity

@@ -1,12 +1,15 @@
 // device_scene.hpp -- the device buffers of a scene in one structure.
 #pragma once
 #include <CL/opencl.hpp>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/accel/accel_build.hpp"
+#include "render/kernels/kernel_arguments.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 
@@ -43,9 +46,8 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
 
     // Writes bounds and root into `count` rt_frame, if the host does not know them.
     void complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const;
-    // Sets the kernel's scene arguments from number `first` on (kernel_source.cpp has their order). `lights` comes from the
-    // frame. If given, `materials` replaces the scene's materials.
-    void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
+    // Sets the kernel's scene arguments. `lights` comes from the frame. If given, `materials` replaces the scene's materials.
+    void bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
     uint64_t bytes() const { return bytes_; }
 
  private:
@@ -56,9 +58,11 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
     std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
-    std::vector<cl::Buffer> before_lights_, slots_;
+    // Those of the table in scene_buffers.hpp that the scene has, but for lights, by the names of their arguments.
+    std::map<std::string, cl::Buffer> buffers_;
+    std::vector<cl::Buffer> slots_;  // those that devices have, in the plugin's order
+    std::vector<std::string> slot_arguments_;
     cl::Buffer bounds_, roots_;  // of Moving
-    size_t shape_buffers_ = 0;   // at the begin of slots_
     bool has_triangles_ = false;
     uint64_t bytes_ = 0;
 };

@@ -1,7 +1,6 @@
 // frame_constants.hpp -- the constants of a frame (rt_frame) from a view and settings.
 #pragma once
 #include "render/accel/accel_build.hpp"
-#include "render/kernels/kernel_source.hpp"
 #include "render/kernels/layout.hpp"
 #include "render/settings/settings.hpp"
 #include "render/settings/view.hpp"

@@ -42,14 +42,13 @@ LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, unsigne
     return times;
 }
 
-LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument,
-                          unsigned group_count, unsigned group_size, const std::function<void()>& go_on, unsigned begin,
-                          const SideWork& side_work) {
+LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, KernelArguments& kernel, unsigned group_count,
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
-        kernel.setArg(first_argument, begin + first);
-        queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(count) * group_size), cl::NDRange(group_size),
-                                   nullptr, &event);
+        kernel.set("first_group", cl_uint(begin + first));
+        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(size_t(count) * group_size),
+                                   cl::NDRange(group_size), nullptr, &event);
         return Piece{event, event};
     };
     return run(device, queue, group_count, group_count, enqueue, go_on, side_work);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "device/device.hpp"
+#include "render/kernels/kernel_arguments.hpp"
 #include "render/launch/pace.hpp"
 
 namespace clarity {
@@ -34,10 +35,10 @@ class Launcher {
     LaunchTimes run(const Device& device, cl::CommandQueue& queue, unsigned group_count, unsigned most,
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
                     const SideWork& side_work = {});
-    // Runs groups [begin, begin + group_count) of `group_size` work-items. Argument `first_argument` (a uint) receives the
+    // Runs groups [begin, begin + group_count) of `group_size` work-items. The argument `first_group` (a uint) receives the
     // number of a piece's first group. The global offset stays zero, because PoCL compiles a kernel again for another offset.
-    LaunchTimes run(const Device& device, cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument,
-                    unsigned group_count, unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0,
+    LaunchTimes run(const Device& device, cl::CommandQueue& queue, KernelArguments& kernel, unsigned group_count,
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0,
                     const SideWork& side_work = {});
     void forget() { pace_.forget(); }
     // Expected time of that many groups, in ms; infinite if nothing is known.

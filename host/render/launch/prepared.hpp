@@ -27,9 +27,9 @@ struct Prepared {
     bool compile_cached = false;           // the program was compiled for an earlier Prepared
 };
 
-// Returns the source of a kernel of this kind. The scene, accel, settings and layout must be set; the program need not.
-inline KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart part = FramePart::whole) {
-    return kernel_for({kind, part, prepared.settings, prepared.layout}, *prepared.scene, *prepared.accel);
+// Returns the source of a kernel. The scene, accel, settings and layout must be set; the program need not.
+inline KernelSource kernel_for(const Prepared& prepared, const KernelRow& row) {
+    return kernel_for(row, prepared.settings, prepared.layout, *prepared.scene, *prepared.accel);
 }
 
 }  // namespace clarity

@@ -58,8 +58,9 @@ ViewBuffers::Part::~Part() {
     }
 }
 
-void ViewBuffers::bind(const DeviceScene& scene, cl::Kernel& kernel, cl_uint first) const {
-    scene.bind(kernel, first, lights_.get(), own_materials_ ? &materials_.get() : nullptr);
+void ViewBuffers::bind(const DeviceScene& scene, KernelArguments& kernel) const {
+    kernel.set("frame", frame_.get());
+    scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr);
 }
 
 }  // namespace clarity

@@ -20,8 +20,8 @@ class ViewBuffers {
     void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
                const View& view, const std::vector<rt_u32>& rows = {});
     const cl::Buffer& frame() const { return frame_.get(); }
-    // Sets the scene's arguments of the kernel, from number `first` on.
-    void bind(const DeviceScene& scene, cl::Kernel& kernel, cl_uint first) const;
+    // Sets `frame` and the scene's arguments of the kernel.
+    void bind(const DeviceScene& scene, KernelArguments& kernel) const;
 
  private:
     // One buffer. Uploads only if the data has changed, and does not wait for the upload: either would cost as much as the

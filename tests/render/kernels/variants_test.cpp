@@ -179,7 +179,7 @@ TEST(Debug, AFullStackOfRayQueriesIsReported) {
         for (const RayQuery query : {RayQuery{false, false}, RayQuery{true, false}, RayQuery{false, true}}) {
             const RayBlocks packed(rays, unsigned(settings.lanes));
             for (int run = 0; run < (query.count ? 1 : 6); ++run) {
-                bench().frames().trace_rays(*prepared, packed, query);
+                bench().queries().trace(*prepared, packed, query);
                 if (listener.take().find("stack") == std::string::npos) silent += accel + " " + lanes + "; ";
             }
         }

@@ -6,9 +6,10 @@
 #include "device/cl_errors.hpp"
 #include "device/launch_limit.hpp"
 #include "render/film/overflow_counter.hpp"
-#include "render/kernels/program_cache.hpp"
 #include "render/launch/frame_constants.hpp"
 #include "render/launch/view_buffers.hpp"
+#include "render/tracers/iterative/iterative.hpp"
+#include "render/tracers/smoke.hpp"
 #include "render/trial/trial.hpp"
 
 namespace clarity {
@@ -40,6 +41,35 @@ RayRecord record_of(const rt_ray_record& r) {
     record.steps = r.steps;
     record.leaf_tests = r.leaf_tests;
     return record;
+}
+
+// The packet's rays are those of the tracer `iterative`.
+const KernelRow& kernel_row() {
+    static const KernelRow row = [] {
+        KernelRow r;
+        r.tracer = "inspect";
+        r.what = "inspector";
+        r.file = "tracers/inspect/inspect.cl";
+        r.entry = "trace_inspect";
+        r.headers = headers_by_generations(true);
+        r.defines = {"RT_INSPECT", "RT_COUNT_STEPS"};
+        r.define = define_ray_slots;
+        return r;
+    }();
+    return row;
+}
+
+void smoke_pixels(const Smoke& smoke) {
+    constexpr const char* what = "recorded the rays of some pixels";
+    const Settings& settings = smoke.prepared.settings;
+    double limit_s = compile_first(smoke, kernel_row());
+    Inspector inspector(smoke.device);
+    for (unsigned y = 4; y < unsigned(settings.height); y += 8)
+        for (unsigned x = 4; x < unsigned(settings.width); x += 8) {
+            smoke.say_step(std::string("they ") + what, limit_s);
+            limit_s = kRunLimit_s;
+            expect_room_on_stacks(inspector.trace(smoke.prepared, settings, smoke.view, x, y).overflowed, what);
+        }
 }
 
 }  // namespace
@@ -74,7 +104,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
                                      std::to_string(width) + "x" + std::to_string(height));
     const Layout& layout = prepared.layout;
     Progress never_cancelled;
-    const auto program = tried_program(im.programs, prepared, KernelKind::inspect, never_cancelled);
+    const auto program = tried_program(im.programs, prepared, kernel_row(), never_cancelled);
     return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
         const cl::Context& context = im.device->context();
         im.view.write(im.queue, *prepared.scene, *prepared.on_device, {make_frame(view, settings, layout, *prepared.accel, 0)},
@@ -82,19 +112,15 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         const cl::Buffer& records = im.records.fit(context, kMostRecords * sizeof(rt_ray_record));
         const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
         const PixelPlace place = layout.place_of(x, y, width);
-        cl::Kernel kernel = program->kernel();
-        cl_uint at = 0;
-        kernel.setArg(at++, im.view.frame());
-        kernel.setArg(at++, cl_uint(place.group));
-        kernel.setArg(at++, cl_uint(place.packet));
-        kernel.setArg(at++, cl_uint(place.pixel));
-        kernel.setArg(at++, records);
-        kernel.setArg(at++, kMostRecords);
-        kernel.setArg(at++, summary);
-        kernel.setArg(at++, im.distances.fit(context, layout.rays() * sizeof(float)));
-        im.view.bind(*prepared.on_device, kernel, at);
+        KernelArguments kernel = program->kernel();
+        kernel.set("group", cl_uint(place.group))
+            .set("packet_wanted", cl_uint(place.packet))
+            .set("pixel", cl_uint(place.pixel));
+        kernel.set("records", records).set("capacity", kMostRecords).set("summary", summary);
+        kernel.set("distances", im.distances.fit(context, layout.rays() * sizeof(float)));
+        im.view.bind(*prepared.on_device, kernel);
         const size_t items = layout.local_size();
-        im.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(items));
+        im.queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(items), cl::NDRange(items));
         finish(*im.device, im.queue, "following the rays of a pixel");
 
         rt_u32 found[kSummaryWords] = {};
@@ -109,6 +135,16 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         for (const rt_ray_record& record : read) tree.rays.push_back(record_of(record));
         return tree;
     });
+}
+
+const Tracer& inspect_tracer() {
+    static const Tracer tracer = [] {
+        Tracer t;
+        t.id = "inspect";
+        t.smoke = smoke_pixels;
+        return t;
+    }();
+    return tracer;
 }
 
 }  // namespace clarity

@@ -21,22 +21,19 @@ LaunchTimes DynamicFetch::trace(const Prepared& prepared, const TraceProgram& pr
     if (drawn() != before()) ping_pong_.forget();
 
     const unsigned most = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
-    cl::Kernel kernel = program.kernel();
-    kernel.setArg(0, view.frame());
-    kernel.setArg(3, cl_uint(rays / (most * kFetchGroup) >= kManyEach ? 2 : 1));
-    kernel.setArg(4, fields);
-    kernel.setArg(5, in);
-    kernel.setArg(6, out);
-    kernel.setArg(7, drawn);
-    view.bind(*prepared.on_device, kernel, overflows.bind(kernel, 9, prepared.settings.debug));
+    KernelArguments kernel = program.kernel();
+    kernel.set("share", cl_uint(rays / (most * kFetchGroup) >= kManyEach ? 2 : 1));
+    kernel.set("fields", fields).set("rays", in).set("answers", out).set("queue", drawn);
+    overflows.bind(kernel);
+    view.bind(*prepared.on_device, kernel);
     const auto enqueue = [&](unsigned begin, unsigned count) {
-        kernel.setArg(1, cl_uint(begin * kFetchGroup));
-        kernel.setArg(2, cl_uint(std::min(size_t(rays), (size_t(begin) + count) * kFetchGroup)));
+        kernel.set("first", cl_uint(begin * kFetchGroup));
+        kernel.set("end", cl_uint(std::min(size_t(rays), (size_t(begin) + count) * kFetchGroup)));
         cl::Event event;
         ping_pong_.take([&](cl_uint) { queue.enqueueFillBuffer(drawn, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
                         [&](cl_uint parity) {
-                            kernel.setArg(8, parity);
-                            queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+                            kernel.set("parity", parity);
+                            queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange,
                                                        cl::NDRange(size_t(std::min(count, most)) * kFetchGroup),
                                                        cl::NDRange(kFetchGroup), nullptr, &event);
                         });

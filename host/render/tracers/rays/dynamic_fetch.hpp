@@ -16,7 +16,7 @@ class DynamicFetch {
  public:
     explicit DynamicFetch(std::shared_ptr<Device> device) : device_(std::move(device)) {}
     // Traces `rays` rays of `in` and writes their answers, `fields` numbers a ray (RT_ANSWER_*), to `out`.
-    // program: of kind KernelKind::dynamic_fetch. overflows: already cleared if it is a debug program. Throws cl::Error.
+    // program: of the kernel dynamic_fetch(). overflows: already cleared if it is a debug program. Throws cl::Error.
     LaunchTimes trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
                       cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows);
     // Call this when the program, the scene or the rays change: the pace is then no longer known.

@@ -14,7 +14,6 @@ std::shared_ptr<const Prepared> prepare_queries(Device& device, std::shared_ptr<
     Settings& s = prepared->settings = settings;
     s.accel = accel->plugin->id;
     s.accel_params = accel->params;
-    s.tracer = "iterative";
     resolve_packet(s, device.info());
     prepared->layout = make_layout(s, device.info().traces_packets());
     progress.stage("uploading the scene");

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
 #include "render/launch/frame_constants.hpp"
+#include "render/tracers/rays/ray_kernels.hpp"
 #include "render/trial/trial.hpp"
 
 namespace clarity {
@@ -15,15 +16,15 @@ bool votes(const DeviceInfo& info, const Settings& settings) {
 }
 
 // Kernels that answer a query, the plain one first. The others need capabilities of the structure.
-std::vector<KernelKind> kinds_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
-    if (query.count) return {KernelKind::counted_rays};
-    std::vector<KernelKind> kinds{KernelKind::rays};
-    if (layout.lanes > 1 || layout.cpu) return kinds;
-    for (const KernelRow& row : kernel_table())
-        if (row.needs != 0 && (row.needs & ~accel.accel->capabilities) == 0 && (votes || !row.has(kVotes)) &&
-            (!query.any_hit || !row.has(kNearestOnly)) && kinds.size() < Autotuner::kMost)
-            kinds.push_back(row.kind);
-    return kinds;
+std::vector<const KernelRow*> kernels_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
+    if (query.count) return {&counted_rays()};
+    std::vector<const KernelRow*> kernels{&plain_rays()};
+    if (layout.lanes > 1 || layout.cpu) return kernels;
+    for (const KernelRow* row : ray_kernels_of_structures())
+        if ((row->needs & ~accel.accel->capabilities) == 0 && (votes || !row->has(kVotes)) &&
+            (!query.any_hit || !row->has(kNearestOnly)) && kernels.size() < Autotuner::kMost)
+            kernels.push_back(row);
+    return kernels;
 }
 
 }  // namespace
@@ -31,21 +32,16 @@ std::vector<KernelKind> kinds_for(const rt_plugin& accel, const Layout& layout, 
 LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout,
                                       size_t blocks, bool any_hit, cl_uint fields, const cl::Buffer& in,
                                       const cl::Buffer& out) {
-    cl::Kernel kernel = program.kernel();
-    cl_uint at = 0;
-    kernel.setArg(at++, view_.frame());
-    const cl_uint first_group = at++;
-    kernel.setArg(at++, static_cast<cl_uint>(blocks));
-    kernel.setArg(at++, static_cast<cl_uint>(any_hit));
-    kernel.setArg(at++, fields);
-    kernel.setArg(at++, in);
-    kernel.setArg(at++, out);
-    view_.bind(*prepared.on_device, kernel, overflows_.bind(kernel, at, prepared.settings.debug));
+    KernelArguments kernel = program.kernel();
+    kernel.set(program.row.rays_per_item ? "count" : "blocks", static_cast<cl_uint>(blocks));
+    kernel.set("any_hit", static_cast<cl_uint>(any_hit)).set("fields", fields).set("rays", in).set("answers", out);
+    overflows_.bind(kernel);
+    view_.bind(*prepared.on_device, kernel);
     const unsigned each = program.row.rays_per_item;
     const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
     const size_t groups = (blocks + in_group - 1) / in_group;
-    return launchers_[program.row.kind].run(*device_, device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
-                                            layout.local_size(), [] {});
+    return launchers_[&program.row].run(*device_, device_->queue(), kernel, static_cast<unsigned>(groups), layout.local_size(),
+                                        [] {});
 }
 
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
@@ -74,12 +70,12 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         }
         if (packing_ != rays.packing()) {
             packing_ = rays.packing();
-            kinds_ = kinds_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
-            autotuner_ = Autotuner(static_cast<unsigned>(kinds_.size()));
+            kernels_ = kernels_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
+            autotuner_ = Autotuner(static_cast<unsigned>(kernels_.size()));
         }
-        const KernelKind kind = kinds_[autotuner_.variant()];
+        const KernelRow& row = *kernels_[autotuner_.variant()];
         Progress never_cancelled;
-        const auto program = tried_program(programs_, prepared, kind, never_cancelled);
+        const auto program = tried_program(programs_, prepared, row, never_cancelled);
         tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
         cl::CommandQueue& queue = device_->queue();
         view_.write(queue, *prepared.scene, *prepared.on_device,
@@ -91,9 +87,9 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const bool debug = prepared.settings.debug;
         if (debug) overflows_.clear(queue);
         const LaunchTimes times =
-            kind == KernelKind::requeued_rays ? requeued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots),
-                                                                     query.any_hit, fields, in, out, overflows_)
-            : kind == KernelKind::dynamic_fetch
+            &row == &requeued_rays() ? requeued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots),
+                                                            query.any_hit, fields, in, out, overflows_)
+            : &row == &dynamic_fetch()
                 ? dynamic_fetch_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out, overflows_)
                 : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
         overflowed_ = debug ? overflows_.read(queue) : 0;
@@ -107,6 +103,12 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         }
         return times.device_ms;
     });
+}
+
+std::vector<rt_hit> RayQueries::trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query) {
+    std::vector<rt_hit> hits;
+    trace(prepared, RayBlocks(rays, prepared.layout.lanes), query, &hits);
+    return hits;
 }
 
 }  // namespace clarity

@@ -27,7 +27,9 @@ class RayQueries {
     // Traces the rays and returns the kernel's time, ms by the device's clock. If `hits` is null, the answers stay on the
     // device. Throws Error(failed) if the rays were packed for another number of lanes. If traversal stacks of a debug program
     // were full, this is logged as an error.
-    double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
+    double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
+    // The same, and packs the rays. Rays that are traced repeatedly are better packed once.
+    std::vector<rt_hit> trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query = {});
     // How the last trace() ran.
     RayTuning tuning() const { return tuning_; }
     // How many traversal stacks were full in the last trace(). 0 for programs that are not for debugging.
@@ -40,7 +42,7 @@ class RayQueries {
     std::shared_ptr<Device> device_;
     ProgramCache programs_;  // of all kinds of kernels for ray queries
     ViewBuffers view_;
-    std::map<KernelKind, Launcher> launchers_;  // for variants of one launch
+    std::map<const KernelRow*, Launcher> launchers_;  // for variants of one launch
     RequeuedRays requeued_rays_;
     DynamicFetch dynamic_fetch_;
     // What the launchers' pace depends on. If it stays the same, a short query is a single launch.
@@ -57,7 +59,7 @@ class RayQueries {
     Asked last_;
     // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
     uint64_t packing_ = 0;
-    std::vector<KernelKind> kinds_;
+    std::vector<const KernelRow*> kernels_;
     Autotuner autotuner_;
     RayTuning tuning_;
     uint64_t overflowed_ = 0;

@@ -3,7 +3,7 @@
 
 namespace clarity {
 
-// What trace_rays() computes.
+// What RayQueries::trace() computes.
 struct RayQuery {
     bool any_hit = false;  // only whether anything is hit between t_min and t_max
     // Fill in steps, leaf_tests and lane_steps. This uses a slower program: leave it out when measuring time.
@@ -12,7 +12,7 @@ struct RayQuery {
     bool brief = false;
 };
 
-// How the last trace_rays() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.
+// How the last RayQueries::trace() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.
 struct RayTuning {
     unsigned variant = 0;  // number of the variant; 0 is the plain kernel
     bool trial = false;    // this run tried a variant that may be slow: do not use its time as a measurement

@@ -16,7 +16,7 @@ class RequeuedRays {
  public:
     explicit RequeuedRays(std::shared_ptr<Device> device) : device_(std::move(device)) {}
     // Traces `rays` rays of `in` and writes their answers, `fields` numbers a ray (RT_ANSWER_*), to `out`.
-    // program: of kind KernelKind::requeued_rays. overflows: already cleared if it is a debug program. Throws cl::Error.
+    // program: of the kernel requeued_rays(). overflows: already cleared if it is a debug program. Throws cl::Error.
     LaunchTimes trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
                       bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows);
     // Call this when the program, the scene or the rays change: the pace is then no longer known.

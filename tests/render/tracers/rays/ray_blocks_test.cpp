@@ -164,7 +164,7 @@ TEST(RayBlocks, PackedForOtherLanesAreRefused) {
     Workbench& bench = Workbench::get();
     const auto prepared = bench.prepare(ball(), make_settings({{"accel", "bvh2"}, {"lanes", "4"}}));
     std::vector<rt_hit> hits(2);
-    EXPECT_THROW(bench.frames().trace_rays(*prepared, RayBlocks(rays_at_ball(20), 8), {}, &hits), Error);
-    bench.frames().trace_rays(*prepared, RayBlocks({}, 4), {}, &hits);
+    EXPECT_THROW(bench.queries().trace(*prepared, RayBlocks(rays_at_ball(20), 8), {}, &hits), Error);
+    bench.queries().trace(*prepared, RayBlocks({}, 4), {}, &hits);
     EXPECT_TRUE(hits.empty());
 }

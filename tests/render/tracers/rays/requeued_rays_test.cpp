@@ -54,7 +54,7 @@ void expect_same_each_time(const ScenePtr& scene) {
     const RayBlocks packed(rays, 1);
     const auto trace = [&](RayQuery query) {
         std::vector<rt_hit> hits;
-        Workbench::get().frames().trace_rays(*Workbench::get().prepare(scene, settings), packed, query, &hits);
+        Workbench::get().queries().trace(*Workbench::get().prepare(scene, settings), packed, query, &hits);
         return hits;
     };
     for (const bool brief : {false, true})
