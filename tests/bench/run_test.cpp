@@ -20,6 +20,7 @@ class Run : public testing::Test {
     Run() {
         request_.files = {source_file("scenes/thesis/models/ball.obj")};
         request_.accels = {"bvh2"};
+        request_.baselines = false;
         request_.settings = {{"size", "32x24"}};
         request_.time_limit_s = 120;
         request_.only = {"/primary", "/shadow", "/reflection"};

@@ -89,7 +89,6 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                                     global float *distance, rt_tally *tally)
 {
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), capacity = pixels * RT_RAY_SLOTS;
-    const rt_vec behind = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
     uint count = RT_BLOCKS(frame) * RT_LANES; /* camera rays are computed, not stored */
     if (RT_SHOWS_LIGHT && rt_only_background(frame, origin, sums, distance)) return;
     for (uint generation = 0; generation < frame->depth && count != 0u; ++generation) {
@@ -126,6 +125,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
             rt_point points[RT_STREAM];
             rt_shade materials[RT_STREAM];
             uint any_hit = 0;
+            const rt_vec behind = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
             RT_FOR_EACH_PACKET(b, stream) {
                 const rt_hits *hit = hits + b;
                 const uint bits = rt_bits(active[b]), hit_bits = rt_bits(active[b] & RT_MASK(hit->prim >= rt_vint(0)));

@@ -29,21 +29,6 @@ std::vector<const KernelRow*> kernels_for(const rt_plugin& accel, const Layout& 
 
 }  // namespace
 
-LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout,
-                                      size_t blocks, bool any_hit, cl_uint fields, const cl::Buffer& in,
-                                      const cl::Buffer& out) {
-    KernelArguments kernel = program.kernel();
-    kernel.set(program.row.rays_per_item ? "count" : "blocks", static_cast<cl_uint>(blocks));
-    kernel.set("any_hit", static_cast<cl_uint>(any_hit)).set("fields", fields).set("rays", in).set("answers", out);
-    overflows_.bind(kernel);
-    view_.bind(*prepared.on_device, kernel);
-    const unsigned each = program.row.rays_per_item;
-    const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
-    const size_t groups = (blocks + in_group - 1) / in_group;
-    return launchers_[&program.row].run(*device_, device_->queue(), kernel, static_cast<unsigned>(groups), layout.local_size(),
-                                        [] {});
-}
-
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
     return wrap_cl_errors(*device_, "tracing rays", [&] {
         if (hits) hits->clear();
@@ -65,8 +50,6 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
             last_ = asked;
             packing_ = 0;
             launchers_.clear();
-            requeued_rays_.forget();
-            dynamic_fetch_.forget();
         }
         if (packing_ != rays.packing()) {
             packing_ = rays.packing();
@@ -87,11 +70,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const bool debug = prepared.settings.debug;
         if (debug) overflows_.clear(queue);
         const LaunchTimes times =
-            &row == &requeued_rays() ? requeued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots),
-                                                            query.any_hit, fields, in, out, overflows_)
-            : &row == &dynamic_fetch()
-                ? dynamic_fetch_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out, overflows_)
-                : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
+            trace({prepared, *program, static_cast<unsigned>(rays.block_count()), query.any_hit, fields, in, out});
         overflowed_ = debug ? overflows_.read(queue) : 0;
         report_overflows(overflowed_, prepared.accel->plugin->id);
         autotuner_.took(times.device_ms);
