@@ -96,7 +96,7 @@ typedef struct rt_frame {
 } rt_frame;
 
 /* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of RT_LANES
- * of them, field by field: cl/queries/ray_blocks.h. */
+ * of them, field by field: cl/tracers/rays/ray_blocks.h. */
 typedef struct rt_ray {
     rt_f32 origin[3], t_min, direction[3], t_max;
 } rt_ray;

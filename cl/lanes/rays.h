@@ -56,10 +56,12 @@ typedef struct rt_hits {
 #define RT_OVERFLOWS_PARAM volatile global uint *overflows,
 #define RT_CLEAR_OVERFLOW(hit) (hit)->overflow = 0u; /* where rt_clear_hits() is not called for every hit */
 #define RT_COUNT_OVERFLOW(hit) if ((hit)->overflow != 0u) atomic_add(overflows, (hit)->overflow);
+#define RT_TALLY_OVERFLOW(tally, hit) (tally)->overflow += (hit)->overflow; /* of kernels with an rt_tally */
 #else
 #define RT_OVERFLOWS_PARAM
 #define RT_CLEAR_OVERFLOW(hit)
 #define RT_COUNT_OVERFLOW(hit)
+#define RT_TALLY_OVERFLOW(tally, hit)
 #endif
 
 /* Asked before each step of a traversal's loop; see CONTRACT.md. */

@@ -8,9 +8,7 @@
 /* Numbers of a work-item's rays: shadow rays, secondary rays, rays dropped for lack of room, and full traversal stacks. */
 typedef struct rt_tally {
     uint shadow, secondary, dropped, overflow;
-#ifdef RT_INSPECT
-    rt_recorder recorder;
-#endif
+    RT_RECORD(rt_recorder recorder)
 } rt_tally;
 
 /* Where the ray of each lane meets a surface. Normals are on the side that the ray comes from. */
@@ -67,9 +65,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
         const global rt_light *light = ctx->lights + i;
         vfloat cosines[RT_STREAM];
         uint asked[RT_STREAM], any_asked = 0;
-#ifdef RT_INSPECT
-        vfloat distances[RT_STREAM];
-#endif
+        RT_RECORD(vfloat distances[RT_STREAM])
         RT_FOR_EACH_PACKET(b, count) {
             const rt_point *p = points + b;
             rt_rays *shadow = rays + b;
@@ -106,18 +102,14 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
                 shadow->incoherent = rt_incoherent(shadow, p->area, asked[b]);
 #endif
             }
-#ifdef RT_INSPECT
-            distances[b] = distance;
-#endif
+            RT_RECORD(distances[b] = distance)
         }
         if (any_asked == 0u) continue;
         if (frame->shadows != 0u) {
             rt_trace_stream_any(ctx, frame, rays, hits, count);
             RT_FOR_EACH_PACKET(b, count) {
                 tally->shadow += popcount(asked[b]);
-#ifdef RT_DEBUG
-                tally->overflow += hits[b].overflow;
-#endif
+                RT_TALLY_OVERFLOW(tally, hits + b)
             }
         }
         RT_FOR_EACH_PACKET(b, count) {
@@ -134,12 +126,8 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             const rt_vec color = rt_spread(light->color);
             diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
             shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);
-#ifdef RT_INSPECT
-            tally->recorder.steps = frame->shadows != 0u ? hits[b].steps : tally->recorder.steps;
-            tally->recorder.leaf_tests = frame->shadows != 0u ? hits[b].leaf_tests : tally->recorder.leaf_tests;
-            rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, asked[b], rt_bits(lit), rt_vec_of(rays[b].ox, rays[b].oy, rays[b].oz),
-                             towards, distances[b], rt_reflected_light(m, rt_scale(cosines[b], color), rt_scale(highlight, color)));
-#endif
+            RT_RECORD(rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, asked[b], rt_bits(lit), rays + b, hits + b, distances[b],
+                                       rt_reflected_light(m, rt_scale(cosines[b], color), rt_scale(highlight, color))))
         }
     }
     RT_FOR_EACH_PACKET(b, count)

@@ -10,6 +10,13 @@
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
+/* Code that only the inspector's program has, which records rays: tracers/inspect/recorder.h. */
+#ifdef RT_INSPECT
+#define RT_RECORD(code) code;
+#else
+#define RT_RECORD(code)
+#endif
+
 #if RT_MAX_PIXELS == 1 /* on GPUs, constants tell the compiler that a packet is one pixel */
 #define RT_PACKET_W(frame) 1u
 #define RT_PACKET_H(frame) 1u

@@ -34,7 +34,7 @@
 #include "check/shapes/shape_checks.hpp"
 #include "device/device.hpp"
 #include "import/wire.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"
 

@@ -51,7 +51,6 @@ BenchRequest make_request(const BenchCommand& command) {
             throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only; leave it out");
     }
     request.only = command.only;
-    request.breakdown = command.breakdown;
     request.max_triangles = command.max_triangles;
     if (!command.ranks.empty()) request.ranks = command.ranks;
     if (!command.mpirun.empty()) request.mpirun = command.mpirun;
@@ -127,7 +126,7 @@ void write(const BenchCommand& command, const BenchReport& report, RowsFile* row
 
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
     const BenchRequest request = make_request(command);
-    if (request.suites.empty() && request.files.empty() && !request.breakdown && command.join_files.empty())
+    if (request.suites.empty() && request.files.empty() && command.join_files.empty())
         throw Error(
             Exit::usage,
             "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, mpi, moving, quick) or a scene file");

@@ -296,8 +296,6 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("--only", bench.only, "Only cases with this in their name, such as bunny/ or /shadow; may be repeated")
         ->type_name("TEXT")
         ->allow_extra_args(false);
-    app.add_flag("--breakdown", bench.breakdown,
-                 "Where the time of a frame goes: of the scenes named, or of the shared models as half mirrors");
     app.add_flag("--list", bench.list, "Only list what would be measured");
     app.add_flag("--no-peers,--no-baselines", bench.no_baselines, "Leave out the baselines: other ray tracers (peers)");
     single(app.add_option("--time-limit", bench.time_limit_s, "Limit for the whole run; default: the limits of the suites"))

@@ -115,7 +115,6 @@ struct BenchCommand {
     bool list = false, no_baselines = false, quiet = false;
     double time_limit_s = 0, max_spread = 0.1;
     std::vector<std::string> only;
-    bool breakdown = false;
     uint64_t max_triangles = 10'000'000;
     std::vector<unsigned> ranks;  // of suite mpi; empty: the suite's own
     std::string mpirun;           // the same

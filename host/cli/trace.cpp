@@ -9,11 +9,11 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/queries/query_scene.hpp"
-#include "render/queries/ray_queries.hpp"
-#include "render/queries/ray_text.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/edit.hpp"
+#include "render/tracers/rays/query_scene.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity {
 namespace {

@@ -12,8 +12,8 @@
 // A header that host and kernels share must be equal to the one that the program was compiled with. If it is not, this is an
 // error, because kernels would read wrong structs.
 //
-// Messages name files as the compiler does: "cl/tracers/iterative.cl", "plugins/accel/bvh2/bvh2.cl". All functions are
-// thread-safe.
+// Messages name files as the compiler does: "cl/tracers/iterative/iterative.cl", "plugins/accel/bvh2/bvh2.cl". All functions
+// are thread-safe.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -23,8 +23,8 @@
 
 namespace clarity {
 
-// Returns the text of a file; `name` is relative to cl/ ("tracers/iterative.cl"). Throws Error(kernel_build_failed) if there is
-// no such text, or if rt_types.h or rt_shared.h on disk differ from the program's.
+// Returns the text of a file; `name` is relative to cl/ ("tracers/iterative/iterative.cl"). Throws Error(kernel_build_failed)
+// if there is no such text, or if rt_types.h or rt_shared.h on disk differ from the program's.
 std::string kernel_text(const std::string& name);
 
 // Returns the names of all files of cl/ that are inside the program, in a fixed order.

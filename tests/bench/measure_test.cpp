@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "render/queries/autotuner.hpp"
+#include "render/tracers/rays/autotuner.hpp"
 
 namespace {
 

@@ -93,7 +93,6 @@ TEST_F(BenchRanks, RowsSayHowFastAndWhereTimeGoes) {
     }
     EXPECT_EQ(names, (std::vector<std::string>{"start", "import", "share", "build", "wait", "trace", "collect"}));
     EXPECT_NE(result.out.find("efficiency %"), std::string::npos) << result.out;
-    EXPECT_EQ(result.out.find("breakdown"), std::string::npos) << result.out;
     const std::string log = scratch_.read("log");
     for (const std::string& words :
          std::vector<std::string>{"--here -n 1 ", "--here -n 2 ", " render " + scratch_.path("a.scene"), "--set spp=3",

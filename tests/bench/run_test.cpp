@@ -18,9 +18,9 @@ namespace {
 class Run : public testing::Test {
  protected:
     Run() {
-        request_.breakdown = true;
         request_.files = {source_file("scenes/thesis/models/ball.obj")};
         request_.accels = {"bvh2"};
+        request_.baselines = false;
         request_.settings = {{"size", "32x24"}};
         request_.time_limit_s = 120;
         request_.only = {"/primary", "/shadow", "/reflection"};
@@ -28,7 +28,8 @@ class Run : public testing::Test {
     }
     BenchReport run(Progress& progress) {
         const PluginRegistry& plugins = Workbench::get().plugins();
-        const Suite suite = make_suite(request_, SceneCatalog("", ""), plugins);
+        Suite suite = make_suite(request_, SceneCatalog("", ""), plugins);
+        for (BenchCase& c : suite.cases) c.timing = Timing::counted_only;
         EXPECT_EQ(suite.cases.size(), 3u);
         return run_bench(plugins, request_, suite, options_, progress);
     }

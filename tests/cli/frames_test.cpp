@@ -10,6 +10,7 @@
 
 #include "base/host_name.hpp"
 #include "cli/run_program.hpp"
+#include "render/settings/tracer_choice.hpp"
 #include "support/scratch.hpp"
 
 namespace fs = std::filesystem;
@@ -80,6 +81,11 @@ TEST_F(Frames, TheDigestIsThatOfThePicture) {
     };
     const std::string plain = digest({});
     EXPECT_EQ(digest({"--accel", "bvh2", "--lanes", "4", "--packet", "8x8", "--device", "cpu"}), plain);
+    // Tracers that say that they make the same picture; what a tracer costs is of the tracer.
+    for (const clarity::TracerChoice& choice : clarity::tracer_choices())
+        EXPECT_EQ(digest({"--tracer", choice.id}) == plain, choice.picture == clarity::picture_of_tracer("auto")) << choice.id;
+    EXPECT_NE(digest({"--tracer", "wavefront", "--aov", "generations"}),
+              digest({"--tracer", "iterative", "--aov", "generations"}));
     EXPECT_NE(digest({"--spp", "2"}), plain);
     EXPECT_NE(digest({"--exposure", "2"}), plain);
     EXPECT_NE(digest({"--camera", "0,1,9,0,0,0"}), plain);

@@ -98,7 +98,7 @@ constexpr const char* kWaiting = "waiting for a change";
 }  // namespace
 
 TEST_F(Watch, RendersAgainAfterAnEditAMistakeAndItsRepair) {
-    const std::string kernel = "cl/tracers/iterative.cl", sound = scratch_.read(kernel);
+    const std::string kernel = "cl/tracers/iterative/iterative.cl", sound = scratch_.read(kernel);
     const std::string store = "rt_put_pixels(frame, origin, sums, film);",
                       swapped = "for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw;\n" + store;
     ASSERT_NE(sound.find(store), std::string::npos) << "the line that this test edits";
@@ -132,7 +132,7 @@ TEST_F(Watch, ALoopWithoutEndNeverRunsHere) {
     Environment environment;  // as users have it; most tests compile in their own process
     environment.set("CLARITY_COMPILE", "worker");
     environment.set("XDG_CACHE_HOME", scratch_.path("cache"));
-    const std::string kernel = "cl/tracers/iterative.cl", sound = scratch_.read(kernel);
+    const std::string kernel = "cl/tracers/iterative/iterative.cl", sound = scratch_.read(kernel);
     const std::string store = "rt_put_pixels(frame, origin, sums, film);";
     ASSERT_NE(sound.find(store), std::string::npos) << "the line that this test edits";
     std::vector<std::string> all = words();

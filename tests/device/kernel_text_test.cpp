@@ -99,8 +99,8 @@ TEST_F(KernelText, CandidatesAreAllFilesThatMayBeUsed) {
     EXPECT_TRUE(kernel_candidates({&kPlugin}).empty());
     from_disk();
     const std::vector<std::string> all = kernel_candidates({&kPlugin});
-    for (const char* name : {"cl/rt_types.h", "cl/film.cl", "cl/tracers/iterative.cl", "plugins/accel/watched/watched.cl",
-                             "plugins/accel/watched/watched_types.h"})
+    for (const char* name : {"cl/rt_types.h", "cl/film.cl", "cl/tracers/iterative/iterative.cl",
+                             "plugins/accel/watched/watched.cl", "plugins/accel/watched/watched_types.h"})
         EXPECT_EQ(std::count(all.begin(), all.end(), scratch_.path(name)), 1) << name;
 }
 

@@ -30,7 +30,8 @@ Workbench::Workbench()
     : plugins_(PluginRegistry::discover()),
       device_(std::make_shared<Device>(choose_device(""))),
       preparer_(plugins_, device_),
-      frames_(device_) {}
+      frames_(device_),
+      queries_(device_) {}
 
 Workbench& Workbench::get() {
     // Never destroyed: at exit, an OpenCL driver may be unloaded before static objects are destroyed.
@@ -83,7 +84,7 @@ std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& setti
 
 std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays,
                                     RayQuery query) {
-    return frames_.trace_rays(*prepare(scene, settings), rays, query);
+    return queries_.trace(*prepare(scene, settings), rays, query);
 }
 
 Settings make_settings(const std::vector<std::pair<std::string, std::string>>& pairs) {

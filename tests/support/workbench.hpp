@@ -8,6 +8,7 @@
 #include "plugin/registry.hpp"
 #include "render/frame/frame_renderer.hpp"
 #include "render/frame/preparer.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
 
 namespace clarity::test {
 
@@ -23,6 +24,7 @@ class Workbench {
     // For tests of what follows tracing, and of objects that work beside the renderer.
     const std::shared_ptr<Device>& shared_device() const { return device_; }
     FrameRenderer& frames() { return frames_; }
+    RayQueries& queries() { return queries_; }
     // Ids of all structures, so that new ones are tested without a change here. Quick tests (the environment variable
     // CLARITY_QUICK_TESTS, which ./test sets) take some of them, and fewer lane counts and packets below.
     std::vector<std::string> accels() const;
@@ -46,6 +48,7 @@ class Workbench {
     Progress progress_;
     Preparer preparer_;
     FrameRenderer frames_;
+    RayQueries queries_;
 };
 
 // CLARITY_QUICK_TESTS is set.

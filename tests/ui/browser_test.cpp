@@ -163,9 +163,9 @@ TEST(FrameGraph, AxesEndAtRoundNumbers) {
 }
 
 TEST(LogRows, FindPlacesInSourceFiles) {
-    const auto place = find_source_place("  cl/tracers/iterative.cl:120:7: error: expected ';'");
+    const auto place = find_source_place("  cl/tracers/iterative/iterative.cl:120:7: error: expected ';'");
     ASSERT_TRUE(place);
-    EXPECT_EQ(place->file, "cl/tracers/iterative.cl");
+    EXPECT_EQ(place->file, "cl/tracers/iterative/iterative.cl");
     EXPECT_EQ(place->line, 120);
     EXPECT_EQ(place->begin, 2u);
     for (const char* text : {"device 0:0 is busy", "at 12:30", "https://host:80/", "ratio 1.5:1", "a.cl: no number",

@@ -23,7 +23,7 @@ class KernelEdit : public WindowTest {
     void SetUp() override {
         WindowTest::SetUp();
         fs::copy(source_path("cl"), folder.path() + "/cl", fs::copy_options::recursive);
-        kernel = folder.path() + "/cl/tracers/iterative.cl";
+        kernel = folder.path() + "/cl/tracers/iterative/iterative.cl";
         good = text_of(kernel);
     }
     std::map<std::string, std::string> environment() const { return {{"CLARITY_KERNEL_PATH", folder.path() + "/cl"}}; }
@@ -40,7 +40,7 @@ class KernelEdit : public WindowTest {
                           to = "for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw; " + from;
         std::string text = good;
         const size_t at = text.find(from);
-        EXPECT_NE(at, std::string::npos) << "cl/tracers/iterative.cl has changed: edit something else of it here";
+        EXPECT_NE(at, std::string::npos) << "cl/tracers/iterative/iterative.cl has changed: edit something else of it here";
         return at == std::string::npos ? text : text.replace(at, from.size(), to);
     }
     static Pixels blue_for_red(Pixels pixels) {
@@ -65,7 +65,7 @@ TEST_F(KernelEdit, IsCompiledAndShownAutomatically) {
 }
 
 TEST_F(KernelEdit, TheKernelThatInspectsPixelsIsTriedFirst) {
-    const fs::path file = folder.path() + "/cl/tracers/inspect.cl";
+    const fs::path file = folder.path() + "/cl/tracers/inspect/inspect.cl";
     std::string text = text_of(file);
     const std::string from = "if (packet != packet_wanted) continue;";
     ASSERT_NE(text.find(from), std::string::npos) << file << " has changed: edit something else of it here";
@@ -128,7 +128,7 @@ TEST_F(KernelEdit, ALoopWithoutEndLeavesThePictureAlone) {
     const Pixels before = window->picture();
     const std::string store = "rt_put_pixels(frame, origin, sums, film);";
     const size_t at = good.find(store);
-    ASSERT_NE(at, std::string::npos) << "cl/tracers/iterative.cl has changed: edit something else of it here";
+    ASSERT_NE(at, std::string::npos) << "cl/tracers/iterative/iterative.cl has changed: edit something else of it here";
     write(std::string(good).insert(at, "while (sums[0].x < 1e30f) sums[0].y += 1.0f;\n"));
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["messages"] == 1; }));
@@ -174,9 +174,9 @@ TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
         ASSERT_EQ(window->command(change), "");
     window->settle();
     const Pixels before = window->picture();
-    const fs::path aov = folder.path() + "/cl/tracers/aov.cl";
+    const fs::path aov = folder.path() + "/cl/tracers/aov/aov.cl";
     const std::string plain = text_of(aov), from = "hit->t, bits", to = "hit->t * hit->t, bits";
-    ASSERT_NE(plain.find(from), std::string::npos) << "cl/tracers/aov.cl has changed: edit something else of it here";
+    ASSERT_NE(plain.find(from), std::string::npos) << "cl/tracers/aov/aov.cl has changed: edit something else of it here";
     std::string squared = plain;
     squared.replace(squared.find(from), from.size(), to);
     Pixels after;

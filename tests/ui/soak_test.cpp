@@ -39,7 +39,7 @@ class Soak : public WindowTest {
     void SetUp() override {
         WindowTest::SetUp();
         fs::copy(source_path("cl"), folder.path() + "/cl", fs::copy_options::recursive);
-        kernel = folder.path() + "/cl/tracers/iterative.cl";
+        kernel = folder.path() + "/cl/tracers/iterative/iterative.cl";
         std::ifstream in(kernel, std::ios::binary);
         good = {std::istreambuf_iterator<char>(in), {}};
         ASSERT_NE(good.find(kStore), std::string::npos) << kernel << " has changed: edit something else of it here";

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "render/accel/accel_volumes.hpp"
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/widgets/rect.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/frame/inspect.hpp"
+#include "render/tracers/inspect/inspect.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/overlay/projection.hpp"
 

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "render/frame/inspect.hpp"
+#include "render/tracers/inspect/inspect.hpp"
 #include "ui/threads/picture.hpp"
 
 namespace clarity::ui {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 #include "scene/motion/deform.hpp"
 
 namespace clarity::ui {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/frame/inspect.hpp"
+#include "render/tracers/inspect/inspect.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::ui {

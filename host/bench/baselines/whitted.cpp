@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "render/frame/frame_constants.hpp"
+#include "render/launch/frame_constants.hpp"
 
 namespace clarity::bench {
 

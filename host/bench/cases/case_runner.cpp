@@ -4,7 +4,6 @@
 
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/baseline_entries.hpp"
-#include "bench/cases/breakdown.hpp"
 #include "bench/cases/build_entry.hpp"
 #include "bench/cases/frame_entries.hpp"
 #include "bench/cases/pictures.hpp"
@@ -77,11 +76,6 @@ class CaseRunner {
             return;
         }
         run_or_mark_failed(entry, [&](BenchRecord&) {
-            if (case_.measure == "breakdown") {
-                const View view = case_.mirrors ? whitted_view(*fixture_.scene(), fixture_.view()) : fixture_.view();
-                measure_breakdown(row, fixture_, device, settings, view, rules_, progress_);
-                return;
-            }
             const Fixture::Held held = fixture_.prepare(device, settings, progress_);
             describe(row, *held.prepared);
             if (case_.measure == "frame")

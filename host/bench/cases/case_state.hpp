@@ -9,7 +9,7 @@
 #include "bench/cases/entry.hpp"
 #include "bench/output/row.hpp"
 #include "bench/run/fixture.hpp"
-#include "render/queries/ray_blocks.hpp"
+#include "render/tracers/rays/ray_blocks.hpp"
 
 namespace clarity::bench {
 

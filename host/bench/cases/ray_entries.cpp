@@ -12,15 +12,15 @@ void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
     if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
     entry.once = [=, &set, blocks = packed] {
         Sample sample;
-        sample.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
-        const RayTuning tuning = held.frames->ray_tuning();
+        sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
+        const RayTuning tuning = held.queries->tuning();
         sample.trial = tuning.trial;
         sample.settled = tuning.settled;
         sample.variant = tuning.variant;
         return sample;
     };
     entry.finish = [=, &set, &state](BenchRecord& row) {
-        const auto hits = held.frames->trace_rays(*held.prepared, set.rays, RayQuery{set.any_hit, true});
+        const auto hits = held.queries->trace(*held.prepared, set.rays, RayQuery{set.any_hit, true});
         const rt_accel& accel = *held.prepared->accel->layout->accel;
         row.analysis = analyze(set.rays, hits, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
         std::vector<float> distances;

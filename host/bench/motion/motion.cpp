@@ -240,7 +240,7 @@ class MotionCase {
                 build_accel(*scene, plugin, settings.accel_params, progress_, fixture_.target_of(plugin)));
         Fixture::Held held;
         held.prepared = Preparer(plugins_, fixture_.opened(0)).prepare(scene, settings, progress_, accel);
-        held.frames = std::make_shared<FrameRenderer>(fixture_.opened(0));
+        held.queries = std::make_shared<RayQueries>(fixture_.opened(0));
         describe(entry.row, *held.prepared);
         if (rays_.rays.empty()) make_rays(held);
         const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
@@ -248,8 +248,8 @@ class MotionCase {
         if (!packed) packed = std::make_shared<const RayBlocks>(rays_.rays, lanes);
         entry.once = [=, blocks = packed] {
             Sample sample;
-            sample.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{rays_.any_hit, false, true});
-            const RayTuning tuning = held.frames->ray_tuning();
+            sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{rays_.any_hit, false, true});
+            const RayTuning tuning = held.queries->tuning();
             sample.trial = tuning.trial;
             sample.settled = tuning.settled;
             sample.variant = tuning.variant;
@@ -257,8 +257,7 @@ class MotionCase {
         };
         entry.finish = [=](BenchRecord& row) {
             std::vector<float> distances;
-            for (const rt_hit& hit : held.frames->trace_rays(*held.prepared, rays_.rays, RayQuery{}))
-                distances.push_back(hit.t);
+            for (const rt_hit& hit : held.queries->trace(*held.prepared, rays_.rays)) distances.push_back(hit.t);
             state_.agreement.check_hits(row, rays_, distances);
         };
         set_ray_counts(entry.row, rays_);
@@ -268,7 +267,7 @@ class MotionCase {
         const View& view = fixture_.view();
         rays_ = camera_rays(view.camera, settings.width, settings.height);
         if (case_.measure == rays_.kind) return;
-        const std::vector<rt_hit> hits = held.frames->trace_rays(*held.prepared, rays_.rays, RayQuery{});
+        const std::vector<rt_hit> hits = held.queries->trace(*held.prepared, rays_.rays);
         const RaySet primary = std::move(rays_);
         rays_ = {};
         if (view.lights.empty()) throw Error(Exit::usage, "no " + case_.measure + " rays: the scene has no light");

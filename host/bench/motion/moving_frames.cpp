@@ -17,6 +17,19 @@ constexpr unsigned kFrames = 20;          // of a call
 constexpr unsigned kFramesOfAWave = 100;  // until it begins again
 constexpr uint64_t kSerialVertices = 4096;
 
+constexpr const char* kWave =
+    R"(/* Writes vertices first .. first + count - 1: `rest` plus a wave along x + z, in y. size: of the scene; phase: 0 to 1. */
+RT_BUILD_KERNEL wave_vertices(const global float *rest, global float *positions, uint first, uint count, uint each, float size, float phase)
+{
+    const uint begin = first + RT_GROUP_NUMBER * each, end = min(begin + each, first + count);
+    for (uint v = begin + RT_ITEM; v < end; v += RT_GROUP) {
+        float3 p = vload3(v, rest);
+        p.y += 0.03f * size * sinpi(2.0f * (4.0f * (p.x + p.z) / size + phase));
+        vstore3(p, v, positions);
+    }
+}
+)";
+
 // The scene with an octahedron in the middle of its box, which is the last instance. Its size is a fiftieth of the scene's.
 Scene with_object(Scene scene) {
     const Bounds box = scene.bounds();
@@ -69,7 +82,7 @@ MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device
     if (!first.on_device) throw Error(Exit::usage, "the structure cannot follow: " + first.why);
     prepared_ = preparer.prepare(scene_, settings_, progress, motion_->accel(), {first.on_device, true});
     if (!waves) return;
-    wave_ = cl::Kernel(kernels_.compile_file("wave.cl"), "wave_vertices");
+    wave_ = cl::Kernel(kernels_.compile(kWave, "the wave"), "wave_vertices");
     const size_t bytes = scene.positions.size() * sizeof(float);
     rest_ = kernels_.buffer(bytes);
     device_->queue().enqueueWriteBuffer(rest_, CL_TRUE, 0, bytes, scene.positions.data());

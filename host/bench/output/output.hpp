@@ -18,7 +18,6 @@ BenchReport read_bench_json(const std::string& text);
 // All tables for the terminal: one per suite and measure, at most 120 columns wide, then what was left out.
 std::string bench_table(const BenchReport& report);
 // Part of bench_table(): where the time of frames goes.
-std::string breakdown_table(const BenchReport& report);
 // Part of bench_table(): pictures rendered by ranks of MPI, and where their time goes.
 std::string ranks_table(const BenchReport& report);
 // Part of bench_table(): pictures rendered by several devices, compared with those of one.

@@ -52,13 +52,12 @@ struct Played {
 
 struct BenchRecord {
     // ---- what was measured
-    std::string suite;      // thesis | packets | accel | scale | cpu | devices | mpi | quick | breakdown
+    std::string suite;      // thesis | packets | accel | scale | cpu | devices | mpi | quick
     std::string case_name;  // "bunny/primary"; rows of one case were measured interleaved, so that they can be compared
     std::string scene;      // "bunny"
-    std::string
-        measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture | ranks
-    std::string variant;   // identifies a row within its case and device: "now", "then", "bvh2", "4x4, lanes 16"
-    std::string baseline;  // "" for our rows, else "embree packet16 high"
+    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | picture | ranks
+    std::string variant;    // identifies a row within its case and device: "now", "then", "bvh2", "4x4, lanes 16"
+    std::string baseline;   // "" for our rows, else "embree packet16 high"
 
     // ---- on which device
     std::string device, device_id, driver;  // of a baseline: the host's processor
@@ -97,9 +96,9 @@ struct BenchRecord {
     Played animation;                                        // of suite policy
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 
-    Parts parts_ms;             // of breakdown and of ranks: they add up to the frame, to the whole command
-    Parts within_ms;            // of breakdown: contained in the parts
-    double parts_error_ms = 0;  // half the interquartile range of the least steady probe
+    Parts parts_ms;   // of ranks: they add up to the whole command
+    Parts within_ms;  // this and the next: of the breakdown of a frame, which earlier versions measured
+    double parts_error_ms = 0;
 
     unsigned ranks = 0;     // processes of MPI that shared the picture; 0: none did
     double efficiency = 0;  // of ranks: speed-up over the first row, by that of the number of devices; 0: not known

@@ -4,7 +4,7 @@
 #include "device/device.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/frame/frame_stats.hpp"
-#include "render/frame/prepared.hpp"
+#include "render/launch/prepared.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/scene.hpp"
 

@@ -93,6 +93,7 @@ const Fixture::Held& Fixture::prepare(size_t device, const Settings& settings, P
     if (!held.frames) {
         held.prepared = places_[device]->preparer.prepare(loaded_.scene, settings, progress);
         held.frames = std::make_shared<FrameRenderer>(places_[device]->device);
+        held.queries = std::make_shared<RayQueries>(places_[device]->device);
     }
     return held;
 }
@@ -113,7 +114,7 @@ std::shared_ptr<const MultiPrepared> Fixture::prepare_all(const Settings& settin
 const RaySet& Fixture::rays(const std::string& kind, const Held& held) {
     if (rays_.empty()) {
         rays_.push_back(camera_rays(loaded_.view.camera, width_, height_));
-        const std::vector<rt_hit> hits = held.frames->trace_rays(*held.prepared, rays_[0].rays, RayQuery{});
+        const std::vector<rt_hit> hits = held.queries->trace(*held.prepared, rays_[0].rays);
         if (!loaded_.view.lights.empty())
             for (RaySet& set : secondary_rays(*loaded_.scene, loaded_.view.lights[0], rays_[0], hits, width_, height_))
                 rays_.push_back(std::move(set));

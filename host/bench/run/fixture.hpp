@@ -9,6 +9,7 @@
 #include "bench/baselines/baseline.hpp"
 #include "bench/suites/suite.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
 
 namespace clarity::bench {
 
@@ -29,11 +30,12 @@ class Fixture {
     const std::shared_ptr<const Scene>& scene() const { return loaded_.scene; }
     const View& view() const { return loaded_.view; }
 
-    // A structure with its program, and a renderer of its own (film, ray buffers), so that interleaved measuring does not
-    // disturb its pace.
+    // A structure with its program, and a film and ray buffers of its own, so that interleaved measuring does not disturb its
+    // pace.
     struct Held {
         std::shared_ptr<const Prepared> prepared;
         std::shared_ptr<FrameRenderer> frames;
+        std::shared_ptr<RayQueries> queries;
     };
     // Builds it on first use and keeps it until the next scene. Throws what Preparer::prepare throws.
     const Held& prepare(size_t device, const Settings& settings, Progress& progress);

@@ -14,7 +14,7 @@ struct Sample {
     double time_ms = 0;  // by the device's clock
     double wall_ms = 0;  // by the host's
 
-    // Of a contender that tunes itself (render/queries/autotuner.hpp):
+    // Of a contender that tunes itself (render/tracers/rays/autotuner.hpp):
     bool trial = false;    // this repetition tried one of several variants: its time does not count, and it is repeated
     bool settled = true;   // a variant is chosen: the warm-up may end
     unsigned variant = 0;  // index of the variant; samples of other variants than the last one are dropped

@@ -36,8 +36,7 @@ class Planner {
 
     Suite plan() {
         for (const std::string& name : request_.suites) add(name);
-        if (request_.breakdown) breakdown();
-        if (request_.suites.empty() && !request_.files.empty() && !request_.breakdown) accel("accel", chosen_or({}), true);
+        if (request_.suites.empty() && !request_.files.empty()) accel("accel", chosen_or({}), true);
         if (request_.time_limit_s > 0) suite_.time_limit_s = request_.time_limit_s;
         keep_only();
         return std::move(suite_);
@@ -281,22 +280,6 @@ class Planner {
                     if (const std::string like = like_quality(variant.accel);
                         std::find(qualities.begin(), qualities.end(), like) == qualities.end())
                         qualities.push_back(like);
-            }
-    }
-
-    // Where the time of a frame goes. Scenes named by the user keep their materials. The shared models have no mirrors, so that
-    // they use the materials of the baselines' frame.
-    void breakdown() {
-        const std::vector<size_t> scenes = chosen_or(request_.files.empty() ? catalog_.shared() : std::vector<BenchScene>());
-        limit(100.0 * double(scenes.size()));
-        for (const size_t scene : scenes)
-            for (const char* measure : {"breakdown", "primary", "shadow", "reflection"}) {
-                BenchCase& c = add_case("breakdown", scene, measure, measure);
-                c.variants = {{main_accel(), main_accel(), {}, false}};
-                if (request_.accels.size() > 1) c.variants = every_accel();
-                c.timing = c.measure == "breakdown" ? Timing::timed : Timing::counted_only;
-                c.mirrors = request_.files.empty();
-                for (Variant& variant : c.variants) variant.settings.emplace_back("tracer", "iterative");
             }
     }
 

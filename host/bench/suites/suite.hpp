@@ -21,7 +21,6 @@ struct BenchRequest {
     uint64_t max_triangles = 10'000'000;                           // largest model of the suites scale and large
     double time_limit_s = 0;                                       // of the whole run; 0: the sum of the suites' own limits
     bool baselines = true;                                         // measure the baselines too
-    bool breakdown = false;                                        // measure the parts of a frame's time, besides the suites
 };
 
 struct SuiteScene {
@@ -45,14 +44,13 @@ enum class Timing { timed, counted_only };
 
 struct BenchCase {
     std::string suite, name;
-    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
+    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | picture |
                           // ranks | moving | refit | rebuild | object | clip | play
     size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene
     Timing timing = Timing::timed;
-    std::string motion;    // of suite moving: see motions.hpp
-    bool mirrors = false;  // of breakdown: replace all materials by the half mirrors of the baselines' frame
+    std::string motion;  // of suite moving: see motions.hpp
 };
 
 struct Suite {

@@ -9,7 +9,7 @@
 #include "check/builds/refit_run.hpp"
 #include "check/builds/result_checks.hpp"
 #include "render/accel/topology_check.hpp"
-#include "render/queries/query_scene.hpp"
+#include "render/tracers/rays/query_scene.hpp"
 
 namespace clarity::check {
 namespace {

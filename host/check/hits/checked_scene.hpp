@@ -7,7 +7,7 @@
 
 #include "check/builds/build_run.hpp"
 #include "device/device.hpp"
-#include "render/queries/ray_queries.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
 
 namespace clarity::check {
 

@@ -16,7 +16,7 @@
 #include "check/oclgrind.hpp"
 #include "check/scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "base/numbers.hpp"
 #include "check/hits/checked_scene.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

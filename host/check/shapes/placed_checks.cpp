@@ -7,9 +7,9 @@
 #include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/queries/query_scene.hpp"
-#include "render/queries/ray_queries.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/query_scene.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 #include "scene/motion/matrix.hpp"
 
 namespace clarity::check {

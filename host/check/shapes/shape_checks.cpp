@@ -12,7 +12,7 @@
 #include "check/shapes/shape_bench.hpp"
 #include "check/shapes/surface_checks.hpp"
 #include "check/shapes/uv_checks.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

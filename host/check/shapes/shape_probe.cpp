@@ -39,7 +39,7 @@ std::string source_of(const rt_plugin& plugin, const Device& device, const Varia
         "uint bits, rt_shape_surface *s)\n{\n" +
         (single ? "    RT_SHAPE_SURFACE_EACH(" + id + "_surface)" : "    " + id + "_surface(numbers, more, at, u, v, s);") +
         "\n}");
-    out.include("queries/shape_probe.cl");
+    out.include("primitives/shape_probe.cl");
     return out.text();
 }
 

@@ -7,11 +7,12 @@
 #include "device/kernel_files.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/settings/aov.hpp"
+#include "render/settings/tracer_choice.hpp"
 
 namespace clarity {
 namespace {
 
-// Settings that change how a picture is traced, but not the picture.
+// Settings that change how a picture is traced, but not the picture. The tracer says itself what its pictures show.
 bool chooses_a_way(const std::string& key) {
     static const char* const keys[] = {"poses", "tracer", "packet", "lanes", "portable", "debug"};
     return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
@@ -24,7 +25,9 @@ bool chooses_colors(const std::string& key) {
 }
 
 void add_settings_to(Digest& digest, const Settings& settings, bool display) {
-    const bool cost = find_aov(settings.aov).about == Aov::About::cost;
+    const Aov& aov = find_aov(settings.aov);
+    const bool cost = aov.about == Aov::About::cost;
+    if (!aov.tracer) digest.add(picture_of_tracer(settings.tracer));
     for (const Setting& row : settings_table()) {
         if ((!cost && chooses_a_way(row.key)) || (!display && chooses_colors(row.key))) continue;
         digest.add(row.key);
@@ -79,7 +82,7 @@ std::string pixel_digest(const ByteImage& image) {
 
 std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepared& prepared) {
     Digest digest;
-    const KernelSource source = kernel_for(prepared, prepared.program->row.kind);
+    const KernelSource source = kernel_for(prepared, prepared.program->row);
     digest.add(source.text);
     digest.add(source.options);
     for (const double parameter : prepared.settings.accel_params) digest.add_value(parameter);

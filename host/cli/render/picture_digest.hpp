@@ -12,8 +12,8 @@ namespace clarity {
 
 // Digests of the frames of one scene: 32 hexadecimal digits, from all that a picture depends on: the scene, what options and
 // presets change in it, the time, the settings, the kernels' texts and the program's version. They do not depend on paths,
-// threads, devices or tiles, nor on how rays are traced: accel, tracer, packet and lanes make the same picture, apart from
-// quantities that say what tracing cost. Used from one thread.
+// threads, devices or tiles, nor on how rays are traced: accel, packet and lanes make the same picture, apart from quantities
+// that say what tracing cost. Tracers make the same picture if they say so (TracerChoice::picture). Used from one thread.
 class PictureDigests {
  public:
     // scene: imported; it must outlive this. options.output: its format decides whether tone mapping counts. Throws Error if a

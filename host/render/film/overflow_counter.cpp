@@ -4,10 +4,8 @@
 
 namespace clarity {
 
-cl_uint OverflowCounter::bind(cl::Kernel& kernel, cl_uint at, bool debug) {
-    if (!debug) return at;
-    kernel.setArg(at, count_.get());
-    return at + 1;
+void OverflowCounter::bind(KernelArguments& kernel) const {
+    if (kernel.has("overflows")) kernel.set("overflows", count_.get());
 }
 
 void OverflowCounter::clear(cl::CommandQueue& queue) {

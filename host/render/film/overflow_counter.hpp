@@ -4,15 +4,16 @@
 #include <string>
 
 #include "render/film/growing_buffer.hpp"
+#include "render/kernels/kernel_arguments.hpp"
 
 namespace clarity {
 
-// One number on the device. Debug programs of these kernels take it as the argument before the scene's (RT_OVERFLOWS_PARAM in
+// One number on the device. Debug programs of these kernels take it as the argument `overflows` (RT_OVERFLOWS_PARAM in
 // cl/lanes/rays.h). The functions throw cl::Error, which the caller handles.
 class OverflowCounter {
  public:
-    // Sets argument `at` if `debug`. Returns the number of the next argument.
-    cl_uint bind(cl::Kernel& kernel, cl_uint at, bool debug);
+    // Sets the argument if the kernel has it. Call clear() before.
+    void bind(KernelArguments& kernel) const;
     // Enqueues a reset to zero.
     void clear(cl::CommandQueue& queue);
     // Waits for all queued commands and returns how many stacks were full since clear().

@@ -12,14 +12,9 @@
 #include "render/film/bands.hpp"
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
-#include "render/film/overflow_counter.hpp"
-#include "render/frame/frame_constants.hpp"
-#include "render/frame/launch.hpp"
-#include "render/frame/view_buffers.hpp"
-#include "render/frame/wavefront.hpp"
-#include "render/kernels/program_cache.hpp"
-#include "render/queries/ray_queries.hpp"
+#include "render/launch/frame_constants.hpp"
 #include "render/settings/aov.hpp"
+#include "render/tracers/tracer.hpp"
 
 namespace clarity {
 namespace {
@@ -73,29 +68,24 @@ constexpr double kAtOnceMs = 50;
 }  // namespace
 
 struct FrameRenderer::Impl {
-    explicit Impl(const std::shared_ptr<Device>& d)
-        : device(d), film_kernels(d), relay(d, film_kernels), queries(d), wavefront(d) {}
+    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), relay(d, film_kernels) {}
 
     std::shared_ptr<Device> device;
     FilmKernels film_kernels;
     DisplayReadback relay;
-    RayQueries queries;
-    Wavefront wavefront;
     ViewBuffers view;
-    GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, counters{CL_MEM_READ_WRITE},
-        distances{CL_MEM_READ_WRITE};
+    GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
     const Aov* aov = &aov_table().front();  // the quantity in the film
     Layout layout;                          // of the picture in the film
     std::vector<rt_u32> rows;               // work-group rows that are traced; counters and distances are stored in this order
     unsigned begun = 0;                     // work-groups of these rows that earlier calls have traced
-    // The program and scene of `kernel` and of the launcher's pace.
+    // The program and scene of `tracer` and of the launcher's pace.
     std::shared_ptr<const TraceProgram> program;
     std::shared_ptr<const DeviceScene> bound;
     bool bound_moves = false;  // Prepared::is_moved
-    cl::Kernel kernel;
+    std::unique_ptr<FrameTracer> tracer;
     bool debug = false;
-    OverflowCounter overflows;  // used if counts_overflows()
     Launcher launcher;
     // Whether and how a picture was displayed: by read_display() or by begin_display().
     enum class Shown { no, read, begun };
@@ -125,7 +115,11 @@ struct FrameRenderer::Impl {
         if (program != prepared.program || (bound != prepared.on_device && !moves_on) || width != new_width ||
             height != new_height)
             launcher.forget();
-        if (program != prepared.program) kernel = prepared.program->kernel();
+        if (program != prepared.program) {
+            program.reset();
+            tracer.reset();
+            tracer = open_tracer(device, prepared.program);
+        }
         program = prepared.program;
         bound = prepared.on_device;
         bound_moves = prepared.is_moved;
@@ -142,15 +136,14 @@ struct FrameRenderer::Impl {
         }
         begun = picture.shared ? layout.groups_x(width) * static_cast<unsigned>(picture.shared->begin) : 0;
         film.fit(device->context(), film_bytes(FilmKernels::room(size_t(width) * height)));
-        if (program->has_generations())
+        if (tracer->counts_rays())
             distances.fit(device->context(), layout.packets(width, height) * layout.rays() * sizeof(float));
     }
 
     // How many of the `left` samples the next launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
-        const bool splits = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
-        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
-            splits || begun > 0)
+        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || begun > 0 ||
+            !tracer->takes_layers(picture.prepared, picture.view))
             return 1;
         const DeviceInfo& info = device->info();
         uint64_t room = info.global_bytes / kShareOfMemory;
@@ -185,39 +178,14 @@ struct FrameRenderer::Impl {
             if (progress.cancelled()) throw Cancelled();
         };
         const unsigned launched = at_once * groups() - begun;
-        if (program->is_wavefront()) {
-            const auto depth = static_cast<unsigned>(settings.depth);
-            return wavefront.trace(
-                queue, launcher,
-                {prepared, view_of, view, layout, width, height, begun, launched, depth, sample, into, distances.get()}, go_on,
-                side_work);
-        }
-        cl_uint at = 0;
-        kernel.setArg(at++, view.frame());
-        const cl_uint first_group = at++;
-        kernel.setArg(at++, into);
-        if (program->has_generations()) {
-            kernel.setArg(at++, counters.fit(device->context(), layout.packets(width, height) * at_once * 16));
-            kernel.setArg(at++, distances.get());
-        }
-        if (counts_overflows()) {
-            if (begun == 0) overflows.clear(queue);
-            at = overflows.bind(kernel, at, true);
-        }
-        view.bind(*prepared.on_device, kernel, at);
-        return launcher.run(*device, queue, kernel, first_group, launched, layout.local_size(), go_on, begun, side_work);
+        const FrameLaunch frame{prepared, settings, view_of, view, queue, into, distances.get(), begun, launched, sample};
+        return tracer->trace(launcher, frame, go_on, side_work);
     }
 
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
     GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
     // Pixels that this call traces.
     uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
-    cl::Event begin_sum(unsigned samples = 1) {
-        using Width = FilmKernels::CounterWidth;
-        if (program->is_wavefront())
-            return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count(), Width::bits64);
-        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets(), Width::bits32);
-    }
     void end_sum(FrameStats& stats) {
         stats.kernels.emplace_back();
         const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
@@ -227,7 +195,7 @@ struct FrameRenderer::Impl {
         stats.overflowed = counts.overflowed;
     }
     // Debug programs that trace only camera rays have no ray counters, so they count full stacks separately.
-    bool counts_overflows() const { return debug && !program->has_generations(); }
+    bool counts_overflows() const { return debug && !tracer->counts_rays(); }
     cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
         return film_kernels.begin_rows(film.get(), group_rows(), settings, rgba);
     }
@@ -259,7 +227,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
         const bool show = im.aov->is_color() && !shared && !im.device->info().cpu && before != Impl::Shown::no;
-        const bool sum = count_rays && prepared.program->has_generations() && im.groups() > im.begun;
+        const bool sum = count_rays && im.tracer->counts_rays() && im.groups() > im.begun;
         FrameStats stats;
         for (unsigned sample = samples.first, end = sample + samples.count; sample < end;) {
             const unsigned at_once = im.samples_at_once(picture, end - sample);
@@ -277,7 +245,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
                     cl::Event behind;
                     if (at_once > 1)
                         behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
-                    if (sum) behind = im.begin_sum(at_once);
+                    if (sum) behind = im.tracer->begin_count(im.film_kernels);
                     if (display) behind = im.begin_rows(settings, display);
                     if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
                     return behind;
@@ -291,7 +259,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
             one.launches = times.launches;
             one.primary = at_once * im.pixels();
             if (sum) im.end_sum(one);
-            if (count_rays && im.counts_overflows()) one.overflowed = im.overflows.read(im.device->queue());
+            if (count_rays && im.counts_overflows()) one.overflowed = im.tracer->overflows(im.device->queue());
             sample += at_once;
             one.samples = sample;
             add_stats(stats, one);
@@ -306,9 +274,9 @@ void FrameRenderer::count(FrameStats& stats) {
     Impl& im = *impl_;
     if (!im.program || im.rows.empty()) return;
     wrap_cl_errors(*im.device, "counting rays", [&] {
-        if (im.counts_overflows()) stats.overflowed = im.overflows.read(im.device->queue());
-        if (!im.program->has_generations()) return;
-        im.begin_sum();
+        if (im.counts_overflows()) stats.overflowed = im.tracer->overflows(im.device->queue());
+        if (!im.tracer->counts_rays()) return;
+        im.tracer->begin_count(im.film_kernels);
         im.end_sum(stats);
     });
 }
@@ -379,7 +347,7 @@ bool FrameRenderer::read_distance(FloatImage& image) {
         read_values(image);
         return true;
     }
-    if (!im.program || !im.program->has_generations()) return false;
+    if (!im.program || !im.tracer->counts_rays()) return false;
     wrap_cl_errors(*im.device, "reading distances", [&] {
         im.scratch.resize(size_t(im.groups()) * im.layout.group_packets() * im.layout.rays());
         if (!im.scratch.empty()) im.read(im.distances.get(), im.scratch.data(), im.scratch.size() * sizeof(float));
@@ -421,22 +389,6 @@ AsyncReadback FrameRenderer::begin_display(const Settings& settings) {
 
 bool FrameRenderer::overlaps_copies() const {
     return impl_->program && impl_->aov->is_color() && !impl_->device->info().cpu;
-}
-
-std::vector<rt_hit> FrameRenderer::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
-                                              double* device_ms) {
-    std::vector<rt_hit> hits;
-    const double ms = trace_rays(prepared, RayBlocks(rays, unsigned(prepared.settings.lanes)), query, &hits);
-    if (device_ms) *device_ms = ms;
-    return hits;
-}
-
-double FrameRenderer::trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
-    return impl_->queries.trace(prepared, rays, query, hits);
-}
-
-RayTuning FrameRenderer::ray_tuning() const {
-    return impl_->queries.tuning();
 }
 
 }  // namespace clarity

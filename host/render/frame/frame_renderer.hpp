@@ -10,14 +10,11 @@
 #include "render/film/async_readback.hpp"
 #include "render/film/image_io.hpp"
 #include "render/frame/frame_stats.hpp"
-#include "render/frame/prepared.hpp"
-#include "render/queries/ray_query.hpp"
+#include "render/launch/prepared.hpp"
 #include "render/settings/false_color_scale.hpp"
 #include "render/settings/view.hpp"
 
 namespace clarity {
-
-class RayBlocks;  // rays in the layout that kernels read: ray_blocks.hpp
 
 // The rows of work-groups that one device traces of a shared picture, in the order in which the scheduler assigned them. A
 // sample may take several calls while rows are assigned. Rows before `begin` are already traced.
@@ -81,14 +78,6 @@ class FrameRenderer {
     // faster only if overlaps_copies(), because the copy then runs while the device traces.
     AsyncReadback begin_display(const Settings& settings);
     bool overlaps_copies() const;
-
-    // Traces the caller's own rays, for tests and benchmarks. If given, *device_ms becomes the time by the device's clock.
-    std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
-                                   double* device_ms = nullptr);
-    // The same for rays packed beforehand for prepared.settings.lanes: faster if they are traced repeatedly. Returns ms of
-    // device time.
-    double trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
-    RayTuning ray_tuning() const;
 
  private:
     struct Impl;

@@ -3,17 +3,12 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
-#include "device/launch_limit.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/film/film.hpp"
-#include "render/film/overflow_counter.hpp"
-#include "render/frame/device_scene.hpp"
-#include "render/frame/frame_constants.hpp"
-#include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/launch/device_scene.hpp"
 #include "render/settings/accel_choice.hpp"
-#include "render/settings/aov.hpp"
-#include "render/settings/view.hpp"
+#include "render/tracers/smoke.hpp"
 #include "render/trial/trial.hpp"
 
 #include <algorithm>
@@ -28,94 +23,11 @@
 namespace clarity {
 namespace {
 
-// Without refraction no ray splits. `wavefront` is then a single launch, and its warps fetch new pixels as soon as they are
-// free. That is 1.03 to 1.10 times as fast on a GPU. With refraction the faster tracer depends on the scene: see
-// docs/experiments.md.
-std::string tracer_for(const Device& device, const Scene& scene) {
-    return device.info().traces_packets() || refracts(scene, {}) ? "iterative" : "wavefront";
-}
-
 Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
     Settings s = asked;
-    if (s.tracer == "auto") s.tracer = tracer_for(device, scene);
+    if (s.tracer == "auto") s.tracer = automatic_tracer(device.info(), scene).id;
     resolve_packet(s, device.info());
     return s;
-}
-
-KernelKind kind_for(const Aov& aov) {
-    switch (aov.program) {
-        case Aov::Program::color:
-            return KernelKind::color;
-        case Aov::Program::generations:
-            return KernelKind::generations;
-        case Aov::Program::camera_rays:
-            break;
-    }
-    return KernelKind::aov;
-}
-
-// What a launch on one pixel uses.
-struct OnePixel {
-    cl::CommandQueue queue;
-    cl::Buffer frame, out, counters, distances, lights;
-    ViewBuffers view;
-    OverflowCounter overflows;
-    cl::Kernel kernel;
-    std::unique_ptr<Wavefront> wavefront;
-};
-
-void launch(OnePixel& pixel, const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
-    Device& device = *opened;
-    Settings tiny = prepared.settings;
-    tiny.width = tiny.height = 1;
-    tiny.depth = 1;
-    View view;
-    view.camera.eye = {0, 0, 1e6f};
-    const Layout& layout = prepared.layout;
-    const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
-    const cl::Context& context = device.context();
-    pixel.queue = cl::CommandQueue(context, device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
-    pixel.frame = cl::Buffer(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame, const_cast<rt_frame*>(&frame));
-    pixel.out = cl::Buffer(context, CL_MEM_READ_WRITE, 4096);
-    pixel.counters = cl::Buffer(context, CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16);
-    pixel.distances = cl::Buffer(context, CL_MEM_READ_WRITE, size_t(layout.group_packets()) * layout.rays() * sizeof(float));
-    pixel.lights = cl::Buffer(context, CL_MEM_READ_ONLY, 256);
-    if (program.is_wavefront()) {
-        pixel.view.write(pixel.queue, *prepared.scene, *prepared.on_device, {frame}, view);
-        Launcher launcher;
-        const WavefrontFrame traced{prepared, view, pixel.view, layout, 1, 1, 0, 1, 1, 0, pixel.out, pixel.distances};
-        pixel.wavefront = std::make_unique<Wavefront>(opened);
-        pixel.wavefront->trace(pixel.queue, launcher, traced, [] {});
-        return;
-    }
-    pixel.kernel = program.kernel();
-    cl_uint at = 0;
-    pixel.kernel.setArg(at++, pixel.frame);
-    pixel.kernel.setArg(at++, cl_uint(0));
-    pixel.kernel.setArg(at++, pixel.out);
-    if (program.has_generations()) {
-        pixel.kernel.setArg(at++, pixel.counters);
-        pixel.kernel.setArg(at++, pixel.distances);
-    } else if (prepared.settings.debug) {
-        pixel.overflows.clear(pixel.queue);
-        at = pixel.overflows.bind(pixel.kernel, at, true);
-    }
-    prepared.on_device->bind(pixel.kernel, at, pixel.lights);
-    const unsigned size = layout.local_size();
-    pixel.queue.enqueueNDRangeKernel(pixel.kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));
-    finish(device, pixel.queue, "the first launch of the kernels, on one pixel,");
-}
-
-// Runs the kernel on one pixel. PoCL compiles a kernel when it first runs with a work-group size, so the first frame would wait
-// for the compiler. A queue of its own lets frames continue meanwhile.
-void warm_up(const std::shared_ptr<Device>& device, const TraceProgram& program, const Prepared& prepared) {
-    const auto pixel = std::make_shared<OnePixel>();
-    try {
-        launch(*pixel, device, program, prepared);
-    } catch (...) {
-        if (device->loss()->stuck()) never_release(pixel);
-        throw;
-    }
 }
 
 // settings: of a structure that is there.
@@ -235,11 +147,11 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         progress.report(-1);
         const auto start = std::chrono::steady_clock::now();
         bool fresh = false;
-        const auto program = tried_program(*programs_, *next, kind_for(find_aov(next->settings.aov)), progress, &fresh);
-        next->program = program;
+        next->program =
+            tried_program(*programs_, *next, tracer_of(next->settings).kernel(next->settings, next->layout), progress, &fresh);
         if (fresh) {
             progress.stage(kFirstLaunchStage);
-            warm_up(device_, *program, *next);
+            launch_first(device_, next);
         }
         if (film.valid()) film.get();
         film_compiled_ = true;

@@ -11,7 +11,7 @@
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
-#include "render/frame/prepared.hpp"
+#include "render/launch/prepared.hpp"
 
 namespace clarity {
 

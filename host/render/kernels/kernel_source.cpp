@@ -1,25 +1,11 @@
 #include "render/kernels/kernel_source.hpp"
 
-#include <algorithm>
-
 #include "plugin/capabilities.hpp"
-#include "render/kernels/layout.hpp"
 #include "render/kernels/shape_source.hpp"
 #include "render/kernels/traversal_source.hpp"
-#include "render/settings/aov.hpp"
-#include "render/settings/settings.hpp"
 
 namespace clarity {
 namespace {
-
-// Defines a number for each AOV: RT_AOV_T, ... One program computes all that need no counters, another one those that do, so
-// that changing from one to the next compiles nothing.
-void write_aovs(SourceWriter& out, const Aov& wanted) {
-    for (const Aov& aov : aov_table()) out.define_int(kernel_macro(aov), number_of(aov));
-    out.define_int("RT_AOV_COUNT", static_cast<unsigned>(aov_table().size()));
-    out.line("#define RT_AOV");
-    if (wanted.counts_steps) out.line("#define RT_COUNT_STEPS");
-}
 
 void write_layout(SourceWriter& out, const Layout& layout) {
     out.define_int("RT_LANES", layout.lanes);
@@ -42,9 +28,10 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
 }
 
-// Writes the beginning of every kernel: types, lanes, the structure's types, the buffers, and shapes.
-void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel, const Scene& scene,
-                    const SceneFeatures& features) {
+// Writes the beginning of every kernel: types, lanes, the structure's types, the buffers, and shapes. Returns the names of the
+// buffers as arguments.
+std::string write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel, const Scene& scene,
+                           const SceneFeatures& features) {
     for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h"}) out.include(name);
     if (!layout.cpu) out.include("lanes/subgroup.h");
     for (const char* name : {"lanes/rays.h", "lanes/ray_space.h", "primitives/loaded_prim.h"}) out.include(name);
@@ -53,33 +40,28 @@ void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& ac
     if (accel.accel->types.text) out.include(accel, accel.accel->types);
     out.include("lanes/packet_stream.h");
     if (features.shapes) out.include("rt_shape.h");
-    write_context(out, *accel.accel, features);
+    const std::string arguments = write_context(out, *accel.accel, features);
     if (features.shapes) write_shapes(out, scene);
+    return arguments;
 }
 
-void write_queries(SourceWriter& out, const KernelRow& row, const KernelChoice& choice, const SceneFeatures& features,
+void write_queries(SourceWriter& out, const KernelRow& row, const Layout& layout, const SceneFeatures& features,
                    const rt_plugin& accel) {
     TraversalTemplate traversal;
     traversal.file = plugin_kernel_name(accel, accel.accel->traverse);
     traversal.text = plugin_kernel_text(accel, accel.accel->traverse);
-    traversal.cpu = choice.layout.cpu;
+    traversal.cpu = layout.cpu;
     traversal.requeues = (row.needs & RT_REQUEUES_LONG_RAYS) != 0;
     traversal.by_warps = (row.needs & RT_TRAVERSES_WARPS) != 0;
-    const FramePart part = choice.part;
-    traversal.double_leaf = part == FramePart::closest_double_leaf || part == FramePart::whole_closest_double_leaf;
     write_query(out, traversal, features, false);
-    traversal.double_leaf = part == FramePart::whole_any_double_leaf;
     if (!row.has(kNearestOnly)) write_query(out, traversal, features, true);
 }
 
 }  // namespace
 
-KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const AccelData& data) {
-    const Settings& settings = choice.settings;
-    const Layout& layout = choice.layout;
-    const FramePart part = choice.part;
+KernelSource kernel_for(const KernelRow& row, const Settings& settings, const Layout& layout, const Scene& scene,
+                        const AccelData& data) {
     const rt_plugin& accel = *data.layout;
-    const KernelRow& row = kernel_row(choice);
     const SceneFeatures features = features_of(scene, data.scene);
     KernelSource source;
     source.row = &row;
@@ -95,20 +77,20 @@ KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const Ac
     if (settings.debug) out.line("#define RT_DEBUG");
     if (source.limit_registers) out.line("#define RT_FEWER_REGISTERS");
     for (const std::string& define : row.defines) out.line("#define " + define);
-    if (choice.kind == KernelKind::aov) write_aovs(out, find_aov(settings.aov));
-    if (part < FramePart::whole) out.define_int("RT_PART", std::min(static_cast<unsigned>(part), 2u));
-    if (row.has(kRaySlots)) out.define_int("RT_RAY_SLOTS", static_cast<unsigned>(settings.ray_slots));
+    if (row.define) row.define(out, settings);
     out.define_uint("RT_KERNEL_CONTRACT", accel.accel->kernel_contract);
     for (const Capability& capability : capabilities())
         if (accel.accel->capabilities & capability.bit) out.line(std::string("#define ") + capability.define);
     for (const auto& [name, value] : data.defines) out.define_uint(name, value);
 
-    write_preamble(out, layout, accel, scene, features);
-    write_queries(out, row, choice, features, accel);
+    source.scene_arguments = write_preamble(out, layout, accel, scene, features);
+    write_queries(out, row, layout, features, accel);
     for (const char* name : {"lanes/vec.h", "shading/surface.h", "tracers/camera.h"}) out.include(name);
     for (const char* name : row.headers) out.include(name);
     out.include(row.file);
 
+    source.declarations = kernel_text(row.file);
+    source.debug = settings.debug;
     source.text = out.text();
     source.options = "-cl-std=CL1.2";
     if (settings.fast_math) source.options += " -cl-fast-relaxed-math";

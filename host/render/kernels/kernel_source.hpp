@@ -1,22 +1,27 @@
 // kernel_source.hpp -- makes the source of one specialisation of a kernel: shared types, lanes, primitives, the generated
-// context, the plugin's traversal as a template, and the kernel. kernel_table.hpp lists the parts of each kernel.
+// context, the plugin's traversal as a template, and the kernel. kernel_row.hpp says what the parts of a kernel are.
 #pragma once
 #include <string>
 
 #include "render/accel/accel_build.hpp"
-#include "render/kernels/kernel_table.hpp"
+#include "render/kernels/kernel_row.hpp"
+#include "render/kernels/layout.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
 
 struct KernelSource {
-    const KernelRow* row = nullptr;
+    const KernelRow* row = nullptr;  // must outlive this
     std::string text, options;
     std::string what;              // for messages: "tracer iterative with accel bvh2"
     bool limit_registers = false;  // limit the kernel's registers on GPUs: it is faster with fewer than it would take
+    // Where the kernels of the program are declared, and the names of the scene's arguments, separated by commas.
+    std::string declarations, scene_arguments;
+    bool debug = false;
 };
-// Returns the source of the chosen kernel for this scene in this structure. Throws Error(kernel_build_failed) if a file of the
-// kernel cannot be read.
-KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const AccelData& accel);
+// Returns the source of a kernel for this scene in this structure. Throws Error(kernel_build_failed) if a file of the kernel
+// cannot be read.
+KernelSource kernel_for(const KernelRow& row, const Settings& settings, const Layout& layout, const Scene& scene,
+                        const AccelData& accel);
 
 }  // namespace clarity

@@ -13,12 +13,20 @@ std::string options_for(const DeviceInfo& info, const KernelSource& source) {
     return source.options + (source.limit_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
 }
 
-// A picture of no size has no rays. Other kernels trace what they are given, and zeros are no structure.
-bool ends_on_zeros(const KernelRow& row) {
-    return row.kind == KernelKind::color || row.kind == KernelKind::generations || row.kind == KernelKind::aov;
-}
-
 }  // namespace
+
+TraceProgram::TraceProgram(const KernelSource& source, cl::Program compiled)
+    : row(*source.row),
+      program(std::move(compiled)),
+      declarations_(source.declarations),
+      scene_arguments_(source.scene_arguments),
+      debug_(source.debug) {}
+
+KernelArguments TraceProgram::kernel(const char* entry) const {
+    const std::string name = entry ? entry : row.entry;
+    return {cl::Kernel(program, name.c_str()), argument_names(declarations_, name, scene_arguments_, debug_),
+            std::string("cl/") + row.file + ": kernel " + name};
+}
 
 ProgramCache::~ProgramCache() {
     if (device_->loss()->stuck()) never_release(std::make_shared<std::list<Entry>>(std::move(entries_)));
@@ -44,8 +52,8 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool
         }
     ++compiled_;
     const BuildResult built = compile_program(
-        *device_, {source.text, options_for(device_->info(), source), source.what, ends_on_zeros(*source.row)}, progress);
-    auto program = std::make_shared<TraceProgram>(*source.row, built.program);
+        *device_, {source.text, options_for(device_->info(), source), source.what, source.row->has(kFrame)}, progress);
+    auto program = std::make_shared<TraceProgram>(source, built.program);
     program->compile_ms = built.ms;
     entries_.push_front({key, program});
     if (entries_.size() > kKept) entries_.pop_back();

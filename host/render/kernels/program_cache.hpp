@@ -10,24 +10,26 @@
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "device/device.hpp"
+#include "render/kernels/kernel_arguments.hpp"
 #include "render/kernels/kernel_source.hpp"
 
 namespace clarity {
 
 class TraceProgram {
  public:
-    TraceProgram(const KernelRow& table_row, cl::Program compiled) : row(table_row), program(std::move(compiled)) {}
+    TraceProgram(const KernelSource& source, cl::Program compiled);
     const KernelRow& row;  // of the kernel that traces; the program may have other kernels too
     cl::Program program;
     double compile_ms = 0;
     // Of tried_program(): whether the kernels may run; why they may not.
     bool tried = false;
     std::optional<Error> refused;
-    // Whether the kernel traces more than camera rays, and therefore takes buffers for counters and distances.
-    bool has_generations() const { return row.kind == KernelKind::color || row.kind == KernelKind::generations; }
-    bool is_wavefront() const { return row.has(kFrameQueues); }
-    // Returns a new kernel object: it holds arguments, so that users must not share one.
-    cl::Kernel kernel() const { return cl::Kernel(program, row.entry); }
+    // Returns a new object of a kernel that the row's file declares: by default the row's. Throws cl::Error.
+    KernelArguments kernel(const char* entry = nullptr) const;
+
+ private:
+    std::string declarations_, scene_arguments_;
+    bool debug_;
 };
 
 // The programs most recently used on one device. Switching a setting back compiles nothing.

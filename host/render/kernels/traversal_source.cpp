@@ -1,20 +1,9 @@
 #include "render/kernels/traversal_source.hpp"
 
+#include "render/kernels/scene_buffers.hpp"
+
 namespace clarity {
 namespace {
-
-// The scene's buffers in the order of the kernels' arguments; the plugin's slots follow.
-struct Member {
-    const char *type, *name;
-};
-constexpr Member kMembers[] = {
-    {"rt_packed_prim", "leaves"}, {"rt_instance", "instances"}, {"rt_polygon", "polygons"},
-    {"float", "polygon_corners"}, {"rt_plane", "planes"},       {"rt_material", "materials"},
-    {"rt_triangle", "triangles"}, {"float", "normals"},         {"float", "uvs"},
-    {"rt_texture", "textures"},   {"uint", "texels"},           {"rt_light", "lights"},
-};
-
-constexpr Member kShapeMembers[] = {{"rt_shape", "shapes"}, {"float", "shape_numbers"}};  // of scenes with shapes
 
 // Macros by which a traversal calls leaf tests. The names of the functions are rt_leaf_mesh or rt_leaf_scene plus the suffix.
 struct LeafStep {
@@ -42,10 +31,10 @@ constexpr const char* kPrototypes =
     "#endif";
 
 // One instance of the template. name: name of the traversal's function, leaf: of the leaf tests' functions, both without the
-// query's suffix. mixed: whether leaves may hold other primitives than triangles. instances: whether they may hold instances.
+// query's suffix. mixed: whether leaves may hold other primitives than triangles.
 struct Instance {
     std::string name, leaf;
-    bool mixed, instances;
+    bool mixed;
 };
 
 void define_function(SourceWriter& out, const std::string& macro, const std::string& function) {
@@ -68,17 +57,6 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
         out.define_int("RT_SINGLE_RAY_MIXED", instance.mixed);
         out.include("primitives/leaf_single_ray.h");
     }
-    if (traversal.double_leaf) {
-        each_step([&](const std::string& macro, const std::string& function) {
-            define_function(out, macro + "_ONCE", function);
-            out.undef(macro);
-            define_function(out, macro, function + "_double");
-        });
-        out.define_int("RT_LEAF_INSTANCES", instance.instances);
-        out.include("primitives/double_leaf.h");
-        each_step([&](const std::string& macro, const std::string&) { out.undef(macro + "_ONCE"); });
-        out.undef("RT_LEAF_INSTANCES");
-    }
     out.line(kPrototypes);
     out.part(traversal.file, traversal.text);
     each_step([&](const std::string& macro, const std::string&) { out.undef(macro); });
@@ -89,35 +67,37 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
 
 }  // namespace
 
-void write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features) {
+std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features) {
     out.line("#line 1 \"generated context\"\ntypedef struct rt_ctx {");
-    std::string params, init;
+    std::string names, params, init;
+    std::ostringstream checks;
+    // If a size differs between host and device, compiling fails, and the message names what was checked.
+    const auto check = [&](const std::string& type, const std::string& checked, size_t bytes) {
+        checks << "typedef char " << checked << "_has_" << bytes << "_bytes_on_the_host[sizeof(" << type << ") == " << bytes
+               << " ? 1 : -1];\n";
+    };
     const auto add = [&](const std::string& type, const std::string& name) {
+        const std::string separator = names.empty() ? "" : ", ";
         out.line("    const global " + type + " *" + name + ";");
-        params += (params.empty() ? "" : ", ") + ("const global " + type + " *restrict ctx_" + name);
+        names += separator + "ctx_" + name;
+        params += separator + ("const global " + type + " *restrict ctx_" + name);
         init += " ctx." + name + " = ctx_" + name + ";";
     };
-    for (const Member& member : kMembers) add(member.type, member.name);
-    if (features.shapes)
-        for (const Member& member : kShapeMembers) add(member.type, member.name);
-    for (rt_u32 s = 0; s < accel.slot_count; ++s)
-        if (!(accel.slots[s].flags & RT_SLOT_HOST_ONLY)) add(accel.slots[s].cl_type, accel.slots[s].name);
-    out.line("} rt_ctx;");
-    // If the size of a struct differs between host and device, compiling fails, and the message names the struct.
-    const auto check = [&](const std::string& type, const std::string& name, size_t bytes) {
-        out.line("typedef char " + name + "_has_" + std::to_string(bytes) + "_bytes_on_the_host[sizeof(" + type +
-                 ") == " + std::to_string(bytes) + " ? 1 : -1];");
-    };
-    check("rt_packed_prim", "rt_packed_prim", sizeof(rt_packed_prim));
-    check("rt_instance", "rt_instance", sizeof(rt_instance));
-    check("rt_material", "rt_material", sizeof(rt_material));
+    for (const SceneBuffer& buffer : kSceneBuffers) {
+        if (buffer.of_shapes && !features.shapes) continue;
+        add(buffer.type, buffer.name);
+        if (buffer.checked_bytes) check(buffer.type, buffer.type, buffer.checked_bytes);
+    }
     check("rt_frame", "rt_frame", sizeof(rt_frame));
-    if (features.shapes) check("rt_shape", "rt_shape", sizeof(rt_shape));
-    for (rt_u32 s = 0; s < accel.slot_count; ++s)
-        if (!(accel.slots[s].flags & RT_SLOT_HOST_ONLY))
-            check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
-    out.line("#define RT_CTX_PARAMS " + params);
+    for (rt_u32 s = 0; s < accel.slot_count; ++s) {
+        const auto& slot = accel.slots[s];
+        if (slot.flags & RT_SLOT_HOST_ONLY) continue;
+        add(slot.cl_type, slot.name);
+        check(slot.cl_type, std::string("slot_") + slot.name, slot.elem_bytes);
+    }
+    out.line("} rt_ctx;\n" + checks.str() + "#define RT_CTX_PARAMS " + params);
     out.line("#define RT_CTX_INIT(ctx) rt_ctx ctx;" + init);
+    return names;
 }
 
 void write_query(SourceWriter& out, const TraversalTemplate& traversal, const SceneFeatures& features, bool any_hit) {
@@ -132,11 +112,11 @@ void write_query(SourceWriter& out, const TraversalTemplate& traversal, const Sc
     if (features.shapes) out.include("primitives/leaf_shape.h");
     if (features.instances) {
         out.include("primitives/leaf_mesh.h");
-        write_traversal(out, traversal, {"rt_mesh", "rt_leaf_mesh", false, false});
+        write_traversal(out, traversal, {"rt_mesh", "rt_leaf_mesh", false});
     }
     out.include("primitives/leaf_scene.h");
     const bool mixed = features.spheres || features.polygons || features.shapes || features.instances;
-    write_traversal(out, traversal, {"rt_scene", "rt_leaf_scene", mixed, features.instances});
+    write_traversal(out, traversal, {"rt_scene", "rt_leaf_scene", mixed});
     out.include("primitives/query.h");
     out.undef("RT_ANY_HIT");
     out.undef("RT_FN");

@@ -7,15 +7,15 @@
 namespace clarity {
 
 // Writes rt_ctx: the scene's buffers and the structure's slots, as a struct, as kernel arguments, and as initialisation.
-void write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features);
+// Returns the names of the arguments, separated by commas.
+std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features);
 
 // A plugin's traversal as a template. The text is read once; the flags apply to all instances.
 struct TraversalTemplate {
     std::string file, text;
-    bool cpu = false;          // with leaf tests in two steps, and tests of a single ray against several primitives
-    bool requeues = false;     // with RT_TRAVERSE_REQUEUED
-    bool by_warps = false;     // with RT_TRAVERSE_WARP
-    bool double_leaf = false;  // every leaf test is done twice, to measure the time of leaf tests
+    bool cpu = false;       // with leaf tests in two steps, and tests of a single ray against several primitives
+    bool requeues = false;  // with RT_TRAVERSE_REQUEUED
+    bool by_warps = false;  // with RT_TRAVERSE_WARP
 };
 // Writes the primitive tests, the traversals, and the query that calls both, for nearest hits or for any hit.
 void write_query(SourceWriter& out, const TraversalTemplate& traversal, const SceneFeatures& features, bool any_hit);

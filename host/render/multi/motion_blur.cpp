@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 #include "render/settings/edit.hpp"
 
 namespace clarity {

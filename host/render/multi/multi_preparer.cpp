@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 #include "render/moving/moved_instances.hpp"
 #include "render/settings/accel_choice.hpp"
 

@@ -6,30 +6,29 @@ namespace clarity {
 
 const std::vector<Aov>& aov_table() {
     using About = Aov::About;
-    using Program = Aov::Program;
     using Film = Aov::Film;
     using Paint = Aov::Paint;
     using Range = Aov::Range;
     using Map = FalseColorScale::Map;
     static const std::vector<Aov> table = {
-        {"color", "colour", About::color, Program::color, Film::colors, Paint::tones},
+        {"color", "colour", About::color, nullptr, Film::colors, Paint::tones},
         {"t",
          "distance",
          About::first_hit,
-         Program::camera_rays,
+         "aov",
          Film::distances,
          Paint::scale,
          false,
          Range::measured,
          {Map::gray, 0, 1, false, "Distance", "scene units"}},
-        {"prim", "primitive", About::first_hit, Program::camera_rays, Film::numbers, Paint::hash},
-        {"instance", "instance", About::first_hit, Program::camera_rays, Film::numbers, Paint::hash},
-        {"normal", "normal", About::first_hit, Program::camera_rays, Film::vectors, Paint::direction},
-        {"uv", "texture coordinates", About::first_hit, Program::camera_rays, Film::vectors, Paint::texture},
+        {"prim", "primitive", About::first_hit, "aov", Film::numbers, Paint::hash},
+        {"instance", "instance", About::first_hit, "aov", Film::numbers, Paint::hash},
+        {"normal", "normal", About::first_hit, "aov", Film::vectors, Paint::direction},
+        {"uv", "texture coordinates", About::first_hit, "aov", Film::vectors, Paint::texture},
         {"steps",
          "nodes visited",
          About::cost,
-         Program::camera_rays,
+         "aov",
          Film::amounts,
          Paint::scale,
          true,
@@ -38,7 +37,7 @@ const std::vector<Aov>& aov_table() {
         {"leaf_tests",
          "primitives tested",
          About::cost,
-         Program::camera_rays,
+         "aov",
          Film::amounts,
          Paint::scale,
          true,
@@ -47,7 +46,7 @@ const std::vector<Aov>& aov_table() {
         {"lanes",
          "share of lanes alive per visit",
          About::cost,
-         Program::camera_rays,
+         "aov",
          Film::amounts,
          Paint::scale,
          true,
@@ -56,7 +55,7 @@ const std::vector<Aov>& aov_table() {
         {"generations",
          "generations of rays",
          About::cost,
-         Program::generations,
+         "iterative",
          Film::amounts,
          Paint::scale,
          false,

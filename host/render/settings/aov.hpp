@@ -10,8 +10,6 @@ namespace clarity {
 
 // One row of the table.
 struct Aov {
-    // The program that computes it: the chosen tracer; the iterative tracer, counting generations; or cl/tracers/aov.cl.
-    enum class Program { color, generations, camera_rays };
     // The format of a film's pixel. colors: sums of r, g, b and the number of samples. numbers: the bits of an int, -1: none.
     // vectors: three floats. distances, amounts: one float.
     enum class Film { colors, distances, amounts, numbers, vectors };
@@ -27,7 +25,7 @@ struct Aov {
     const char* name;  // as in --aov; aov.cl has it in capitals: RT_AOV_NAME
     const char* help;
     About about;
-    Program program;
+    const char* tracer;  // the id of the tracer that makes it; null: of that which the user has chosen
     Film film;
     Paint paint;
     bool counts_steps = false;  // needs a slower program, which counts nodes and primitives

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/settings/aov.hpp"
+#include "render/settings/tracer_choice.hpp"
 
 namespace clarity {
 namespace {
@@ -142,10 +143,7 @@ const std::vector<Setting>& settings_table() {
                "trees are built for five of its poses, and that is taken whose rays cost least in all of them. Frames of "
                "`render` are always built; the samples of a picture with motion blur are refitted, unless this is build",
                {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
-        choice("tracer", "Tracer",
-               "iterative: a work-item traces all generations of its packet; wavefront: rays that split continue in queues in "
-               "the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",
-               {"auto", "iterative", "wavefront"}, Effect::recompile, &Settings::tracer),
+        choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer),
         integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,

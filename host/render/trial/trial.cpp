@@ -40,8 +40,8 @@ std::vector<const rt_plugin*> plugins_with_kernels(const Prepared& prepared) {
     return plugins;
 }
 
-// What has to be tried: "cl/tracers/iterative.cl, changed from line 12 on". Empty: these kernels are the program's own, and the
-// driver is trusted.
+// What has to be tried: "cl/tracers/iterative/iterative.cl, changed from line 12 on". Empty: these kernels are the program's
+// own, and the driver is trusted.
 struct Suspects {
     std::string text;
     SourceLocation first;  // of what was edited; without a message
@@ -103,33 +103,18 @@ void try_subject(const Subject& subject, const std::function<TrialArguments()>& 
         log(LogLevel::debug, "kernels were not tried: " + printable_line(supervisor.not_tried()));
 }
 
-TrialArguments arguments_for(const DeviceInfo& info, const Settings& settings, TrialKind kind) {
+TrialArguments arguments_for(const DeviceInfo& info, const Settings& settings, const char* kernels) {
     TrialArguments arguments;
-    arguments.kind = kind;
+    arguments.kernels = kernels;
     arguments.device = info.id();
     arguments.device_name = info.name;
     arguments.settings = settings;
     return arguments;
 }
 
-TrialKind trial_of(KernelKind kind) {
-    switch (kind) {
-        case KernelKind::color:
-        case KernelKind::generations:
-        case KernelKind::aov:
-            return TrialKind::frame;
-        case KernelKind::inspect:
-            return TrialKind::pixels;
-        case KernelKind::counted_rays:
-            return TrialKind::counted_rays;
-        default:
-            return TrialKind::rays;
-    }
-}
-
-TrialArguments arguments_of(const Prepared& prepared, const DeviceInfo& info, KernelKind kind) {
+TrialArguments arguments_of(const Prepared& prepared, const DeviceInfo& info, const KernelRow& row) {
     const AccelData& accel = *prepared.accel;
-    TrialArguments arguments = arguments_for(info, prepared.settings, trial_of(kind));
+    TrialArguments arguments = arguments_for(info, prepared.settings, row.tracer);
     std::vector<const rt_plugin*> plugins = plugins_with_kernels(prepared);
     plugins.push_back(accel.plugin);
     for (const rt_plugin* plugin : plugins) {
@@ -145,9 +130,9 @@ TrialArguments arguments_of(const Prepared& prepared, const DeviceInfo& info, Ke
 
 }  // namespace
 
-std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepared& prepared, KernelKind kind,
+std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepared& prepared, const KernelRow& row,
                                             Progress& progress, bool* fresh) {
-    const KernelSource source = kernel_for(prepared, kind);
+    const KernelSource source = kernel_for(prepared, row);
     const std::shared_ptr<TraceProgram> program = programs.get(source, fresh, progress);
     const DeviceInfo& info = programs.device()->info();
     if (program->tried || !is_wanted(info, prepared.settings)) return program;
@@ -162,7 +147,7 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
                  std::string(info.llvmpipe ? "; take another structure" : "") + "; `clarity check " + layout.id +
                      "` looks closer, with oclgrind if that is installed",
                  plugins_with_kernels(prepared)},
-                [&] { return arguments_of(prepared, info, kind); }, progress);
+                [&] { return arguments_of(prepared, info, row); }, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
@@ -178,7 +163,7 @@ void try_film(const DeviceInfo& info, const Settings& settings, Progress& progre
     const CompileRequest program = film_program();
     try_subject(
         {info, program.what, program.source, program.options, {}, {}, {}},
-        [&] { return arguments_for(info, settings, TrialKind::film); }, progress);
+        [&] { return arguments_for(info, settings, kFilmKernels); }, progress);
 }
 
 }  // namespace clarity

@@ -20,7 +20,7 @@ std::vector<std::string> words_of(const TrialArguments& arguments) {
     std::vector<std::string> words;
     const auto add = [&](const char* key, const std::string& value) { words.insert(words.end(), {key, value}); };
     add("--parent", std::to_string(getpid()));
-    add("--kind", std::to_string(static_cast<int>(arguments.kind)));
+    add("--kernels", arguments.kernels);
     add("--device", arguments.device);
     add("--device-name", arguments.device_name);
     add("--accel", arguments.settings.accel);
@@ -51,8 +51,8 @@ TrialArguments read_trial_arguments(int argc, char** argv) {
         const std::string key = argv[i], value = argv[i + 1];
         if (key == "--parent") {
             arguments.parent = std::strtol(value.c_str(), nullptr, 10);
-        } else if (key == "--kind") {
-            arguments.kind = static_cast<TrialKind>(std::atoi(value.c_str()));
+        } else if (key == "--kernels") {
+            arguments.kernels = value;
         } else if (key == "--device") {
             arguments.device = value;
         } else if (key == "--device-name") {

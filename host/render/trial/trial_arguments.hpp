@@ -10,11 +10,10 @@
 
 namespace clarity {
 
-// What the worker runs: a frame, the rays of single pixels, rays of its own without or with counters, the kernels of the film.
-enum class TrialKind { frame, pixels, rays, counted_rays, film };
+inline constexpr const char* kFilmKernels = "film";
 
 struct TrialArguments {
-    TrialKind kind = TrialKind::frame;
+    std::string kernels;                           // the id of their tracer, or kFilmKernels
     std::map<std::string, std::string> libraries;  // from each as loaded to the file that it stands for
     std::string device, device_name;               // id as `--device` takes it; the worker skips another device
     SceneFeatures features;

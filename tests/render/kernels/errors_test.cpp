@@ -67,7 +67,7 @@ class KernelErrors : public ::testing::Test {
 };
 
 TEST_F(KernelErrors, NameFileAndLineOfTheTracer) {
-    expect_error_at(break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL"));
+    expect_error_at(break_line("cl/tracers/iterative/iterative.cl", "RT_PICTURE_KERNEL"));
 }
 
 TEST_F(KernelErrors, NameFileAndLineOfAPrimitive) {
@@ -102,21 +102,21 @@ TEST_F(KernelErrors, KeepThePreviousProgramUsable) {
     const auto good = preparer.prepare(scene_, settings_, progress);
     frames.trace(*good, settings_, view, 0, false, progress);
     const ByteImage before = frames.read_display(settings_);
-    const std::string sound = scratch_.read("cl/tracers/iterative.cl");
-    break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL");
+    const std::string sound = scratch_.read("cl/tracers/iterative/iterative.cl");
+    break_line("cl/tracers/iterative/iterative.cl", "RT_PICTURE_KERNEL");
     Settings other = settings_;
     other.lanes = 8;  // needs another program, so that something is compiled
     EXPECT_THROW(preparer.prepare(scene_, other, progress), Error);
     frames.trace(*good, settings_, view, 0, false, progress);
     EXPECT_EQ(frames.read_display(settings_).pixels, before.pixels);
-    scratch_.write("cl/tracers/iterative.cl", sound);
+    scratch_.write("cl/tracers/iterative/iterative.cl", sound);
     EXPECT_NO_THROW(preparer.prepare(scene_, other, progress));
 }
 
 TEST_F(KernelErrors, SetTheExitCode) {
     const char* program = std::getenv("CLARITY_WORKER");
     if (!program || !fs::exists(program)) GTEST_SKIP() << "SKIPPED: no program `clarity`; ctest names it in CLARITY_WORKER";
-    const std::string place = break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL");
+    const std::string place = break_line("cl/tracers/iterative/iterative.cl", "RT_PICTURE_KERNEL");
     const std::string out = scratch_.path("a.png"), said = scratch_.path("said");
     const std::string command =
         std::string(program) + " render " + source_file("scenes/primitives.scene") + " -o " + out + " --size 32x24 2>" + said;

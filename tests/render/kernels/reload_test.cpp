@@ -44,7 +44,7 @@ class Author {
         // Set before the first use of PoCL: kernels that an earlier run left in its cache would not be compiled.
         fs::create_directories(scratch_.path("pocl"));
         environment_.set("POCL_CACHE_DIR", scratch_.path("pocl"));
-        sound_ = scratch_.read("cl/tracers/aov.cl");
+        sound_ = scratch_.read("cl/tracers/aov/aov.cl");
         plugins_ = PluginRegistry::discover();
         scene_ = shared_scene(scene_of(box(1)));
         settings_ = make_settings({{"accel", "bvh2"}, {"size", "8x8"}, {"aov", "t"}});
@@ -60,7 +60,7 @@ class Author {
         const size_t at = text.find(store);
         if (at == std::string::npos) throw std::runtime_error("aov.cl no longer has the line that this test edits: " + store);
         text.replace(at, store.size(), "RT_FOR_LANES_STORE(out, at, hit->t * " + std::to_string(number) + ".0f, bits)");
-        scratch_.write("cl/tracers/aov.cl", text);
+        scratch_.write("cl/tracers/aov/aov.cl", text);
         const std::shared_ptr<const AccelData> accel = prepared_ ? prepared_->accel : nullptr;
         if (preparer_->needs_reopen()) renew_device();
         prepared_ = preparer_->prepare(scene_, settings_, progress_);

@@ -1,52 +1,123 @@
-// The table of kernels: every row is complete, and every kind of kernel has one.
+// The tables of kernels: every tracer's row is complete, settings choose among them, and arguments are found by their names.
 #include <gtest/gtest.h>
+
+#include <set>
 
 #include "base/error.hpp"
 #include "device/kernel_files.hpp"
-#include "render/kernels/kernel_table.hpp"
+#include "render/kernels/kernel_arguments.hpp"
+#include "render/kernels/layout.hpp"
+#include "render/settings/aov.hpp"
+#include "render/tracers/rays/ray_kernels.hpp"
+#include "render/tracers/tracer.hpp"
 
 namespace clarity {
 namespace {
 
-TEST(KernelTable, EveryRowNamesExistingFiles) {
-    for (const KernelRow& row : kernel_table()) {
-        const std::string text = kernel_text(row.file);
-        EXPECT_NE(text.find(std::string(row.entry) + "("), std::string::npos) << row.file << " has no " << row.entry;
-        for (const char* header : row.headers) EXPECT_NO_THROW(kernel_text(header)) << header << " of " << row.entry;
-    }
-}
-
-TEST(KernelTable, EveryKindHasARow) {
+Settings one_pixel() {
     Settings settings;
-    settings.lanes = settings.packet_w = settings.packet_h = 1;
-    for (const bool cpu : {false, true}) {
-        const Layout layout = make_layout(settings, cpu);
-        for (int kind = 0; kind <= static_cast<int>(KernelKind::inspect); ++kind) {
-            const auto asked = static_cast<KernelKind>(kind);
-            EXPECT_EQ(kernel_row({asked, FramePart::whole, settings, layout}).kind, asked);
-        }
-    }
-}
-
-// Colours are traced by one of four kernels.
-TEST(KernelTable, ColorsByPartTracerAndLayout) {
-    Settings settings;
-    settings.lanes = settings.packet_w = settings.packet_h = 1;
-    const Layout gpu = make_layout(settings, false), cpu = make_layout(settings, true);
-    const auto entry = [&](const char* tracer, FramePart part, const Layout& layout) {
-        settings.tracer = tracer;
-        return std::string(kernel_row({KernelKind::color, part, settings, layout}).entry);
-    };
-    EXPECT_EQ(entry("iterative", FramePart::whole, gpu), "trace_iterative");
-    EXPECT_EQ(entry("wavefront", FramePart::whole, gpu), "trace_wavefront");
-    EXPECT_EQ(entry("wavefront", FramePart::closest, gpu), "trace_parts");
-    EXPECT_EQ(entry("iterative", FramePart::whole_any_double_leaf, cpu), "trace_iterative");
     settings.tracer = "iterative";
-    const auto headers = [&](const Layout& layout) {
-        return std::string(kernel_row({KernelKind::color, FramePart::whole, settings, layout}).headers.back());
+    settings.lanes = settings.packet_w = settings.packet_h = 1;
+    return settings;
+}
+
+// The kernels of all settings that choose one.
+std::set<const KernelRow*> all_rows() {
+    std::set<const KernelRow*> rows{&plain_rays(), &counted_rays()};
+    rows.insert(ray_kernels_of_structures().begin(), ray_kernels_of_structures().end());
+    for (const TracerChoice& choice : tracer_choices())
+        for (const Aov& aov : aov_table())
+            for (const bool cpu : {false, true}) {
+                Settings settings = one_pixel();
+                settings.tracer = choice.id;
+                settings.aov = aov.name;
+                rows.insert(&tracer_of(settings).kernel(settings, make_layout(settings, cpu)));
+            }
+    return rows;
+}
+
+TEST(KernelTable, EveryRowNamesExistingFiles) {
+    EXPECT_GE(all_rows().size(), 11u);
+    for (const KernelRow* row : all_rows()) {
+        const std::string text = kernel_text(row->file);
+        EXPECT_FALSE(argument_names(text, row->entry, "ctx_leaves", false).empty()) << row->file << " has no " << row->entry;
+        for (const char* header : row->headers) EXPECT_NO_THROW(kernel_text(header)) << header << " of " << row->entry;
+        EXPECT_EQ(std::string(find_tracer(row->tracer).id), row->tracer);
+        EXPECT_NE(std::string(row->what), "");
+    }
+}
+
+TEST(KernelTable, FilesLieInTheFolderOfTheirTracer) {
+    for (const Tracer* tracer : tracers()) EXPECT_TRUE(tracer->kernel || tracer->smoke) << tracer->id;
+    for (const KernelRow* row : all_rows()) {
+        const std::string id = row->tracer, folder = id == "counted_rays" ? "rays" : id;
+        EXPECT_EQ(std::string(row->file).rfind("tracers/" + folder + "/", 0), 0u) << row->file;
+    }
+}
+
+TEST(KernelTable, ColorsByTracerAndLayout) {
+    Settings settings = one_pixel();
+    const Layout gpu = make_layout(settings, false), cpu = make_layout(settings, true);
+    const auto row = [&](const char* tracer, const Layout& layout) -> const KernelRow& {
+        settings.tracer = tracer;
+        return tracer_of(settings).kernel(settings, layout);
     };
-    EXPECT_EQ(headers(gpu), "tracers/iterative_single.h") << "one pixel a work-item";
-    EXPECT_EQ(headers(cpu), "tracers/generations.h");
+    EXPECT_EQ(std::string(row("iterative", gpu).entry), "trace_iterative");
+    EXPECT_EQ(std::string(row("wavefront", gpu).entry), "trace_wavefront");
+    EXPECT_EQ(std::string(row("iterative", gpu).headers.back()), "tracers/iterative/iterative_single.h");
+    EXPECT_EQ(std::string(row("iterative", cpu).headers.back()), "tracers/iterative/generations.h");
+}
+
+// A finished frame of one tracer that `auto` takes serves as one of another.
+TEST(Tracers, WhatAutoTakesShowsTheSamePicture) {
+    for (const Tracer* tracer : tracers())
+        if (tracer->suits) {
+            EXPECT_EQ(tracer->picture, picture_of_tracer("auto")) << tracer->id;
+        }
+    for (const TracerChoice& choice : tracer_choices()) EXPECT_NE(std::string(choice.picture), "") << choice.id;
+    DeviceInfo gpu;
+    gpu.gpu = true;
+    Scene scene;
+    EXPECT_EQ(std::string(automatic_tracer(gpu, scene).id), "wavefront");
+    scene.materials.push_back({"glass", default_material()});
+    scene.materials.back().values.refract = 1;
+    EXPECT_EQ(std::string(automatic_tracer(gpu, scene).id), "iterative");
+}
+
+using Names = std::vector<std::string>;
+
+TEST(KernelArguments, AreReadFromTheDeclaration) {
+    const std::string text = R"(
+/* trace_x(uint a) { is called by nobody */
+float before_trace_x(float y) { return y; }
+kernel void __attribute__((reqd_work_group_size(1, 1, 1)))
+trace_x (const constant rt_frame *frame, const uint /* of, the launch */ first_group, // the film, in sums
+         volatile global uint *list, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+{
+    call_trace_x(frame);
+})";
+    EXPECT_EQ(argument_names(text, "trace_x", "ctx_leaves, ctx_planes", false),
+              (Names{"frame", "first_group", "list", "ctx_leaves", "ctx_planes"}));
+    EXPECT_EQ(argument_names(text, "trace_x", "ctx_leaves", true),
+              (Names{"frame", "first_group", "list", "overflows", "ctx_leaves"}));
+    EXPECT_EQ(argument_names(text, "trace", "", false), Names());
+    EXPECT_EQ(argument_names(text, "rt_frame", "", false), Names());
+    for (const std::string broken : {"trace_x(", "trace_x(uint a", "trace_x(uint a)", "/* trace_x(uint a) {", "// trace_x", ""})
+        EXPECT_EQ(argument_names(broken, "trace_x", "", false), Names()) << broken;
+}
+
+TEST(KernelArguments, OneThatIsNotDeclaredIsNamed) {
+    KernelArguments kernel(cl::Kernel(), {"frame"}, "cl/tracers/x/x.cl: kernel trace_x");
+    EXPECT_TRUE(kernel.has("frame"));
+    EXPECT_FALSE(kernel.has("fram"));
+    try {
+        kernel.set("film", cl_uint(0));
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), Exit::kernel_build_failed);
+        EXPECT_NE(std::string(error.what()).find("cl/tracers/x/x.cl: kernel trace_x has no argument `film`"), std::string::npos)
+            << error.what();
+    }
 }
 
 // Kernels of several lanes do not compile for GPUs.

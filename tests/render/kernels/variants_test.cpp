@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/log.hpp"
-#include "render/frame/inspect.hpp"
-#include "render/queries/ray_blocks.hpp"
+#include "render/tracers/inspect/inspect.hpp"
+#include "render/tracers/rays/ray_blocks.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"
@@ -179,7 +179,7 @@ TEST(Debug, AFullStackOfRayQueriesIsReported) {
         for (const RayQuery query : {RayQuery{false, false}, RayQuery{true, false}, RayQuery{false, true}}) {
             const RayBlocks packed(rays, unsigned(settings.lanes));
             for (int run = 0; run < (query.count ? 1 : 6); ++run) {
-                bench().frames().trace_rays(*prepared, packed, query);
+                bench().queries().trace(*prepared, packed, query);
                 if (listener.take().find("stack") == std::string::npos) silent += accel + " " + lanes + "; ";
             }
         }

@@ -8,7 +8,7 @@
 #include "moving_scenes.hpp"
 #include "render/moving/on_device/device_motion.hpp"
 #include "render/moving/on_host/moving_accel.hpp"
-#include "render/queries/query_scene.hpp"
+#include "render/tracers/rays/query_scene.hpp"
 #include "scene/motion/deform.hpp"
 #include "support/scenes.hpp"
 

@@ -10,8 +10,8 @@
 #include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
 #include "render/moving/on_host/moving_accel.hpp"
-#include "render/queries/query_scene.hpp"
-#include "render/queries/ray_queries.hpp"
+#include "render/tracers/rays/query_scene.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
 
 namespace clarity::test {
 namespace {

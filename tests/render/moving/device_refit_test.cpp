@@ -7,7 +7,7 @@
 #include "plugin/extensions.hpp"
 #include "render/moving/on_device/device_motion.hpp"
 #include "render/moving/on_host/moving_accel.hpp"
-#include "render/queries/query_scene.hpp"
+#include "render/tracers/rays/query_scene.hpp"
 
 namespace clarity::test {
 namespace {

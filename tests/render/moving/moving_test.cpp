@@ -12,9 +12,9 @@
 #include "base/error.hpp"
 #include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/queries/query_scene.hpp"
-#include "render/queries/ray_queries.hpp"
 #include "render/settings/accel_choice.hpp"
+#include "render/tracers/rays/query_scene.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
 #include "support/workbench.hpp"
 
 namespace clarity::test {

@@ -8,7 +8,7 @@
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 #include "render/moving/moved_group.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"

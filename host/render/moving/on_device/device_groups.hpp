@@ -8,7 +8,7 @@
 #include "render/accel/accel_build.hpp"
 #include "render/device_build/build_kernels.hpp"
 #include "render/device_build/device_plan.hpp"
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 #include "rt_device.h"
 
 namespace clarity {

@@ -1,7 +1,7 @@
 // read_back.hpp -- a structure that devices have moved, as the host sees it: for the display of its bounding volumes.
 #pragma once
 #include "render/accel/accel_build.hpp"
-#include "render/frame/device_scene.hpp"
+#include "render/launch/device_scene.hpp"
 
 namespace clarity {
 

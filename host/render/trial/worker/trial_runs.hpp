@@ -14,7 +14,7 @@ namespace clarity {
 using TrialSteps = std::function<void(const std::string& step, double limit_s)>;
 
 // Runs kernels as the arguments say. Returns why there is no trial; empty: the kernels have passed. Throws Error if they have
-// not. arguments: of a kind other than film; its `settings` are those of the program that is tried.
+// not. arguments: of other kernels than the film's; its `settings` are those of the program that is tried.
 std::string try_on_small_scene(const TrialArguments& arguments, const PluginRegistry& plugins,
                                const std::shared_ptr<Device>& device, const TrialSteps& say_step);
 // The same for the kernels of the film.

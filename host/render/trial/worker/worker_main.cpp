@@ -42,7 +42,7 @@ std::string try_kernels(const TrialArguments& arguments) {
         return "device " + arguments.device + " is " + device->info().name + " here";
     const TrialSteps steps = [more_s = device->info().llvmpipe ? kLlvmpipeCompiles_s : 0](
                                  const std::string& step, double limit_s) { say_step(step, limit_s + more_s); };
-    return arguments.kind == TrialKind::film ? try_film_kernels(device, steps)
+    return arguments.kernels == kFilmKernels ? try_film_kernels(device, steps)
                                              : try_on_small_scene(arguments, plugins, device, steps);
 }
 

@@ -1,0 +1,39 @@
+// kernel_arguments.hpp -- a kernel whose arguments are set by their names.
+#pragma once
+#include <CL/opencl.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clarity {
+
+// The names of a kernel's arguments in their order, from its declaration in `text`. scene: the names that RT_CTX_PARAMS stands
+// for, separated by commas. debug: whether RT_OVERFLOWS_PARAM declares an argument. Empty if the text does not declare such a
+// kernel.
+std::vector<std::string> argument_names(const std::string& text, const std::string& entry, const std::string& scene,
+                                        bool debug);
+
+// Holds arguments, so that users must not share one.
+class KernelArguments {
+ public:
+    KernelArguments() = default;
+    // where: for messages, the kernel and its file.
+    KernelArguments(cl::Kernel kernel, std::vector<std::string> names, std::string where)
+        : kernel_(std::move(kernel)), names_(std::move(names)), where_(std::move(where)) {}
+    bool has(std::string_view name) const;
+    // Throws Error(kernel_build_failed) if the kernel has no argument of that name, as after an edit; and cl::Error.
+    template <class T>
+    KernelArguments& set(std::string_view name, const T& value) {
+        kernel_.setArg(number_of(name), value);
+        return *this;
+    }
+    cl::Kernel& kernel() { return kernel_; }
+
+ private:
+    cl_uint number_of(std::string_view name) const;
+    cl::Kernel kernel_;
+    std::vector<std::string> names_;
+    std::string where_;
+};
+
+}  // namespace clarity

@@ -1,0 +1,38 @@
+// kernel_row.hpp -- what makes up a kernel that traces rays. Tracers (render/tracers) say it of theirs.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "render/settings/settings.hpp"
+#include "rt_plugin.h"
+
+namespace clarity {
+
+class SourceWriter;
+
+// Properties of a kernel, as bits of KernelRow::traits.
+enum : unsigned {
+    kNearestOnly = 1,     // has no any-hit traversals
+    kReadsUvs = 2,        // reads texture coordinates even if the scene has no texture
+    kLimitRegisters = 4,  // is faster on GPUs with fewer registers than it would take: program_cache.cpp has the numbers
+    kVotes = 8,           // uses votes among the work-items of a warp: cl/lanes/subgroup.h
+    kFrame = 16,          // traces frames; so on a frame of no size it ends at once
+    kCountsRays = 32,     // traces more than camera rays: it has `counters`, and the `distances` of the camera rays
+    kLayers = 64          // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
+};
+
+struct KernelRow {
+    const char* tracer = "";           // id of the tracer that it belongs to
+    const char* what = "";             // for messages: "ray queries"
+    const char* file = "";             // below cl/, included last
+    const char* entry = "";            // name of the kernel function
+    std::vector<const char*> headers;  // below cl/, included after the traversals and before `file`
+    std::vector<std::string> defines;  // "NAME" or "NAME VALUE", ahead of all includes
+    unsigned traits = 0;
+    void (*define)(SourceWriter&, const Settings&) = nullptr;  // writes more defines, which depend on settings
+    rt_u32 needs = 0;            // capabilities that the structure must have: RT_TRAVERSES_STEPS...
+    unsigned rays_per_item = 0;  // for kernels that trace a warp's rays together
+    bool has(unsigned trait) const { return (traits & trait) != 0; }
+};
+
+}  // namespace clarity

@@ -1,0 +1,35 @@
+// scene_buffers.hpp -- the table of a scene's buffers. From it come the members of rt_ctx, the arguments of kernels, and what
+// the host uploads. The slots of the structure follow them.
+#pragma once
+#include <cstddef>
+
+#include "rt_shape.h"
+#include "rt_types.h"
+
+namespace clarity {
+
+struct SceneBuffer {
+    const char *type, *name;  // in rt_ctx; as an argument of kernels it is called ctx_NAME
+    const char* what;         // for messages
+    size_t checked_bytes;     // if not 0: the size of the type, which is compared with the device's
+    bool of_shapes = false;   // only kernels of scenes with shapes have it
+};
+
+constexpr SceneBuffer kSceneBuffers[] = {
+    {"rt_packed_prim", "leaves", "leaves", sizeof(rt_packed_prim)},
+    {"rt_instance", "instances", "instances", sizeof(rt_instance)},
+    {"rt_polygon", "polygons", "polygons", 0},
+    {"float", "polygon_corners", "polygon corners", 0},
+    {"rt_plane", "planes", "planes", 0},
+    {"rt_material", "materials", "materials", sizeof(rt_material)},
+    {"rt_triangle", "triangles", "triangles", 0},
+    {"float", "normals", "normals", 0},
+    {"float", "uvs", "texture coordinates", 0},
+    {"rt_texture", "textures", "texture table", 0},
+    {"uint", "texels", "textures", 0},
+    {"rt_light", "lights", "lights", 0},
+    {"rt_shape", "shapes", "shapes", sizeof(rt_shape), true},
+    {"float", "shape_numbers", "numbers of shapes", 0, true},
+};
+
+}  // namespace clarity

@@ -1,0 +1,57 @@
+#include "render/launch/launch.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/elapsed.hpp"
+#include "device/cl_errors.hpp"
+#include "device/launch_limit.hpp"
+
+namespace clarity {
+
+LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, unsigned group_count, unsigned most,
+                          const std::function<Piece(unsigned first, unsigned count)>& enqueue,
+                          const std::function<void()>& go_on, const SideWork& side_work) {
+    LaunchTimes times;
+    pace_.begin_picture();
+    for (unsigned first = 0; first < group_count;) {
+        go_on();
+        const unsigned count = pace_.next(group_count - first, most);
+        const auto start = std::chrono::steady_clock::now();
+        const Piece piece = enqueue(first, count);
+        cl::Event last;
+        if (side_work.behind && first + count == group_count) last = side_work.behind();
+        if (side_work.while_it_works && times.launches == 0) {
+            queue.flush();
+            side_work.while_it_works();
+        }
+        queue.flush();
+        wait_for(device, last() ? last : piece.last, [&] {
+            return "a launch of " + std::to_string(count) + " of " + std::to_string(group_count) + " work-groups";
+        });
+        first += count;
+        double wall = ms_since(start);
+        const double traced = device.info().llvmpipe ? wall : span_ms(piece.first, piece.last, wall);  // its clock stands still
+        if (last()) wall = std::max(traced, wall - std::max(0.0, span_ms(piece.first, last, traced) - traced));
+        times.wall_ms += wall;
+        times.device_ms += traced;
+        ++times.launches;
+        pace_.took(count, wall);
+    }
+    pace_.end_picture();
+    return times;
+}
+
+LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, KernelArguments& kernel, unsigned group_count,
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
+    const auto enqueue = [&](unsigned first, unsigned count) {
+        cl::Event event;
+        kernel.set("first_group", cl_uint(begin + first));
+        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(size_t(count) * group_size),
+                                   cl::NDRange(group_size), nullptr, &event);
+        return Piece{event, event};
+    };
+    return run(device, queue, group_count, group_count, enqueue, go_on, side_work);
+}
+
+}  // namespace clarity

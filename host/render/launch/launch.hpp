@@ -1,0 +1,51 @@
+// launch.hpp -- runs a kernel over work-groups in pieces. A piece is short enough to cancel in time and not to trip a display
+// driver.
+#pragma once
+#include <CL/opencl.hpp>
+#include <functional>
+
+#include "device/device.hpp"
+#include "render/kernels/kernel_arguments.hpp"
+#include "render/launch/pace.hpp"
+
+namespace clarity {
+
+// Times in ms by the device's and the host's clock, and the number of launches.
+struct LaunchTimes {
+    double device_ms = 0, wall_ms = 0;
+    unsigned launches = 0;
+};
+
+// Work beside the trace of a picture. Either function may be empty.
+struct SideWork {
+    std::function<cl::Event()> behind;     // enqueues work after the last kernel, and returns its last event
+    std::function<void()> while_it_works;  // host work: called once, when the device has its first piece
+};
+
+// Runs one kernel, or several that belong together, and remembers from launch to launch how fast they are.
+class Launcher {
+ public:
+    // The first and the last kernel that were enqueued for one piece.
+    struct Piece {
+        cl::Event first, last;
+    };
+    // Runs groups [0, group_count) in pieces of at most `most`. `enqueue` enqueues one piece. `go_on` is called between pieces
+    // and stops the run by throwing. The call waits for side_work.behind with the last piece; its time is in none of the
+    // returned times. queue: of the device. Throws Error(failed) if a piece does not end (device/launch_limit.hpp).
+    LaunchTimes run(const Device& device, cl::CommandQueue& queue, unsigned group_count, unsigned most,
+                    const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
+                    const SideWork& side_work = {});
+    // Runs groups [begin, begin + group_count) of `group_size` work-items. The argument `first_group` (a uint) receives the
+    // number of a piece's first group. The global offset stays zero, because PoCL compiles a kernel again for another offset.
+    LaunchTimes run(const Device& device, cl::CommandQueue& queue, KernelArguments& kernel, unsigned group_count,
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0,
+                    const SideWork& side_work = {});
+    void forget() { pace_.forget(); }
+    // Expected time of that many groups, in ms; infinite if nothing is known.
+    double expected_ms(unsigned groups) const { return pace_.expected_ms(groups); }
+
+ private:
+    Pace pace_;
+};
+
+}  // namespace clarity

@@ -1,0 +1,66 @@
+#include "render/launch/view_buffers.hpp"
+
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+void check_materials(const Scene& scene, const std::vector<rt_material>& materials) {
+    if (materials.size() != scene.materials.size())
+        throw Error(Exit::failed, "the view has " + std::to_string(materials.size()) + " materials and the scene has " +
+                                      std::to_string(scene.materials.size()) + ": the view needs one for each, or none");
+    for (size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].texture != RT_NONE && materials[i].texture >= scene.textures.size())
+            throw Error(Exit::failed, "material " + std::to_string(i) + " of the view names texture " +
+                                          std::to_string(materials[i].texture) + " and the scene has " +
+                                          std::to_string(scene.textures.size()));
+}
+
+}  // namespace
+
+void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device,
+                        const std::vector<rt_frame>& frames, const View& view, const std::vector<rt_u32>& rows) {
+    own_materials_ = !view.materials.empty();
+    if (own_materials_) check_materials(scene, view.materials);
+    const size_t frame_bytes = frames.size() * sizeof(rt_frame), row_bytes = rows.size() * sizeof(rt_u32);
+    frames_and_rows_.resize(frame_bytes + row_bytes);
+    std::memcpy(frames_and_rows_.data(), frames.data(), frame_bytes);
+    if (row_bytes > 0) std::memcpy(frames_and_rows_.data() + frame_bytes, rows.data(), row_bytes);
+    frame_.write(queue, frames_and_rows_.data(), frames_and_rows_.size());
+    on_device.complete(queue, frame_.get(), frames.size());
+    lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
+    if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
+}
+
+void ViewBuffers::Part::write(cl::CommandQueue& queue, const void* data, size_t bytes) {
+    const cl::Buffer before = buffer_.get();
+    const cl::Buffer& to = buffer_.fit(queue.getInfo<CL_QUEUE_CONTEXT>(), bytes);
+    const bool same =
+        to() == before() && written_.size() == bytes && (bytes == 0 || std::memcmp(written_.data(), data, bytes) == 0);
+    if (same || bytes == 0) return;
+    if (on_its_way_()) on_its_way_.wait();
+    const auto* begin = static_cast<const unsigned char*>(data);
+    written_.assign(begin, begin + bytes);
+    try {
+        queue.enqueueWriteBuffer(to, CL_FALSE, 0, bytes, written_.data(), nullptr, &on_its_way_);
+    } catch (const cl::Error&) {
+        written_.clear();
+        throw;
+    }
+}
+
+ViewBuffers::Part::~Part() {
+    try {
+        if (on_its_way_()) on_its_way_.wait();
+    } catch (const cl::Error&) {  // the device is lost: nothing reads this memory any more
+    }
+}
+
+void ViewBuffers::bind(const DeviceScene& scene, KernelArguments& kernel) const {
+    kernel.set("frame", frame_.get());
+    scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr);
+}
+
+}  // namespace clarity

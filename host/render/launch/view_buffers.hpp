@@ -1,0 +1,45 @@
+// view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
+#pragma once
+#include "render/film/growing_buffer.hpp"
+#include "render/launch/device_scene.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// Reused from frame to frame. Uploads only what has changed. Used from one thread.
+class ViewBuffers {
+ public:
+    // Uploads a view.
+    // frames: one for each sample that the next launch traces.
+    // rows: numbers of the work-group rows that a device traces of a shared picture; row_count entries are valid, the rest is
+    // padding.
+    // on_device: the buffers that the frames are traced in.
+    // Throws Error(failed) if the view's materials do not match the scene's, since kernels index materials and textures by
+    // number.
+    void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
+               const View& view, const std::vector<rt_u32>& rows = {});
+    const cl::Buffer& frame() const { return frame_.get(); }
+    // Sets `frame` and the scene's arguments of the kernel.
+    void bind(const DeviceScene& scene, KernelArguments& kernel) const;
+
+ private:
+    // One buffer. Uploads only if the data has changed, and does not wait for the upload: either would cost as much as the
+    // kernel of a small frame.
+    class Part {
+     public:
+        ~Part();
+        void write(cl::CommandQueue& queue, const void* data, size_t bytes);
+        const cl::Buffer& get() const { return buffer_.get(); }
+
+     private:
+        GrowingBuffer buffer_{CL_MEM_READ_ONLY};
+        std::vector<unsigned char> written_;  // last content; the device may read it until on_its_way_ is complete
+        cl::Event on_its_way_;
+    };
+    Part frame_, lights_, materials_;
+    std::vector<unsigned char> frames_and_rows_;
+    bool own_materials_ = false;
+};
+
+}  // namespace clarity

@@ -1,0 +1,91 @@
+// ray_queries.hpp -- traces the caller's own rays with the traversals that pictures use.
+#pragma once
+#include <functional>
+#include <map>
+#include <tuple>
+
+#include "device/device.hpp"
+#include "render/film/overflow_counter.hpp"
+#include "render/kernels/kernel_source.hpp"
+#include "render/kernels/layout.hpp"
+#include "render/kernels/program_cache.hpp"
+#include "render/launch/launch.hpp"
+#include "render/launch/ping_pong.hpp"
+#include "render/launch/prepared.hpp"
+#include "render/launch/view_buffers.hpp"
+#include "render/tracers/rays/autotuner.hpp"
+#include "render/tracers/rays/ray_blocks.hpp"
+#include "render/tracers/rays/ray_query.hpp"
+
+namespace clarity {
+
+// Ray queries on one device, and the choice of the fastest kernel for them. Used from one thread.
+class RayQueries {
+ public:
+    explicit RayQueries(std::shared_ptr<Device> device) : device_(device), programs_(device) {}
+    // Traces the rays and returns the kernel's time, ms by the device's clock. If `hits` is null, the answers stay on the
+    // device. Throws Error(failed) if the rays were packed for another number of lanes. If traversal stacks of a debug program
+    // were full, this is logged as an error.
+    double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
+    // The same, and packs the rays. Rays that are traced repeatedly are better packed once.
+    std::vector<rt_hit> trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query = {});
+    // How the last trace() ran.
+    RayTuning tuning() const { return tuning_; }
+    // How many traversal stacks were full in the last trace(). 0 for programs that are not for debugging.
+    uint64_t overflows() const { return overflowed_; }
+
+ private:
+    // One launch of a query. The answers have `fields` numbers a ray (RT_ANSWER_*).
+    struct Launch {
+        const Prepared& prepared;
+        const TraceProgram& program;
+        unsigned blocks;
+        bool any_hit;
+        cl_uint fields;
+        const cl::Buffer &in, &out;
+    };
+    // The numbers of rays in a list on the device, of this launch and of the next, and the list.
+    struct Counted {
+        GrowingBuffer buffer{CL_MEM_READ_WRITE};
+        PingPong parity;
+        const cl::Buffer& fit(const cl::Context& context, size_t rays);
+        void take(cl::CommandQueue& queue, const std::function<void(cl_uint parity)>& enqueue);
+    };
+    KernelArguments kernel_of(const Launch& launch, const char* entry = nullptr) const;
+    LaunchTimes trace(const Launch& launch);
+    LaunchTimes trace_at_once(const Launch& launch);
+    // Two launches: the first stops rays that exceed a step budget and lists them; the second traces each of these with several
+    // work-items side by side (cl/tracers/rays/requeued_rays.cl).
+    LaunchTimes trace_requeued(const Launch& launch);
+    // Persistent work-items fetch a new ray whenever they are free (cl/tracers/rays/dynamic_fetch.cl; Aila, Laine 2009,
+    // Understanding the Efficiency of Ray Traversal on GPUs).
+    LaunchTimes trace_fetching(const Launch& launch);
+
+    std::shared_ptr<Device> device_;
+    ProgramCache programs_;  // of all kernels for ray queries
+    ViewBuffers view_;
+    std::map<const KernelRow*, Launcher> launchers_;
+    Counted long_rays_, fetched_;
+    // What the launchers' pace depends on. If it stays the same, a short query is a single launch.
+    struct Asked {
+        std::shared_ptr<const DeviceScene> scene;
+        std::shared_ptr<const TraceProgram> program;  // the program of pictures: it changes with the settings
+        size_t blocks = 0;
+        bool any_hit = false, count = false, brief = false;
+        bool operator==(const Asked& o) const {
+            return std::tie(scene, program, blocks, any_hit, count, brief) ==
+                   std::tie(o.scene, o.program, o.blocks, o.any_hit, o.count, o.brief);
+        }
+    };
+    Asked last_;
+    // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
+    uint64_t packing_ = 0;
+    std::vector<const KernelRow*> kernels_;
+    Autotuner autotuner_;
+    RayTuning tuning_;
+    uint64_t overflowed_ = 0;
+    OverflowCounter overflows_;  // used for debug programs
+    GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
+};
+
+}  // namespace clarity

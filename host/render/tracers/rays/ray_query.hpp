@@ -1,0 +1,22 @@
+// ray_query.hpp -- what a query of the caller's own rays asks for, and how it ran.
+#pragma once
+
+namespace clarity {
+
+// What RayQueries::trace() computes.
+struct RayQuery {
+    bool any_hit = false;  // only whether anything is hit between t_min and t_max
+    // Fill in steps, leaf_tests and lane_steps. This uses a slower program: leave it out when measuring time.
+    bool count = false;
+    // Write only t and prim of the nearest hit. Use it to compare times with libraries that write no more than that.
+    bool brief = false;
+};
+
+// How the last RayQueries::trace() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.
+struct RayTuning {
+    unsigned variant = 0;  // number of the variant; 0 is the plain kernel
+    bool trial = false;    // this run tried a variant that may be slow: do not use its time as a measurement
+    bool settled = true;   // the variant is chosen, and one more run has confirmed the choice
+};
+
+}  // namespace clarity
