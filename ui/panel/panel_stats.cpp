@@ -186,8 +186,9 @@ void structure_rows(const ReadySide& side, const ImportedScene& loaded) {
     pose_rows(side.pose_update);
     row_text("Memory", bytes_text(static_cast<double>(accel.bytes)), "nodes and leaves, on the device");
     row_text("Per primitive", number_text(std::round(static_cast<double>(accel.bytes) / triangles * 10) / 10) + " bytes",
-             count_text(triangles) + " primitives in leaves; " + count_text(static_cast<double>(loaded.placed_triangles)) +
-                 " triangles in the world");
+             count_text(triangles) + " " + noun(accel.leaf_count, "primitive") + " in leaves; " +
+                 count_text(static_cast<double>(loaded.placed_triangles)) + " " + noun(loaded.placed_triangles, "triangle") +
+                 " in the world");
     for (const auto& [label, value] : accel.stats) row_text(label.c_str(), number_text(value), "as the plugin reports it");
 }
 
