@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/numbers.hpp"
@@ -129,7 +130,7 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("cameras", scene.cameras.size());
     for (const Camera& camera : scene.cameras) {
         char fov[32];
-        std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) * 57.29577951308232);
+        std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) / kRadPerDegree);
         row("", (camera.name.empty() ? "(no name)" : printable_line(camera.name)) + fov);
     }
     count_row("animations", animations.size());

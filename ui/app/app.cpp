@@ -5,10 +5,10 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/film/image_io.hpp"
@@ -22,10 +22,6 @@
 
 namespace clarity::ui {
 namespace {
-
-double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 constexpr float kTapSeconds = 0.06f;  // a key press moves by at least this much time's motion, however short it was
 constexpr float kLongestStep =

@@ -14,8 +14,8 @@ class History {
     void observe(const DesiredState& desired, bool gesture);
     // Called for a new scene: earlier steps cannot be undone any more.
     void forget();
-    // Called when the lights of the file move with a pose: steps that hold them as they were hold them as they are now, because
-    // undo takes back what the user did.
+    // Called when the lights of the file move with a pose. Steps that hold the lights of the old pose then hold those of the
+    // new one, because undo takes back what the user did and not what the clip did.
     void lights_moved(const std::vector<Light>& before, const std::vector<Light>& now);
     bool can_undo() const { return !undo_.empty(); }
     bool can_redo() const { return !redo_.empty(); }

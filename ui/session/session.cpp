@@ -1,11 +1,11 @@
 #include "ui/session/session.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
@@ -14,10 +14,6 @@
 
 namespace clarity::ui {
 namespace {
-
-double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Whether both jobs trace the same frames of the same sides.
 bool same_frames(const FrameJob& a, const FrameJob& b) {

@@ -5,11 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "base/angle.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
-
-inline constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
 
 struct CameraNumbers {
     std::array<float, 3> eye{}, target{};
