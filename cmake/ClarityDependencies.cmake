@@ -94,6 +94,16 @@ foreach(pair "PkgConfig::IMGUI|libimgui-dev" "PkgConfig::GLFW|libglfw3-dev" "Pkg
     list(APPEND ui_missing ${package})
   endif()
 endforeach()
+foreach(pair "TEXT|DejaVuSans.ttf" "BOLD|DejaVuSans-Bold.ttf" "MONO|DejaVuSansMono.ttf")  # ui/widgets/fonts.cpp
+  string(REPLACE "|" ";" pair "${pair}")
+  list(GET pair 0 face)
+  list(GET pair 1 file)
+  find_file(CLARITY_FONT_${face} ${file} PATHS /usr/share/fonts /usr/local/share/fonts NO_DEFAULT_PATH
+    PATH_SUFFIXES truetype/dejavu dejavu TTF dejavu-sans-fonts dejavu-sans-mono-fonts)
+  if(NOT CLARITY_FONT_${face})
+    list(APPEND ui_missing "fonts-dejavu-core (${file})")
+  endif()
+endforeach()
 if(ui_missing)
   set(CLARITY_UI OFF)
   list(JOIN ui_missing ", " ui_missing)

@@ -15,6 +15,12 @@ add_dependencies(program manual)
 install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 
+# The program holds DejaVu (ui/widgets/fonts.cpp), whose licence asks to go with it.
+set(font_licence /usr/share/doc/fonts-dejavu-core/copyright)
+if(CLARITY_UI AND EXISTS ${font_licence})
+  install(FILES ${font_licence} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME fonts-dejavu.copyright)
+endif()
+
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR} USE_SOURCE_PERMISSIONS)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/share/clarity/farm ${PROJECT_BINARY_DIR}/share/clarity/farm SYMBOLIC)
 
@@ -47,6 +53,6 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The window draws with OpenGL, which GLFW and epoxy load while they run.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "util-linux")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, libgl1, libgl1-mesa-dri, fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, libgl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, slurm-client, openmpi-bin, ffmpeg, imagemagick")
 include(CPack)

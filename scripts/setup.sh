@@ -5,6 +5,7 @@ build_dir=build/release
 
 # Compiler and tools (make: cmake's default for plugins outside of the tree), the libraries for the build, and the packages that the
 # program needs at run time. libgl1-mesa-dri: OpenGL in software, so that the window also opens on a virtual display.
+# fonts-dejavu-core: fonts that become part of the program.
 build_packages="g++ cmake ninja-build make pkg-config libdraco-dev libmeshoptimizer-dev
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
     libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libxxhash-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
@@ -45,11 +46,25 @@ as_root() {
     fi
 }
 
-# On a terminal apt-get shows its progress; elsewhere it prints only errors.
+# apt ARGUMENT...: runs apt-get. On a terminal it shows its progress; elsewhere it prints only errors. Another process may hold one
+# of apt's locks, as on a machine that updates itself after its start: then this waits and says so, for at most half an hour. Not by
+# apt's own DPkg::Lock::Timeout, which leaves out the locks of the lists and of the downloads (apt 2.6).
 apt() {
-    local out=/dev/null
+    local out=/dev/null errors code holder told="" end=$((SECONDS + ${apt_patience_s:-1800}))
     [ ! -t 2 ] || out=/dev/stderr
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get -y -q -o Dpkg::Use-Pty=0 "$@" </dev/null >"$out"
+    errors="$(mktemp)" || die "no temporary file: is there room in ${TMPDIR:-/tmp}?"
+    while :; do
+        as_root env LC_ALL=C DEBIAN_FRONTEND=noninteractive apt-get -y -q -o Dpkg::Use-Pty=0 "$@" </dev/null >"$out" 2>"$errors"
+        code=$?
+        holder="$(sed -n 's/^E: Could not get lock \([^ ]*\)\. It is held by \(.*[^.]\)\.*$/\2, which holds \1/p' "$errors" | head -n 1)"
+        [ $code != 0 ] && grep -q '^E: Could not get lock' "$errors" && [ $SECONDS -lt $end ] || break
+        [ "$told" = "${holder:=another program that uses apt}" ] || say "Waiting for $holder"
+        told="$holder"
+        sleep 2
+    done
+    cat "$errors" >&2
+    rm -f "$errors"
+    return $code
 }
 
 # install_packages PACKAGE...: installs those that are missing with apt-get.
@@ -94,9 +109,28 @@ werror=${CLARITY_WERROR:-as it is}"
     printf '%s\n' "$now" >"$stamp"
 }
 
-# build TARGET...: builds the targets, or all without one.
+# build TARGET...: builds the targets, or all without one. A terminal shows Ninja's line of progress; elsewhere every tenth of the
+# way is a line, beside what compilers say.
 build() {
-    # On a terminal Ninja shows its progress; elsewhere tell at least that a long build has begun.
-    [ -t 2 ] || [ -x "$build_dir/bin/clarity" ] || say "Building (some minutes on a small machine)"
-    ninja -C "$build_dir" -j "$(nproc)" $([ -t 2 ] || echo --quiet) "$@" >&2 || die "the build failed, see above"
+    [ -x "$build_dir/bin/clarity" ] || say "Building for the first time: some minutes on a small machine; later only what changed"
+    if [ -t 2 ]; then
+        NINJA_STATUS="[%f/%t, %p] " ninja -C "$build_dir" -j "$(nproc)" "$@" >&2 || die "the build failed, see above"
+        return
+    fi
+    local line done_steps steps tenths=0
+    NINJA_STATUS="@%f/%t@" ninja -C "$build_dir" -j "$(nproc)" "$@" 2>&1 | while IFS= read -r line; do
+        case "$line" in
+        @*@Re-*) ;; # Ninja looks for new files and configures anew
+        @*/*@*)
+            line="${line#@}" done_steps="${line%%/*}" steps="${line#*/}" steps="${steps%%@*}"
+            if [ $((10 * done_steps / steps)) -gt $tenths ]; then
+                tenths=$((10 * done_steps / steps))
+                say "Building: $((10 * tenths)) % ($done_steps of $steps steps)"
+            fi
+            ;;
+        "ninja: Entering directory"* | "ninja: no work to do.") ;;
+        *) say "$line" ;;
+        esac
+    done
+    [ "${PIPESTATUS[0]}" = 0 ] || die "the build failed, see above"
 }

@@ -12,4 +12,9 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+// Seconds of the steady clock, since some moment in the past.
+inline double now_s() {
+    return seconds_since({});
+}
+
 }  // namespace clarity

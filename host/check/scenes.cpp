@@ -4,10 +4,12 @@
 #include <cmath>
 #include <random>
 
+#include "base/angle.hpp"
+
 namespace clarity::check {
 namespace {
 
-constexpr float kPi = 3.14159265f;
+constexpr auto kHalfTurn = static_cast<float>(kPi);
 
 // Adds meshes, and places them, in a scene.
 class Maker {
@@ -32,7 +34,8 @@ class Maker {
     }
     void ball(const Point& center, float radius, int segments, int rings) {
         const auto at = [&](int r, int s) {
-            const float theta = kPi * float(r) / float(rings), phi = 2 * kPi * float(s % segments) / float(segments);
+            const float theta = kHalfTurn * float(r) / float(rings),
+                        phi = 2 * kHalfTurn * float(s % segments) / float(segments);
             return Point{center[0] + radius * std::sin(theta) * std::sin(phi), center[1] + radius * std::cos(theta),
                          center[2] + radius * std::sin(theta) * std::cos(phi)};
         };

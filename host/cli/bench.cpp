@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
+#include "base/plural.hpp"
 #include "bench/output/output.hpp"
 #include "bench/output/rows_file.hpp"
 #include "bench/report/report.hpp"
@@ -162,12 +163,15 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     join(report, command.join_files);
     write(command, report, rows ? &*rows : nullptr);
     if (report.interrupted) {
-        log(LogLevel::warning, "interrupted: " + std::to_string(report.records.size()) + " rows are complete and were written");
+        log(LogLevel::warning,
+            "interrupted: " + plural(report.records.size(), "row is complete and was", "rows are complete and were") +
+                " written");
         return static_cast<int>(Exit::interrupted);
     }
     if (!report.failure.empty()) {
-        log(LogLevel::error, "the run ended early, and " + std::to_string(report.records.size()) +
-                                 " rows are complete and were written: " + report.failure);
+        log(LogLevel::error, "the run ended early, and " +
+                                 plural(report.records.size(), "row is complete and was", "rows are complete and were") +
+                                 " written: " + report.failure);
         return static_cast<int>(Exit::failed);
     }
     if (all_ok(report)) return static_cast<int>(Exit::done);

@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/numbers.hpp"
+#include "base/plural.hpp"
 #include "base/printable.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
@@ -120,7 +122,7 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     const uint64_t placed = scene.placed_triangle_count(), faces = face_count(scene);
     std::string more;
     if (placed != scene.triangle_count()) more += ", " + grouped(scene.triangle_count()) + " of them different";
-    if (faces != placed) more += ", from " + grouped(faces) + " faces";
+    if (faces != placed) more += ", from " + grouped(faces) + " " + noun(faces, "face");
     count_row("triangles", placed, more);
     count_row("vertices", scene.vertex_count());
     count_row("meshes", scene.meshes.size());
@@ -137,16 +139,16 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("cameras", scene.cameras.size());
     for (const Camera& camera : scene.cameras) {
         char fov[32];
-        std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) * 57.29577951308232);
+        std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) / kRadPerDegree);
         row("", (camera.name.empty() ? "(no name)" : printable_line(camera.name)) + fov);
     }
     count_row("animations", animations.size());
     for (size_t i = 0; i < animations.size(); ++i) {
         const ClipInfo& clip = animations[i];
         char span[96];
-        std::snprintf(span, sizeof span, "  %.6g to %.6g s, %u nodes, %u skins, %u morphs", clip.begin_s, clip.end_s,
-                      clip.nodes, clip.skins, clip.morphs);
-        row("", std::to_string(i) + ' ' + (clip.name.empty() ? "(no name)" : printable_line(clip.name)) + span);
+        std::snprintf(span, sizeof span, "  %.6g to %.6g s, ", clip.begin_s, clip.end_s);
+        row("", std::to_string(i) + ' ' + (clip.name.empty() ? "(no name)" : printable_line(clip.name)) + span +
+                    plural(clip.nodes, "node") + ", " + plural(clip.skins, "skin") + ", " + plural(clip.morphs, "morph"));
     }
     const Bounds bounds = scene.bounds();
     if (bounds.empty) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/plural.hpp"
 #include "base/printable.hpp"
 #include "cli/commands.hpp"
 #include "plugin/capabilities.hpp"
@@ -172,7 +173,7 @@ void print_plugin(const PluginRecord& record) {
     print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin_kind(plugin), plugin.id, plugin.name, plugin.version,
                record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
                record.path.c_str());
-    if (record.replaced > 0) print_text("%sbuilt again and replaced %u times\n", kIndent, record.replaced);
+    if (record.replaced > 0) print_text("%sbuilt again and replaced %s\n", kIndent, plural(record.replaced, "time").c_str());
     if (plugin.reference) print_text("%sreference: %s\n", kIndent, plugin.reference);
     if (plugin.accel) print_accel(*plugin.accel);
     if (plugin.primitive) print_keys(*plugin.primitive);

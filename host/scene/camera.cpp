@@ -2,14 +2,10 @@
 
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity {
-namespace {
-
-constexpr float kPi = 3.14159265f;
-
-}  // namespace
 
 Camera moved_by(Camera camera, const Matrix& world_from_node) {
     camera.eye = to_floats(point(world_from_node, to_vec(camera.node_eye)));
@@ -23,7 +19,8 @@ bool make_sound(Camera& camera) {
     const Vec forward = to_vec(camera.target) - to_vec(camera.eye), up = to_vec(camera.up), across = cross(forward, up);
     const double distance2 = dot(forward, forward);
     if (!(distance2 > 0)) return false;
-    if (!(camera.fov_y_rad > 1e-3f && camera.fov_y_rad < kPi - 1e-3f)) camera.fov_y_rad = Camera{}.fov_y_rad;
+    if (!(camera.fov_y_rad > 1e-3f && camera.fov_y_rad < static_cast<float>(kPi) - 1e-3f))
+        camera.fov_y_rad = Camera{}.fov_y_rad;
     if (are_usable(camera.up) && dot(across, across) > 1e-10 * distance2 * dot(up, up)) return true;
     const bool vertical = std::abs(forward[1]) > 0.9 * std::sqrt(distance2);
     camera.up = vertical ? std::array<float, 3>{0, 0, 1} : std::array<float, 3>{0, 1, 0};
@@ -70,6 +67,10 @@ Camera framing_camera(const Scene& scene, float aspect) {
         camera.up[i] = static_cast<float>(up[i]);
     }
     return camera;
+}
+
+bool same_camera(const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
 }
 
 }  // namespace clarity

@@ -1,5 +1,6 @@
 // scene.cpp -- bounds and areas of a scene, and the default material.
 #include "scene/scene.hpp"
+#include "base/angle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -127,8 +128,7 @@ double Scene::surface_area() const {
         }
         sum += 0.5 * length(doubled);
     }
-    const double pi = 3.14159265358979323846;
-    for (const Sphere& sphere : spheres) sum += 4 * pi * double(sphere.radius) * sphere.radius;
+    for (const Sphere& sphere : spheres) sum += 4 * kPi * double(sphere.radius) * sphere.radius;
     return sum;
 }
 

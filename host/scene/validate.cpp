@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/angle.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -186,7 +187,7 @@ std::string check_view(const Scene& s) {
         if (!all_finite(camera.eye) || !all_finite(camera.target) || !all_finite(camera.up)) {
             return text("camera", i, "not a finite number");
         }
-        if (!(camera.fov_y_rad > 0 && camera.fov_y_rad < 3.1415927f))
+        if (!(camera.fov_y_rad > 0 && camera.fov_y_rad < static_cast<float>(kPi)))
             return text("camera", i, "field of view outside 0..180 degrees");
         if (camera.eye == camera.target) return text("camera", i, "it looks at its own eye");
     }

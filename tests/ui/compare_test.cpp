@@ -47,6 +47,28 @@ TEST_F(Compare, TwoStructuresShowTheSamePicture) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
+// The caption counts kernels by the devices' clocks, as the Stats tab does, and says so.
+TEST_F(Compare, TheCaptionSaysWhatItCounts) {
+    const auto window = compared();
+    ASSERT_EQ(window->command("accel linear"), "");
+    ASSERT_EQ(window->command("set packet 1x1"), "");  // and slow
+    window->settle();
+    const auto state = window->state();
+    double ms[2] = {};
+    for (int side = 0; side < 2; ++side) {
+        const std::string speed = (side == 0 ? state : state["other"])["caption"]["speed"];
+        const size_t at = speed.find(" ms of kernels, ");
+        ASSERT_NE(at, std::string::npos) << speed;
+        ms[side] = std::stod(speed);
+    }
+    EXPECT_LT(ms[0], ms[1]);
+    EXPECT_LT(ms[1], double(state["other"]["frame_ms"]) * 3);
+    const std::string verdict = state["caption"]["verdict"];
+    EXPECT_NE(verdict.find("faster"), std::string::npos) << verdict;
+    EXPECT_NEAR(std::stod(verdict), ms[1] / ms[0], 0.05 * ms[1] / ms[0]);
+    EXPECT_EQ(state["other"]["caption"]["verdict"], "");
+}
+
 TEST_F(Compare, TheHandleIsDraggedByTheMouse) {
     const auto window = compared();
     const auto layout = window->query("layout");

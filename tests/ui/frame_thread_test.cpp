@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -247,6 +248,27 @@ TEST_P(FrameThreads, SettingsThatChangeBetweenPictures) {
     ASSERT_TRUE(settles());
     ASSERT_TRUE(wait_for([&] { return newest() == number; }));
     expect_order();
+}
+
+// The sides of a comparison are traced and copied one after the other: the time of each is its own copy's and nobody else's.
+TEST_P(FrameThreads, ComparedSidesAreTimedOneAfterTheOther) {
+    if (!two_) GTEST_SKIP() << "one side";
+    constexpr double kCopy_ms = 200, kCopies_ms = 2 * kCopy_ms;  // a side's frame copies its counters and its picture
+    faults.copy_ms = static_cast<unsigned>(kCopy_ms);
+    post(1, true);
+    ASSERT_TRUE(wait_for([&] { return thread_.times(1).size() >= 6; }));
+    post(1, false);
+    ASSERT_TRUE(settles());
+    for (const unsigned side : {0u, 1u}) {
+        const FrameTimes times = thread_.times(side);
+        const double least = double(*std::min_element(times.frames_ms().begin(), times.frames_ms().end()));
+        EXPECT_GE(least, kCopies_ms * 0.98) << side << ": one of its copies is not counted";
+        EXPECT_LT(least, kCopies_ms + kCopy_ms * 0.9) << side << ": another's copy is counted";
+        // By the device's clock the wait for other things is no work.
+        ASSERT_EQ(times.kernels_ms().size(), times.size());
+        EXPECT_LT(double(*std::min_element(times.kernels_ms().begin(), times.kernels_ms().end())), kCopy_ms);
+        EXPECT_GT(double(times.kernels_ms().front()), 0);
+    }
 }
 
 // Device work that fails at any point of two pictures: there is a message, and the next picture is right.

@@ -5,10 +5,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
 
+#include "base/plural.hpp"
 #include "ui/app/preferences_json.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/threads/frame_thread.hpp"
+#include "ui/widgets/fonts.hpp"
 #include "ui/widgets/key_map.hpp"
 #include "ui/widgets/rect.hpp"
 
@@ -222,6 +226,35 @@ TEST(Preferences, AreInTheConfigurationFolder) {
     unsetenv("CLARITY_UI_NO_SAVE");
     unsetenv("XDG_CONFIG_HOME");
     fs::remove_all(folder);
+}
+
+// The window draws with the fonts in the program alone: they have every sign that its sources name, and those of file names.
+TEST(Fonts, HaveEverySignOfTheWindow) {
+    std::set<unsigned> signs = {'A', '~', 0xe9, 0x3b1, 0x436};
+    for (const auto& entry : fs::recursive_directory_iterator(CLARITY_UI_SOURCES)) {
+        if (!entry.is_regular_file()) continue;
+        std::ifstream in(entry.path());
+        const std::string text(std::istreambuf_iterator<char>(in), {});
+        for (size_t at = 0; (at = text.find("\\u", at)) != std::string::npos; at += 2)
+            signs.insert(static_cast<unsigned>(std::stoul(text.substr(at + 2, 4), nullptr, 16)));
+    }
+    EXPECT_GT(signs.size(), 12u) << "arrows, folds, dashes";
+    ImFontAtlas atlas;
+    for (const Face face : {Face::text, Face::bold, Face::mono}) {
+        ImFont* const font = add_font(atlas, face, 14);
+        ASSERT_NE(font, nullptr);
+        ASSERT_TRUE(atlas.Build());
+        for (const unsigned sign : signs)
+            EXPECT_TRUE(font->FindGlyphNoFallback(static_cast<ImWchar>(sign))) << std::hex << sign << " face " << int(face);
+    }
+}
+
+TEST(Plurals, OneIsNotMany) {
+    EXPECT_EQ(plural(1, "ray"), "1 ray");
+    EXPECT_EQ(plural(0, "ray"), "0 rays");
+    EXPECT_EQ(plural(2, "ray was", "rays were"), "2 rays were");
+    EXPECT_EQ(plural(1, "ray was", "rays were"), "1 ray was");
+    EXPECT_EQ(noun(1, "face"), "face");
 }
 
 }  // namespace

@@ -5,11 +5,11 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/film/image_io.hpp"
@@ -23,10 +23,6 @@
 
 namespace clarity::ui {
 namespace {
-
-double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // SIGTERM, SIGHUP and Ctrl-C close the window as its button does, so that preferences are saved and temporary files removed. A
 // second signal ends the program at once.

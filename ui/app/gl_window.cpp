@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "ui/widgets/keyboard_layout.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -35,18 +36,23 @@ bool names_display(const char* variable) {
 
 }  // namespace
 
-// GLFW's callbacks. They are set before ImGui's, and ImGui's callbacks call them first.
+// GLFW's callbacks. They are set before ImGui's, and ImGui's callbacks call them first; key() is set after and calls ImGui's.
 struct Callbacks {
     static GlWindow& of(GLFWwindow* window) { return *static_cast<GlWindow*>(glfwGetWindowUserPointer(window)); }
 
-    static void key(GLFWwindow* window, int key, int, int action, int mods) {
+    // ImGui is told the key that is meant, too, so that Ctrl+A, C, V, X and Z in its text fields follow the letters.
+    static void key(GLFWwindow* window, int place, int scancode, int action, int mods) {
         GlWindow& self = of(window);
         self.any_event_ = true;
-        if (action == GLFW_REPEAT) return;
         const bool ctrl = mods & GLFW_MOD_CONTROL, other = mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER);
+        const int key = self.key_at(place, scancode, action == GLFW_RELEASE, mods & GLFW_MOD_NUM_LOCK);
+        ImGui_ImplGlfw_KeyCallback(window, key, scancode, action, mods);
+        if (!is_modifier(place)) ImGui::GetIO().KeyCtrl |= ctrl;  // ImGui knows the two Ctrl keys, but no key made one
+        if (action == GLFW_REPEAT || key == GLFW_KEY_UNKNOWN) return;
         const auto kind = action == GLFW_PRESS ? KeyEvent::Kind::press : KeyEvent::Kind::release;
         self.keys_.push_back({key, kind, ctrl, other, glfwGetTime()});
     }
+    static bool is_modifier(int place) { return place >= GLFW_KEY_LEFT_SHIFT && place <= GLFW_KEY_RIGHT_SUPER; }
     static void focus(GLFWwindow* window, int focused) {
         GlWindow& self = of(window);
         self.any_event_ = true;
@@ -101,7 +107,6 @@ GlWindow::GlWindow(const std::string& title, int width, int height, const std::s
     };
     gl_text_ = "OpenGL " + text(GL_VERSION) + ", " + text(GL_RENDERER);
     glfwSetWindowUserPointer(window_, this);
-    glfwSetKeyCallback(window_, Callbacks::key);
     glfwSetWindowFocusCallback(window_, Callbacks::focus);
     glfwSetDropCallback(window_, Callbacks::drop);
     glfwSetCharCallback(window_, Callbacks::character);
@@ -120,6 +125,8 @@ void GlWindow::init_imgui() {
     io.IniFilename = ini_path_.empty() ? nullptr : ini_path_.c_str();
     io.LogFilename = nullptr;
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    glfwSetKeyCallback(window_, Callbacks::key);
+    glfwSetInputMode(window_, GLFW_LOCK_KEY_MODS, GLFW_TRUE);  // callbacks are told the state of Num Lock
     ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
@@ -154,6 +161,16 @@ bool GlWindow::wait_events(double seconds) {
     else
         glfwPollEvents();
     return any_event_;
+}
+
+// Returns the key that is meant by the one at `place`. The layout may change while a key is down: it is released as the key
+// that was pressed.
+int GlWindow::key_at(int place, int scancode, bool released, bool num_lock) {
+    const auto [down, pressed] = down_.try_emplace(scancode, GLFW_KEY_UNKNOWN);
+    if (pressed) down->second = meant_key(place, num_lock);
+    const int key = down->second;
+    if (released) down_.erase(down);
+    return key;
 }
 
 std::vector<KeyEvent> GlWindow::take_keys() {

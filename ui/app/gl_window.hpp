@@ -1,5 +1,6 @@
 // gl_window.hpp -- a GLFW window with an OpenGL 3.3 core context, Dear ImGui, and the key events of the window.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace clarity::ui {
 
 // A key that was pressed or released, or the loss of the keyboard focus.
 struct KeyEvent {
-    int key = 0;
+    int key = 0;  // GLFW's code of the key that is meant (keyboard_layout.hpp)
     enum class Kind { press, release, lost_focus } kind = Kind::press;
     bool ctrl = false;
     bool other_modifier = false;  // Alt or Super
@@ -55,10 +56,12 @@ class GlWindow {
  private:
     void init_imgui();
     void keep_clicks_apart();
+    int key_at(int place, int scancode, bool released, bool num_lock);
     void draw();
 
     GLFWwindow* window_ = nullptr;
     std::vector<KeyEvent> keys_;
+    std::map<int, int> down_;  // keys that are down, by scancode: what each means
     std::vector<std::string> dropped_;
     bool any_event_ = false;
     int left_presses_ = 0;        // presses of the left mouse button which ImGui has not seen

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scene/camera.hpp"
+
 namespace clarity::ui {
 namespace {
 
@@ -23,8 +25,7 @@ void to_front(std::vector<Value>& values, const Value& value, size_t most) {
 
 bool same(const std::vector<Bookmark>& a, const std::vector<Bookmark>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Bookmark& x, const Bookmark& y) {
-        return x.name == y.name && x.camera.eye == y.camera.eye && x.camera.target == y.camera.target &&
-               x.camera.up == y.camera.up && x.camera.fov_y_rad == y.camera.fov_y_rad && same_pose(x.pose, y.pose);
+        return x.name == y.name && same_camera(x.camera, y.camera) && same_pose(x.pose, y.pose);
     });
 }
 

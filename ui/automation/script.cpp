@@ -19,6 +19,7 @@
 #include "ui/automation/picture_script.hpp"
 #include "ui/automation/scripted_window.hpp"
 #include "ui/automation/time_script.hpp"
+#include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/widgets.hpp"
 
 namespace clarity::ui {
@@ -41,6 +42,10 @@ void choose_accel(Session& session, const std::string& text) {
         session.edited().settings = before;
         throw;
     }
+}
+
+nlohmann::json caption_json(const Caption& caption) {
+    return {{"speed", caption.speed}, {"verdict", caption.verdict}};
 }
 
 long resident_kilobytes() {
@@ -330,7 +335,9 @@ std::string Script::state_text(ScriptedWindow& window) const {
         json["other"] = {{"accel", picture->other->settings.accel},
                          {"depth", picture->other->settings.depth},
                          {"samples", picture->other->stats.samples},
-                         {"frame_ms", picture->other->frame_ms}};
+                         {"frame_ms", picture->other->frame_ms},
+                         {"caption", caption_json(caption_of(session, *picture, 1))}};
+        json["caption"] = caption_json(caption_of(session, *picture, 0));
         if (picture->difference)
             json["difference"] = {{"share", picture->difference->share}, {"largest", picture->difference->largest}};
     }

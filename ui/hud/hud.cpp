@@ -183,14 +183,14 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
             picture->reduced ? "pixels of the picture, fewer than asked for while something moves" : "pixels of the picture");
         std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
         status_item(text, colors::kDim, "samples a pixel so far; more are added while the camera rests");
-        if (picture->main.stats.dropped > 0)
-            status_item(count_text(static_cast<double>(picture->main.stats.dropped)) + " rays dropped", colors::kAmber,
+        if (const uint64_t dropped = picture->main.stats.dropped; dropped > 0)
+            status_item(count_text(static_cast<double>(dropped)) + " " + noun(dropped, "ray") + " dropped", colors::kAmber,
                         "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");
         if (overlay.level()) {
             const std::string level =
                 *overlay.level() == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(*overlay.level() + 1);
             const std::string more = overlay.count() >= VolumeOverlay::kLimit ? ", first " : ", ";
-            status_item(level + more + std::to_string(overlay.count()) + " volumes", colors::kAmber);
+            status_item(level + more + plural(overlay.count(), "volume"), colors::kAmber);
         }
         const ReadySide& side = picture->job.ready->main;
         if (const std::string notice = current_notice(session, state); !notice.empty()) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ui/widgets/keyboard_layout.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 std::string keys_for(const KeyMap& map, const std::string& help) {
     std::vector<std::string> names;
     for (const KeyBinding& binding : map.bindings)
-        if (binding.help == help) names.emplace_back(binding.name);
+        if (binding.help == help) names.push_back(name_on_cap(binding.key, binding.name));
     if (names.size() > 4) return names.front() + " \u2013 " + names.back();
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;

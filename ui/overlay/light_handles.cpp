@@ -4,10 +4,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/angle.hpp"
+
 namespace clarity::ui {
 namespace {
 
-constexpr float kPi = 3.14159265f;
+constexpr auto kHalfTurn = static_cast<float>(kPi);
 
 glm::vec3 position_of(const rt_light& light) {
     return {light.position[0], light.position[1], light.position[2]};
@@ -39,12 +41,12 @@ glm::vec2 sun_place(const Projection& projection, const glm::vec3& towards) {
     const glm::vec3 c = projection.to_camera(projection.eye() + towards);
     const float across = std::hypot(c.x, c.y), angle = std::atan2(across, c.z);
     const glm::vec2 away = across > 1e-6f ? glm::vec2(c.x, -c.y) / across : glm::vec2(0, -1);
-    return middle(projection.area()) + away * (angle / kPi * sun_disc_radius(projection));
+    return middle(projection.area()) + away * (angle / kHalfTurn * sun_disc_radius(projection));
 }
 
 glm::vec3 sun_direction(const Projection& projection, const glm::vec2& place) {
     const glm::vec2 offset = (place - middle(projection.area())) / std::max(sun_disc_radius(projection), 1e-6f);
-    const float length = glm::length(offset), angle = std::min(length, 1.0f) * kPi;
+    const float length = glm::length(offset), angle = std::min(length, 1.0f) * kHalfTurn;
     const glm::vec2 away = length > 1e-6f ? offset / length : glm::vec2(0, -1);
     const float sine = std::sin(angle);
     const glm::vec3 direction = projection.to_world({away.x * sine, -away.y * sine, std::cos(angle)}) - projection.eye();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/angle.hpp"
 #include "scene/motion/matrix.hpp"
 
 namespace clarity::ui {
@@ -13,7 +14,7 @@ constexpr float kArrow = 88, kArrowBegin = 14, kRing = 62, kSquareAt = 76;  // w
 constexpr float kDisc = 9, kSquare = 7, kReach = 7;
 constexpr int kRingSteps = 48;
 constexpr float kEdgeOn = 0.08f;  // a plane is seen edge-on if the cosine to its normal is below this; so is an axis
-constexpr float kDegrees = 57.2957795f;
+constexpr auto kDegrees = static_cast<float>(1 / kRadPerDegree);
 
 glm::vec3 axis_of(int k) {
     glm::vec3 axis{};

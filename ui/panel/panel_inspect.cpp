@@ -30,7 +30,7 @@ void pixel_rows(const Inspection& inspection) {
     const RayTotals totals = totals_of(inspection.result);
     row_text("Rays", plural(totals.traced, "ray") + ", " + std::to_string(totals.shadow) + " of them to lights",
              "traced for this pixel");
-    row_text("Work", plural(totals.steps, "node") + " visited, " + std::to_string(totals.leaf_tests) + " primitives tested",
+    row_text("Work", plural(totals.steps, "node") + " visited, " + plural(totals.leaf_tests, "primitive") + " tested",
              "by all of these rays");
     if (totals.dropped > 0)
         row_text("Dropped", plural(totals.dropped, "ray"), "the packet's ray slots were full: raise `Ray slots`",

@@ -61,9 +61,7 @@ void plugin_rows(const PluginRecord& record) {
             for (const char* const* e = plugin->importer->extensions; e && *e; ++e) extensions += std::string(" .") + *e;
         if (!extensions.empty()) dim_text("files:" + extensions);
         if (plugin->reference) dim_text(plugin->reference);
-        if (record.replaced > 0)
-            dim_text("built again and replaced " + std::to_string(record.replaced) +
-                     (record.replaced == 1 ? " time" : " times"));
+        if (record.replaced > 0) dim_text("built again and replaced " + plural(record.replaced, "time"));
         if (record.shadowed) wrapped_text("not used: an earlier library has the same id", colors::kAmber);
     } else {
         wrapped_text("refused: " + record.why, colors::kRed);

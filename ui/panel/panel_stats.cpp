@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/frame_graph.hpp"
@@ -47,11 +46,13 @@ void frame_rows(Session& session) {
     std::vector<FrameSeries> series;
     Sides rate, median, late, latest, kernels;
     for (unsigned i = 0; i < sides.size(); ++i) {
-        const std::vector<float> times = session.frame_times(i);
+        const FrameTimes both = session.frame_times(i);
+        const std::vector<float>& times = both.frames_ms();
         char fps[32];
         std::snprintf(fps, sizeof fps, "%.1f", session.frames_per_second(i));
         rate.add(fps);
         median.add(time_text(static_cast<double>(percentile(times, 0.5))));
+        kernels.add(time_text(static_cast<double>(percentile(both.recent_kernels_ms(), 0.5))));
         late.add(time_text(static_cast<double>(percentile(times, 0.95))));
         latest.add(time_text(static_cast<double>(percentile(times, 0.99))));
         series.push_back({std::string(1, "AB"[i]) + " " + sides[i]->settings.accel, times, ImGui::GetColorU32(side_color(i))});
@@ -65,17 +66,14 @@ void frame_rows(Session& session) {
     row_text("p50", median.text, "the median: half of the frames were faster");
     row_text("p95", late.text, "19 frames of 20 were faster");
     row_text("p99", latest.text, "99 frames of 100 were faster");
+    row_text("Kernels", kernels.text, "kernels and copies of a frame by the device's clock: median of the last 30 frames");
     row_label("Keep tracing", "trace the same picture again and again, to measure");
     ImGui::Checkbox("##continuous", &session.desired.continuous);
 }
 
-double sum_of(const std::vector<KernelTime>& kernels) {
-    return std::accumulate(kernels.begin(), kernels.end(), 0.0, [](double ms, const KernelTime& k) { return ms + k.ms; });
-}
-
 void kernel_bars(const PictureSide& side, unsigned which) {
     const std::vector<KernelTime>& kernels = side.stats.kernels;
-    const double sum = sum_of(kernels);
+    const double sum = side.kernels_ms();
     double longest = 0;
     for (const KernelTime& kernel : kernels) longest = std::max(longest, kernel.ms);
     for (const KernelTime& kernel : kernels) {
@@ -110,7 +108,7 @@ void kernel_rows(const std::vector<const PictureSide*>& sides) {
     for (unsigned i = 0; i < sides.size(); ++i) {
         if (sides.size() > 1) wrapped_text(std::string(1, "AB"[i]) + "  " + sides[i]->settings.accel, side_color(i));
         kernel_bars(*sides[i], i);
-        row_text("Sum", time_text(sum_of(sides[i]->stats.kernels)), "sum of the times above");
+        row_text("Sum", time_text(sides[i]->kernels_ms()), "sum of the times above");
         share_rows(*sides[i]);
     }
 }
@@ -186,8 +184,9 @@ void structure_rows(const ReadySide& side, const ImportedScene& loaded) {
     pose_rows(side.pose_update);
     row_text("Memory", bytes_text(static_cast<double>(accel.bytes)), "nodes and leaves, on the device");
     row_text("Per primitive", number_text(std::round(static_cast<double>(accel.bytes) / triangles * 10) / 10) + " bytes",
-             count_text(triangles) + " primitives in leaves; " + count_text(static_cast<double>(loaded.placed_triangles)) +
-                 " triangles in the world");
+             count_text(triangles) + " " + noun(accel.leaf_count, "primitive") + " in leaves; " +
+                 count_text(static_cast<double>(loaded.placed_triangles)) + " " + noun(loaded.placed_triangles, "triangle") +
+                 " in the world");
     for (const auto& [label, value] : accel.stats) row_text(label.c_str(), number_text(value), "as the plugin reports it");
 }
 

@@ -25,10 +25,6 @@ bool prepares_same(const Side& a, const Side& b) {
 
 }  // namespace
 
-bool same_camera(const Camera& a, const Camera& b) {
-    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
-}
-
 bool same_light(const rt_light& a, const rt_light& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/camera.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
@@ -22,7 +23,6 @@ bool prepares_same(const PrepareRequest& a, const PrepareRequest& b);
 // The same, whatever the poses, and whatever the user has done to instances: that moves the scene as a pose does.
 bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b);
 
-bool same_camera(const Camera& a, const Camera& b);
 bool same_light(const rt_light& a, const rt_light& b);
 
 // Whether two settings trace the same frames, however many samples; and whether they display a traced film in the same way.

@@ -1,11 +1,11 @@
 #include "ui/session/session.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
@@ -14,10 +14,6 @@
 
 namespace clarity::ui {
 namespace {
-
-double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Whether both jobs trace the same frames of the same sides.
 bool same_frames(const FrameJob& a, const FrameJob& b) {
@@ -163,7 +159,7 @@ void Session::post_request() {
     if (request.only_pose && (worker_.activity().busy || !frames_.begun())) return;
     posted_request_ = request;
     for (unsigned side = 0; side < 2; ++side) {
-        const std::vector<float> times = frame_times(side);
+        const std::vector<float> times = frame_times(side).frames_ms();
         if (!times.empty()) request.frame_ms[side] = static_cast<double>(times.back());
     }
     worker_.request(std::move(request));
@@ -381,7 +377,7 @@ float Session::scene_size() const {
 }
 
 double Session::frames_per_second(unsigned side) const {
-    const std::vector<float> times = frames_.times(side);
+    const std::vector<float> times = frames_.times(side).frames_ms();
     const size_t count = std::min<size_t>(times.size(), 10);
     double sum = 0;
     for (size_t i = times.size() - count; i < times.size(); ++i) sum += times[i];

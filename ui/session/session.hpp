@@ -123,7 +123,7 @@ class Session {
     std::shared_ptr<const Picture> picture() const { return picture_; }  // the newest; nullptr until the first
     std::vector<std::string> files() const;                              // of the scene on the screen
     Activity activity() const { return worker_.activity(); }
-    std::vector<float> frame_times(unsigned side = 0) const { return frames_.times(side); }
+    FrameTimes frame_times(unsigned side = 0) const { return frames_.times(side); }
     // Whether something moves or moved a moment ago, so that pictures may have fewer pixels.
     bool moving() const { return moving_; }
     // Watches the kernel files. A saved change is compiled and used at once.

@@ -80,9 +80,9 @@ std::string FrameThread::take_failure() {
     return std::exchange(failure_, {});
 }
 
-std::vector<float> FrameThread::times(unsigned side) const {
+FrameTimes FrameThread::times(unsigned side) const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return times_[side].ms();
+    return times_[side];
 }
 
 void FrameThread::want_distance(bool wanted) {
@@ -138,7 +138,7 @@ bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     // A comparison gets a few more frames, because the first frames of a program are slower.
     constexpr size_t kFairFrames = 5;
     const bool comparing = job_.other_settings && job_.ready->other && !traced_reduced_;
-    const bool unfair = comparing && std::min(times_[0].ms().size(), times_[1].ms().size()) < kFairFrames;
+    const bool unfair = comparing && std::min(times_[0].size(), times_[1].size()) < kFairFrames;
     if (!retrace && (job_.continuous || unfair)) {
         sample = 0;
         retrace = true;
@@ -257,10 +257,12 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
     } else if (last) {
         side.stats = traced_part(last->stats);
     }
-    if (tracer.frames->overlaps_copies())
+    if (tracer.frames->overlaps_copies()) {
         image = tracer.frames->begin_display(settings);
-    else
+        if (!order.overlaps) side.image = std::exchange(image, {}).wait(&side.stats.kernels);
+    } else {
         side.image = tracer.frames->read_display(settings, &side.stats, &side.scale);
+    }
     side.frame_ms = ms_since(begin);
     if (side.scale.map != FalseColorScale::Map::none)
         side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
@@ -274,7 +276,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
     return side;
 }
 
-// Waits for the images of the picture that was traced last, then publishes it as latest_. Returns false if there is none.
+// Waits for the image of the picture that was traced last, then publishes it as latest_. Returns false if there is none.
 // held_up: this thread does nothing else while it waits, so the time counts as frame time.
 bool FrameThread::finish(bool held_up) {
     Traced traced;
@@ -285,15 +287,12 @@ bool FrameThread::finish(bool held_up) {
         traced_.reset();
     }
     Picture& picture = *traced.picture;
-    const auto receive = [&](PictureSide& side, AsyncReadback& image) {
-        if (!image) return;
+    if (traced.image) {
         const auto begin = Clock::now();
-        side.image = image.wait(&side.stats.kernels);
-        if (held_up && traced.fresh) side.frame_ms += ms_since(begin);
-    };
-    receive(picture.main, traced.images[0]);
+        picture.main.image = traced.image.wait(&picture.main.stats.kernels);
+        if (held_up && traced.fresh) picture.main.frame_ms += ms_since(begin);
+    }
     if (picture.other) {
-        receive(*picture.other, traced.images[1]);
         share_scale(picture.main, *picture.other);
         picture.difference = compare_pictures(picture.main.image, picture.other->image);
     }
@@ -305,9 +304,9 @@ bool FrameThread::finish(bool held_up) {
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = traced.picture;
     if (!traced.fresh) return true;
-    times_[0].add(picture.job.ready, picture.main.frame_ms);
+    times_[0].add(picture.job.ready, picture.main);
     if (picture.other)
-        times_[1].add(picture.job.ready, picture.other->frame_ms);
+        times_[1].add(picture.job.ready, *picture.other);
     else
         times_[1] = {};
     return true;
@@ -389,13 +388,18 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         fit_tracer(tracers_[1], on_other->devices, job.ready->request.kernel_revision);
     else
         tracers_[1] = {};
-    const Order order{sample, retrace, distance};
+    if (two) finish(false);  // of the picture before, which may have had one side
+    Order order;
+    order.sample = sample;
+    order.retrace = retrace;
+    order.distance = distance;
+    order.overlaps = !two;
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
     const auto side_of = [&](size_t i, const ReadySide& side, const OnDevices& on_devices, const Settings& settings) {
         const MotionBlur::Sample posed = retrace ? sample_of(tracers_[i], job, side, on_devices, sample, *progress)
                                                  : MotionBlur::Sample{on_devices.prepared, job.view, 0};
         return trace_side(tracers_[i], posed.prepared, sized(side, settings, before[i]), posed.view, order, before[i],
-                          *progress, traced.images[i]);
+                          *progress, traced.image);
     };
     picture->main = side_of(0, job.ready->main, *on_main, job.settings);
     double ms = picture->main.frame_ms;
@@ -409,7 +413,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
                       shown->job.display_revision == job.display_revision && shown->reduced == reduced &&
                       shown->other.has_value() == two;
     if (same && shown->main.stats.samples > picture->main.stats.samples) traced.finished = shown;
-    const bool pending = traced.images[0] || traced.images[1];
+    const bool pending = static_cast<bool>(traced.image);
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         traced_ = std::move(traced);

@@ -2,6 +2,9 @@
 //
 // Some devices copy while they trace. There, the thread starts the next picture before it copies the last one, if there is a
 // next one to trace. Each picture arrives as soon as it would otherwise, and there are more pictures in the same time.
+//
+// The sides of a comparison are traced and copied strictly one after the other. All devices share the processor, which serves
+// GPUs: what overlaps would count as the time of the wrong side.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -38,8 +41,8 @@ class FrameThread {
     double silent_s() const;
     // Returns why tracing stopped, and forgets it. Empty: it did not.
     std::string take_failure();
-    // The last frame times of a side in milliseconds, oldest first.
-    std::vector<float> times(unsigned side = 0) const;
+    // The last times of a side, oldest first.
+    FrameTimes times(unsigned side = 0) const;
     // Whether pictures carry the distances of their camera rays from now on.
     void want_distance(bool wanted);
     // Writes the main picture once all of its samples are traced. The file names `command`, which makes the picture of the last
@@ -76,8 +79,8 @@ class FrameThread {
     // A traced picture, the images of which may still be in flight to the host.
     struct Traced {
         std::shared_ptr<Picture> picture;
-        AsyncReadback images[2];  // one for each side
-        bool fresh = false;       // was traced; false: it was only displayed again
+        AsyncReadback image;  // of the main side; in a comparison there is none
+        bool fresh = false;   // was traced; false: it was only displayed again
         // The finished picture, if this one is traced again for its times. Its images are shown until all samples are traced
         // again.
         std::shared_ptr<const Picture> finished;
@@ -87,6 +90,7 @@ class FrameThread {
     struct Order {  // what is to be done for a side
         unsigned sample = 0;
         bool retrace = false, distance = false;
+        bool overlaps = false;  // the image may be copied while the next picture is traced
     };
     PictureSide trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
                            const View& view, const Order& order, const PictureSide* last, Progress& progress,

@@ -1,6 +1,7 @@
 #include "ui/threads/picture.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "render/settings/aov.hpp"
 
@@ -11,6 +12,11 @@ Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
     for (const Setting& row : settings_table())
         if (row.effect == Effect::frame) row.copy(settings, desired_now);
     return settings;
+}
+
+double PictureSide::kernels_ms() const {
+    return std::accumulate(stats.kernels.begin(), stats.kernels.end(), 0.0,
+                           [](double ms, const KernelTime& kernel) { return ms + kernel.ms; });
 }
 
 FrameStats traced_part(FrameStats stats) {

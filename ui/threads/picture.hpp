@@ -33,6 +33,7 @@ struct PictureSide {
     FrameStats stats;
     // Milliseconds that this thread spent on the frame: tracing, and the readback if the thread had to wait for it.
     double frame_ms = 0;
+    double kernels_ms() const;  // sum of the kernels and copies of this frame, by the device's clock
     // Distances of the camera rays of sample 0, +inf for a miss. nullptr if not asked for; an empty image if they are not
     // known.
     std::shared_ptr<const FloatImage> distance;

@@ -148,6 +148,15 @@ void PrepareWorker::publish(Outcome outcome) {
     wake_();
 }
 
+void PrepareWorker::publish_failure(const std::string& message, const std::string& details, bool files_failed) {
+    Outcome outcome;
+    outcome.kind = Outcome::Kind::failed;
+    outcome.message = message;
+    outcome.details = details;
+    outcome.files_failed = files_failed;
+    publish(std::move(outcome));
+}
+
 void PrepareWorker::list_all_devices() {
     std::vector<DeviceWarning> warnings;
     auto devices = std::make_shared<const std::vector<DeviceInfo>>(list_devices(&warnings));
@@ -176,12 +185,13 @@ void PrepareWorker::run() {
         try {
             handle(request, *progress);
         } catch (const Cancelled&) {
-            publish({Outcome::Kind::cancelled, nullptr, "", "", false, false});
+            Outcome cancelled;
+            cancelled.kind = Outcome::Kind::cancelled;
+            publish(std::move(cancelled));
         } catch (const Error& error) {
-            publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+            publish_failure(error.what(), error.details());
         } catch (const std::exception& error) {  // bad_alloc, or an OpenCL call that failed in the driver
-            publish({Outcome::Kind::failed, nullptr, std::string("preparing the picture failed: ") + error.what(), "", false,
-                     false});
+            publish_failure(std::string("preparing the picture failed: ") + error.what());
         }
         {
             const std::lock_guard<std::mutex> lock(mutex_);
@@ -201,7 +211,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
             open_side(side.device, state, neighbour, progress);
         } catch (const Error& error) {
             whole = false;
-            publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+            publish_failure(error.what(), error.details());
         }
     };
     open(request.main, main_, other_);
@@ -216,7 +226,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     } catch (const Error& error) {
         whole = false;
         tried(request.files_revision);
-        publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), true, false});
+        publish_failure(error.what(), error.details(), true);
     }
     if (!main_.preparer || !loaded_) return;
     shown_.update(loaded_, request);
@@ -244,7 +254,10 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     }
     ready->scene = shown_.scene();
     ready->left_out = shown_.left_out();
-    publish({Outcome::Kind::ready, ready, "", "", false, whole});
+    Outcome outcome;
+    outcome.ready = ready;
+    outcome.whole = whole;
+    publish(std::move(outcome));
 }
 
 void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
@@ -259,61 +272,18 @@ void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, b
         throw;
     } catch (const Error& error) {
         whole = false;
-        publish(
-            {Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false, false});
+        publish_failure("the other side: " + std::string(error.what()), error.details());
     }
 }
 
 ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress) {
-    PoseFollower& follower = side.follower;
-    const bool follows = shown_.follows();
-    if (!follows || (follower.structure() && !side.preparer->asks_for(*follower.structure(), settings))) {
-        follower.reset();
-        side.built.reset();
-    }
-    if (!follows) return lend(side.devices, side.preparer->prepare(shown_.scene(), settings, progress));
-    const PosedFrom from = shown_.from();
-    const Pose& pose = shown_.geometry();
-    const std::shared_ptr<const Scene>& scene = shown_.scene();
-    if (settings.shutter > 0) follower.leave_devices();  // blurred pictures move the structure on the host
-    take_build(side, from, settings, progress);
-    const PoseFollower::Way way = way_of(settings.poses);
-    const bool builds_beside = follower.wants_build_beside(from, pose, way);
-    if (follower.needs_vertices() || builds_beside) shown_.add_vertices();
-    if (builds_beside) follower.build_beside(from, scene, pose, side.preparer->builder(settings));
-    MovedStructure moved = follower.refit(from, scene, pose, way, frame_ms, progress);
-    if (moved.accel && moved.on_devices.empty() && side.built)
-        moved.on_devices = side.built->moved_buffers(pose, moved.accel, progress);
-    if (!moved.accel) shown_.add_vertices();
-    const auto prepared = side.preparer->prepare(scene, settings, progress, moved);
-    if (!moved.accel) {
-        side.built = prepared;
-        follower.built(from, scene, pose, prepared->first()->accel, mover_for(side, settings, scene));
-    }
-    if (settings.poses == "clip" && follower.wants_choice(from))
-        follower.choose_beside(from, shown_.rest(), side.preparer->builder(settings));
+    const auto prepared = side.poses.prepare(*side.preparer, shown_, settings, frame_ms, progress);
     ReadySide ready = lend(side.devices, prepared);
-    ready.pose_update = follower.update();
+    if (!shown_.follows()) return ready;
+    ready.pose_update = side.poses.update();
     ready.is_moved = prepared->first()->is_moved;
     if (ready.is_moved) ready.moved = prepared->first()->on_device;
     return ready;
-}
-
-// Goes over to a structure that was built beside the last poses.
-void PrepareWorker::take_build(SideState& side, const PosedFrom& from, const Settings& settings, StageProgress& progress) {
-    const BuiltPose built = side.follower.take_build(from);
-    if (!built.accel) return;
-    MovedStructure structure;
-    structure.accel = built.accel;
-    side.built = side.preparer->prepare(built.scene, settings, progress, structure);
-    side.follower.built(from, built.scene, built.pose, built.accel, mover_for(side, settings, built.scene));
-}
-
-// Moves the structure in side.built.
-std::unique_ptr<PoseMover> PrepareWorker::mover_for(const SideState& side, const Settings& settings,
-                                                    const std::shared_ptr<const Scene>& scene) const {
-    if (settings.shutter > 0) return make_host_mover(scene, side.built->first()->accel);
-    return side.preparer->mover(scene, shown_.rest(), *side.built);
 }
 
 bool PrepareWorker::needs_reopen() const {
@@ -339,10 +309,7 @@ void PrepareWorker::renew_devices() {
     tracers_.release();
     const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
     withdraw_loans();
-    for (SideState* side : {&main_, &other_}) {
-        side->follower.leave_devices();
-        side->built.reset();
-    }
+    for (SideState* side : {&main_, &other_}) side->poses.leave_devices();
     main_.devices.clear();
     other_.devices.clear();
     std::vector<DeviceInfo> other;
@@ -361,9 +328,7 @@ std::vector<DeviceInfo> PrepareWorker::close_lost(SideState& side) {
     withdraw_loans();
     const bool stuck =
         std::any_of(side.devices.begin(), side.devices.end(), [](const auto& device) { return device->loss()->stuck(); });
-    if (stuck) never_release(std::make_shared<PoseFollower>(std::move(side.follower)));
-    side.follower = PoseFollower();
-    side.built.reset();
+    side.poses.lose_devices(stuck);
     side.devices.clear();
     return side.preparer->close_devices();
 }
@@ -384,8 +349,7 @@ void PrepareWorker::open_side(const std::string& choice, SideState& state, const
     }
     Devices devices = open_devices(choose_devices(choice), open);
     state.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
-    state.follower.reset();
-    state.built.reset();
+    state.poses.reset();
     state.devices = std::move(devices);
     state.choice = choice;
 }

@@ -68,14 +68,10 @@ class PrepareWorker {
         Devices devices;
         std::string choice;
         std::unique_ptr<MultiPreparer> preparer;
-        PoseFollower follower;
-        std::shared_ptr<const MultiPrepared> built;  // of the last build that the follower follows
+        PosePreparer poses;
     };
     // Prepares what is shown for one side. The structure follows a pose.
     ReadySide prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress);
-    void take_build(SideState& side, const PosedFrom& from, const Settings& settings, StageProgress& progress);
-    std::unique_ptr<PoseMover> mover_for(const SideState& side, const Settings& settings,
-                                         const std::shared_ptr<const Scene>& scene) const;
     void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
     bool needs_reopen() const;
     void renew_devices();
@@ -87,6 +83,7 @@ class PrepareWorker {
     void list_all_devices();
     void tried(uint64_t files_revision);  // notes that these files need no further import, even if this one failed
     void publish(Outcome outcome);
+    void publish_failure(const std::string& message, const std::string& details = {}, bool files_failed = false);
 
     const PluginRegistry& plugins_;
     const import::ImportOptions import_;

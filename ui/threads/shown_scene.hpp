@@ -8,13 +8,14 @@
 
 #include "base/progress.hpp"
 #include "import/sequence_reader.hpp"
+#include "render/multi/pose_preparer.hpp"
 #include "scene/instance_edit.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
 
 // Used on the preparing thread.
-class ShownScene {
+class ShownScene : public PosedScene {
  public:
     ShownScene(const PluginRegistry& plugins, const import::ImportOptions& options);
     // Shows what the request asks for. A request for other files than `loaded` changes neither pose nor edits. Throws what
@@ -22,19 +23,17 @@ class ShownScene {
     void update(const std::shared_ptr<const ImportedScene>& loaded, const PrepareRequest& request);
 
     // In its pose. Hidden instances are in it, but not visible.
-    const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    const std::shared_ptr<const Scene>& scene() const override { return scene_; }
     // At rest, with the edits; poses are made of it.
-    const std::shared_ptr<const Scene>& rest() const { return rest_; }
+    const std::shared_ptr<const Scene>& rest() const override { return rest_; }
     const PoseTime& pose() const { return pose_; }
     // Whether a structure should follow geometry() by refits: a clip plays, or the user has moved or hidden something. Once he
     // has, this stays so until another scene is loaded, so that undo is a refit, too.
-    bool follows() const { return pose_.time_s || !apart_.empty(); }
-    PosedFrom from() const { return {loaded_->scene, pose_.clip, !pose_.time_s, apart_}; }
+    bool follows() const override { return pose_.time_s || !apart_.empty(); }
+    PosedFrom from() const override { return {loaded_->scene, pose_.clip, !pose_.time_s, apart_}; }
     // The pose of scene(); its cameras and lights may be of another one. Empty unless follows().
-    const Pose& geometry() const { return geometry_; }
-    // Adds the vertices that geometry() leaves out at first, to it and to scene(), which becomes another object then: builds,
-    // and structures that move on the host, need them.
-    void add_vertices();
+    const Pose& geometry() const override { return geometry_; }
+    void add_vertices() override;
     // What moves the meshes whose vertices are left out: scene() has them at rest.
     std::vector<Deformation> left_out() const;
     const InstanceEdits& instances() const { return instances_; }

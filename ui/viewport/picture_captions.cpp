@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "base/numbers.hpp"
-#include "base/statistics.hpp"
 #include "ui/viewport/speed_verdict.hpp"
+#include "ui/widgets/frame_graph.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -31,12 +31,6 @@ const ReadySide& ready_side(const Picture& picture, unsigned side) {
 }
 const PictureSide& picture_side(const Picture& picture, unsigned side) {
     return side == 1 && picture.other ? *picture.other : picture.main;
-}
-
-std::string ms_text(double ms) {
-    char text[32];
-    std::snprintf(text, sizeof text, ms < 10 ? "%.2f ms" : "%.1f ms", ms);
-    return text;
 }
 
 }  // namespace
@@ -68,16 +62,11 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
     Caption caption;
     caption.title = std::string(side == 0 ? "A  " : "B  ") + picture_side(picture, side).settings.accel;
     caption.details = joined(differing_settings(picture).of[side]);
-    // Only the last 30 times count. With more, frames of an earlier view would count too.
-    const auto recent = [&](unsigned of) {
-        std::vector<float> times = session.frame_times(of);
-        if (times.size() > 30) times.erase(times.begin(), times.end() - 30);
-        return times;
-    };
-    const std::vector<float> mine = recent(side), others = recent(1 - side);
-    if (const double ms = median({mine.begin(), mine.end()}); ms > 0) {
+    const std::vector<float> mine = session.frame_times(side).recent_kernels_ms(),
+                             others = session.frame_times(1 - side).recent_kernels_ms();
+    if (const double ms = static_cast<double>(percentile(mine, 0.5)); ms > 0) {
         char text[64];
-        std::snprintf(text, sizeof text, "%s, %.1f Mrays/s", ms_text(ms).c_str(), session.mrays_per_second(side));
+        std::snprintf(text, sizeof text, "%s of kernels, %.1f Mrays/s", time_text(ms).c_str(), session.mrays_per_second(side));
         caption.speed = text;
     }
     caption.verdict = speed_verdict(mine, others);

@@ -18,7 +18,9 @@ Differences differing_settings(const Picture& picture);
 struct Caption {
     std::string title;    // "A  bvh2"
     std::string details;  // "packet 4x4, lanes 8"; empty if nothing else differs
-    std::string speed;    // "12.3 ms, 48.1 Mrays/s"
+    // "12.3 ms of kernels, 48.1 Mrays/s": as in the Stats tab. By the devices' clocks, since the host's part of a frame is
+    // small on a CPU, which it shares, and may be the larger part on a GPU.
+    std::string speed;
     std::string verdict;  // see speed_verdict()
     bool faster = false;  // whether the verdict says "faster"
 };

@@ -89,7 +89,7 @@ void PicturePane::draw_volume_hud(ImDrawList& list, size_t place, VolumeOverlay&
     std::string level = level_name(*overlay.level());
     level[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(level[0])));
     const size_t count = overlay.count(side);
-    std::string text = count_text(static_cast<double>(count)) + (count == 1 ? " volume" : " volumes");
+    std::string text = count_text(static_cast<double>(count)) + " " + noun(count, "volume");
     if (count == 0) text = overlay.ready() ? "no volumes there" : "walking the tree";
     std::vector<HudText> lines = {{level, color_of(level_color(*overlay.level())), true}, {text, colors::kText, false, true}};
     if (overlay.more(side)) lines.push_back({"the first of more: no more are drawn", colors::kAmber});

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/elapsed.hpp"
+#include "scene/camera.hpp"
 #include "scene/motion/deform.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/session/camera_control.hpp"
@@ -20,10 +21,6 @@ namespace {
 using What = PicturePlace::What;
 
 constexpr float kBehind = 0.15f;  // opacity of lines behind a surface
-
-bool same(const Camera& a, const Camera& b) {
-    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
-}
 
 // While the camera moves, at most this many volumes are drawn (every n-th one), so that a frame of the window stays short.
 constexpr size_t kMovingVolumes = 4000;
@@ -173,10 +170,10 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
         lines.seen = distance;
         lines.seen_by = camera;
         lines.seen_scene = scene;
-    } else if (lines.seen && lines.seen_scene == scene && same(lines.seen_by, camera)) {
+    } else if (lines.seen && lines.seen_scene == scene && same_camera(lines.seen_by, camera)) {
         distance = lines.seen;
     }
-    const bool moved = !same(lines.camera, camera), scaled = lines.scale != scale;
+    const bool moved = !same_camera(lines.camera, camera), scaled = lines.scale != scale;
     const unsigned stride = moving ? static_cast<unsigned>(overlay.count(side) / kMovingVolumes + 1) : 1;
     const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || lines.stride != stride ||
                          (moved && overlay.has_spheres(side));

@@ -55,10 +55,6 @@ std::string time_text(double ms) {
     return text;
 }
 
-std::string plural(size_t count, const std::string& noun) {
-    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::string file_name(const std::string& path) {
     return path.substr(path.find_last_of('/') + 1);
 }

@@ -2,6 +2,8 @@
 #pragma once
 #include <string>
 
+#include "base/plural.hpp"
+
 namespace clarity::ui {
 
 // Counts: "1.2 M", "871 k", "12". Bytes: "3.4 MiB". Milliseconds: "0.42 ms", "81.2 ms", "3.1 s".
@@ -9,8 +11,6 @@ std::string count_text(double count);
 std::string bytes_text(double bytes);
 std::string time_text(double ms);
 std::string number_text(double value);
-// "1 light", "3 lights".
-std::string plural(size_t count, const std::string& noun);
 // The file's name without its folders.
 std::string file_name(const std::string& path);
 // Whether `text` contains every word of `filter`. Case is ignored for ASCII letters.

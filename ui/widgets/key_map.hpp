@@ -40,7 +40,7 @@ struct KeyTarget {
 
 // What one key does in one key map: either it moves something while it is down, or it does something once for each press.
 struct KeyBinding {
-    int key;  // GLFW's key code: a position on the keyboard
+    int key;  // GLFW's key code; for a letter that of the key with this letter on its cap
     const char* name;
     const char* help;  // the help lists neighbouring bindings with equal text in one line
     Motion motion = Motion::none;

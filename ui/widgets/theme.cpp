@@ -1,10 +1,10 @@
 #include "ui/widgets/theme.hpp"
 
 #include <backends/imgui_impl_opengl3.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <string>
+
+#include "ui/widgets/fonts.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -19,27 +19,6 @@ ImVec4 with_alpha(ImVec4 color, float alpha) {
 
 ImVec4 lighter(const ImVec4& color, float by) {
     return {color.x + by, color.y + by, color.z + by, color.w};
-}
-
-// Loads a font from where Debian's fonts-dejavu-core and other systems keep DejaVu; otherwise ImGui's own bitmap font.
-ImFont* load_font(const char* file, float pixels) {
-    static const char* const folders[] = {"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu/",
-                                          "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu-sans-fonts/"};
-    // Latin, Greek and Cyrillic (for file names), punctuation, arrows, mathematical and geometric symbols.
-    static const ImWchar ranges[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x52F,  0x2010, 0x2044,
-                                     0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
-    ImGuiIO& io = ImGui::GetIO();
-    for (const char* folder : folders) {
-        const std::string path = std::string(folder) + file;
-        if (access(path.c_str(), R_OK) != 0) continue;
-        ImFontConfig config;
-        config.OversampleH = 2;
-        config.OversampleV = 1;
-        if (ImFont* font = io.Fonts->AddFontFromFileTTF(path.c_str(), pixels, &config, ranges)) return font;
-    }
-    ImFontConfig config;
-    config.SizePixels = pixels;
-    return io.Fonts->AddFontDefault(&config);
 }
 
 void set_colors(ImGuiStyle& style) {
@@ -117,9 +96,9 @@ void apply_theme(float scale) {
     ImGuiIO& io = ImGui::GetIO();
     io.Fonts->Clear();
     const float pixels = std::round(14.0f * scale);
-    the_fonts.text = load_font("DejaVuSans.ttf", pixels);
-    the_fonts.bold = load_font("DejaVuSans-Bold.ttf", pixels);
-    the_fonts.mono = load_font("DejaVuSansMono.ttf", std::round(13.0f * scale));
+    the_fonts.text = add_font(*io.Fonts, Face::text, pixels);
+    the_fonts.bold = add_font(*io.Fonts, Face::bold, pixels);
+    the_fonts.mono = add_font(*io.Fonts, Face::mono, std::round(13.0f * scale));
     if (!first) {  // the backend creates its first texture by itself
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/parallel_for.hpp"
 #include "bench/suites/vec3.hpp"
 
@@ -12,7 +13,6 @@ namespace {
 constexpr int kTile = 16;        // pixels, width and height
 constexpr size_t kPacket = 16;   // rays per packet; an inactive ray copies an active ray of its packet
 constexpr size_t kChunk = 4096;  // rays per task
-constexpr double kPi = 3.14159265358979323846;
 
 Vec3 vec(const float* p) {
     return {p[0], p[1], p[2]};

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/angle.hpp"
 #include "base/parallel_for.hpp"
 #include "bench/suites/vec3.hpp"
 
@@ -66,7 +67,7 @@ Flattened flatten(const Scene& scene) {
 double roughness(const Vec3& p, double size, double finest) {
     double sum = 0;
     for (double wave = size / 4; wave > 4 * finest; wave /= 2) {
-        const double k = 2 * 3.14159265358979323846 / wave;
+        const double k = 2 * kPi / wave;
         sum += 0.015 * wave *
                (std::sin(k * dot(p, Vec3(0.62, 0.51, 0.60))) * std::sin(k * dot(p, Vec3(-0.55, 0.80, 0.24)) + 1) +
                 std::sin(k * dot(p, Vec3(0.33, -0.41, 0.85)) + 2));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 // Stretches, then turns about an axis of no particular direction.
 Affine placement(const Vec& at, double degrees, const Vec& scale) {
-    const double half = degrees * 0.5 * 0.017453292519943295;
+    const double half = degrees * 0.5 * kRadPerDegree;
     const Vec axis = std::sin(half) * normalized({1, 2, -0.5});
     Matrix m = rotation({axis[0], axis[1], axis[2], std::cos(half)}) * scaling(scale);
     for (size_t i = 0; i < 3; ++i) m[4 * i + 3] = at[i];

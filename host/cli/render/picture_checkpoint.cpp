@@ -9,6 +9,7 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
+#include "base/plural.hpp"
 #include "render/film/checkpoint.hpp"
 #include "render/settings/aov.hpp"
 
@@ -46,7 +47,7 @@ unsigned PictureCheckpoint::resume(MultiFrameRenderer& frames, const std::shared
     const FloatImage& sums = *checkpoint.sums;
     if (int(sums.width) != settings.width || int(sums.height) != settings.height || checkpoint.samples == 0 ||
         checkpoint.samples >= of_)
-        throw Error(Exit::failed, resumed_ + ": holds " + std::to_string(checkpoint.samples) + " samples of " +
+        throw Error(Exit::failed, resumed_ + ": holds " + plural(checkpoint.samples, "sample") + " of " +
                                       std::to_string(sums.width) + "x" + std::to_string(sums.height) +
                                       " pixels, which do not fit this picture; leave --resume out to begin it anew");
     const bool tells = !ranks_ || ranks_->rank() == 0;

@@ -16,6 +16,7 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
+#include "base/plural.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -390,12 +391,12 @@ class RenderJob {
     void report() {
         if (!is_first()) return;
         if (stats_.dropped > 0)
-            log(LogLevel::warning, std::to_string(stats_.dropped) +
-                                       " rays were dropped because a pixel's ray slots were full: raise --ray-slots (now " +
+            log(LogLevel::warning, plural(stats_.dropped, "ray was", "rays were") +
+                                       " dropped because a pixel's ray slots were full: raise --ray-slots (now " +
                                        std::to_string(settings_.ray_slots) + ")");
         if (stats_.overflowed > 0)
             log(LogLevel::error,
-                std::to_string(stats_.overflowed) + " times a traversal stack was full: a fault of accel " + settings_.accel);
+                plural(stats_.overflowed, "time") + " a traversal stack was full: a fault of accel " + settings_.accel);
         if (options_.stats_file.empty()) return;
         const std::string json = stats_json(stats_);
         if (options_.stats_file == "-")

@@ -14,6 +14,7 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/packed_file.hpp"
 #include "base/files/read_file.hpp"
+#include "base/plural.hpp"
 #include "import/sink/mesh_copy.hpp"
 #include "import/sink/scene_sink.hpp"
 #include "import/sink/texture.hpp"
@@ -359,10 +360,11 @@ Scene SceneBuilder::take() {
         scene_.polygon_corners.insert(scene_.polygon_corners.end(), polygon.corners.begin(), polygon.corners.end());
     }
     if (triangulator_.given_up() > 0) {
-        scene_.warnings.push_back(std::to_string(triangulator_.given_up()) +
-                                  " faces with very many corners cross themselves; parts of them are cut as fans");
+        scene_.warnings.push_back(plural(triangulator_.given_up(), "face with very many corners crosses itself",
+                                         "faces with very many corners cross themselves") +
+                                  "; parts of " + (triangulator_.given_up() == 1 ? "it" : "them") + " are cut as fans");
     }
-    if (warnings_left_out_ > 0) scene_.warnings.push_back("and " + std::to_string(warnings_left_out_) + " warnings more");
+    if (warnings_left_out_ > 0) scene_.warnings.push_back("and " + plural(warnings_left_out_, "warning") + " more");
     return std::move(scene_);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/angle.hpp"
 #include "render/settings/aov.hpp"
 
 namespace clarity {
@@ -36,9 +37,8 @@ double srgb_from_linear(double x) {
 // The chroma is nearly the largest that sRGB has for this lightness and hue.
 Table make_heat() {
     Table map;
-    constexpr double kDegree = 3.14159265358979 / 180;
     for (int i = 0; i < 256; ++i) {
-        const double x = i / 255.0, lightness = 0.18 + 0.78 * x, hue = (275 + 190 * std::pow(x, 0.9)) * kDegree;
+        const double x = i / 255.0, lightness = 0.18 + 0.78 * x, hue = (275 + 190 * std::pow(x, 0.9)) * kRadPerDegree;
         double least = 0, most = 0.4;
         for (int step = 0; step < 30; ++step) {
             const double chroma = 0.5 * (least + most);

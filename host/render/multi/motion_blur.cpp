@@ -6,6 +6,7 @@
 
 #include "render/launch/device_scene.hpp"
 #include "render/settings/edit.hpp"
+#include "scene/camera.hpp"
 
 namespace clarity {
 namespace {
@@ -19,10 +20,6 @@ bool same_geometry(const Pose& a, const Pose& b) {
     };
     return std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(), same_instance) &&
            std::equal(a.meshes.begin(), a.meshes.end(), b.meshes.begin(), b.meshes.end(), same_mesh);
-}
-
-bool same_camera(const Camera& a, const Camera& b) {
-    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
 }
 
 }  // namespace

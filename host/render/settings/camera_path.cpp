@@ -6,6 +6,7 @@
 #include "base/numbers.hpp"
 #include "render/settings/camera_text.hpp"
 #include "render/settings/settings.hpp"
+#include "scene/camera.hpp"
 #include "scene/motion/matrix.hpp"
 
 namespace clarity {
@@ -77,8 +78,7 @@ CameraKey read_key(const std::string& text, const std::string& all, const std::a
 }  // namespace
 
 bool CameraKey::operator==(const CameraKey& b) const {
-    return time_s == b.time_s && camera.eye == b.camera.eye && camera.target == b.camera.target && camera.up == b.camera.up &&
-           camera.fov_y_rad == b.camera.fov_y_rad;
+    return time_s == b.time_s && same_camera(camera, b.camera);
 }
 
 Camera CameraPath::at(double time_s) const {

@@ -5,11 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "base/angle.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
-
-inline constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
 
 // Text has the coordinates of files, whose differences from Scene::origin are those of the scene.
 std::array<float, 3> scene_point(const std::array<double, 3>& in_file, const std::array<double, 3>& origin);

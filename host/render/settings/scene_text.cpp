@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
@@ -43,7 +44,7 @@ bool is_below(const fs::path& file, const fs::path& folder) {
 
 // Degrees that a reader, who computes with floats, turns into these radians.
 float degrees_of(float fov_rad) {
-    constexpr float kRad = 3.14159265358979323846f / 180.0f;
+    constexpr float kRad = static_cast<float>(kPi) / 180.0f;
     const auto nearest = static_cast<float>(double{fov_rad} / kRadPerDegree);
     const float limits[] = {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
     for (const float limit : limits)

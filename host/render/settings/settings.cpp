@@ -137,11 +137,10 @@ std::vector<std::string> tone_names() {
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
         choice("poses", "Each pose",
-               "how the structure follows a scene that plays in the window; refit: its boxes are fitted to what moved; build: "
-               "it is built anew; auto: refitted until slower rays have cost as much as a build; clip: as auto, and when a "
-               "clip begins, "
-               "trees are built for five of its poses, and that is taken whose rays cost least in all of them. Frames of "
-               "`render` are always built; the samples of a picture with motion blur are refitted, unless this is build",
+               "how the structure follows a scene that plays in the window. refit: its boxes are fitted to what moved; build: "
+               "a new "
+               "tree; auto: refits until a build pays; clip: as auto, from the best of five trees. `render` always builds; the "
+               "samples of a blurred picture are refitted, unless this is build",
                {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
         choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer),
         integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),

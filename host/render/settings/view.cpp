@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/settings/camera_text.hpp"
@@ -26,7 +27,7 @@ Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
             throw Error(Exit::usage, "--camera: a field of view of " + text.substr(text.rfind(',') + 1) +
                                          " degrees is not between 0 and 180");
         if (camera.eye == camera.target) throw Error(Exit::usage, "--camera: eye and target are the same point");
-        camera.fov_y_rad = fov * 3.14159265f / 180.0f;
+        camera.fov_y_rad = fov * static_cast<float>(kPi) / 180.0f;
         return camera;
     }
     std::string known;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
+
 namespace clarity {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 // The axes of an order, in the order in which they turn.
 struct Axes {
@@ -31,8 +31,8 @@ Axes axes_of(rt_u32 order) {
 }
 
 Quaternion about(int axis, double degrees) {
-    Quaternion q = {0, 0, 0, std::cos(degrees * kDegree / 2)};
-    q[axis] = std::sin(degrees * kDegree / 2);
+    Quaternion q = {0, 0, 0, std::cos(degrees * kRadPerDegree / 2)};
+    q[axis] = std::sin(degrees * kRadPerDegree / 2);
     return q;
 }
 
@@ -159,7 +159,7 @@ Vec to_angles(const Quaternion& q, rt_u32 order) {
     } else {  // first and third turn about the same axis
         radians[i] = std::atan2(-axes.sign * m[4 * j + k], m[4 * j + j]);
     }
-    return {radians[0] / kDegree, radians[1] / kDegree, radians[2] / kDegree};
+    return {radians[0] / kRadPerDegree, radians[1] / kRadPerDegree, radians[2] / kRadPerDegree};
 }
 
 }  // namespace clarity

@@ -99,7 +99,8 @@ VirtualScreen::VirtualScreen() {
         const std::string number = std::to_string(ends[1]);
         const int null = open("/dev/null", O_WRONLY);
         dup2(null, 2);
-        execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1280x800x24", "-nolisten", "tcp", nullptr);
+        execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset",
+               nullptr);
         _exit(127);
     }
     close(ends[1]);

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/angle.hpp"
+
 namespace clarity {
 namespace {
 
@@ -11,7 +13,7 @@ enum : rt_u32 { kMatt, kGlass, kMirror, kTextured };
 // A sphere with bumps: rows x columns pairs of triangles.
 void add_bumps(Scene& scene, rt_u32 material) {
     constexpr rt_u32 kRows = 16, kColumns = 32;
-    constexpr float kPi = 3.14159265f;
+    constexpr auto pi = static_cast<float>(kPi);
     Mesh mesh;
     mesh.name = "bumps";
     mesh.first_vertex = scene.vertex_count();
@@ -19,7 +21,7 @@ void add_bumps(Scene& scene, rt_u32 material) {
     for (rt_u32 row = 0; row <= kRows; ++row)
         for (rt_u32 column = 0; column <= kColumns; ++column) {
             const float v = float(row) / kRows, u = float(column) / kColumns;
-            const float up = v * kPi, round = u * 2 * kPi, radius = 1 + 0.1f * std::sin(5 * up) * std::cos(4 * round);
+            const float up = v * pi, round = u * 2 * pi, radius = 1 + 0.1f * std::sin(5 * up) * std::cos(4 * round);
             const float direction[3] = {std::sin(up) * std::cos(round), std::cos(up), std::sin(up) * std::sin(round)};
             for (const float d : direction) scene.positions.push_back(radius * d);
             for (const float d : direction) scene.normals.push_back(d);

@@ -1,0 +1,87 @@
+#!/bin/bash
+# setup_test.sh SOURCE_FOLDER -- tests scripts/setup.sh: apt() waits while another process holds a lock of apt's, and build() says how
+# far it is. apt-get works on a folder of its own, so that this needs no root and changes nothing.
+set -u
+cd "$1" || exit 1
+command -v apt-get >/dev/null && command -v ninja >/dev/null && command -v perl >/dev/null || {
+    echo "NOT TESTED: needs apt-get, ninja and perl"
+    exit 77
+}
+folder="$(mktemp -d)"
+trap 'rm -rf "$folder"' EXIT
+failed=0
+fail() {
+    echo "FAILED: $*"
+    cat "$folder/output"
+    failed=1
+}
+
+# ---- apt
+mkdir -p "$folder"/var/lib/apt/lists/partial "$folder"/var/lib/dpkg "$folder"/var/cache/apt/archives/partial "$folder"/etc/apt/{apt.conf.d,preferences.d}
+touch "$folder/var/lib/dpkg/status"
+cat >"$folder/apt.conf" <<END
+Dir "$folder/";
+Dir::State::status "$folder/var/lib/dpkg/status";
+Dir::Etc::sourcelist "/dev/null";
+Dir::Etc::sourceparts "/dev/null";
+END
+export APT_CONFIG="$folder/apt.conf"
+
+# hold FILE SECONDS: locks it as apt does, in another process.
+hold() {
+    rm -f "$folder/held"
+    perl -MFcntl -e 'my ($file, $seconds, $held) = @ARGV;
+        my $how = pack("s s x4 q q i x4", F_WRLCK, 0, 0, 0, 0);
+        open(my $lock, ">", $file) or die "$file: $!"; fcntl($lock, F_SETLK, $how) or die "no lock: $!";
+        open(my $ready, ">", $held) or die; sleep $seconds' "$1" "$2" "$folder/held" &
+    for _ in $(seq 100); do [ -e "$folder/held" ] && return 0 || sleep 0.1; done
+    fail "$1 could not be locked"
+}
+# run_apt ARGUMENT...: apt() as ./run calls it, without sudo.
+run_apt() { (. scripts/setup.sh && as_root() { "$@"; } && apt_patience_s=${patience:-60} && apt "$@") >"$folder/output" 2>&1; }
+
+for pair in "update:var/lib/apt/lists/lock" "install:var/lib/dpkg/lock-frontend" "install:var/lib/dpkg/lock" "install:var/cache/apt/archives/lock"; do
+    verb="${pair%%:*}" lock="$folder/${pair#*:}"
+    hold "$lock" 3
+    holder=$!
+    begin=$SECONDS
+    run_apt $verb || fail "apt $verb while $lock was held: code $?"
+    if kill -0 $holder 2>/dev/null; then fail "apt $verb ended while $lock was held"; fi
+    # `apt-get install` without a package to fetch does not ask for the lock of the downloads.
+    [ $((SECONDS - begin)) -lt 1 ] || grep -q "^Waiting for process $holder (perl), which holds $lock\$" "$folder/output" || fail "apt $verb did not say that it waits for $lock"
+    [ "$(grep -c Waiting "$folder/output")" -le 1 ] || fail "it said so several times"
+    wait $holder
+done
+hold "$folder/var/lib/apt/lists/lock" 20
+patience=1 run_apt update && fail "an update that cannot lock succeeded"
+grep -q '^E: Could not get lock' "$folder/output" || fail "the reason is not shown once patience ends"
+kill $!
+wait
+begin=$SECONDS
+run_apt install no-such-package && fail "a package that does not exist was installed"
+grep -q 'Unable to locate package no-such-package' "$folder/output" || fail "apt's message is not shown"
+[ $((SECONDS - begin)) -lt 5 ] || fail "it waited although no lock was held"
+
+# ---- build
+build_in() { (. scripts/setup.sh && build_dir="$folder/$1" && build "${@:2}") >"$folder/output" 2>&1; }
+mkdir "$folder/good" "$folder/bad"
+{
+    printf 'rule step\n  command = touch $out\nrule warn\n  command = echo "a.cpp:1: warning: w"; touch $out\nrule fail\n  command = echo "b.cpp:1: error: e"; false\n'
+    for i in $(seq 39); do echo "build step$i: step"; done
+    echo "build warning: warn"
+} >"$folder/good/build.ninja"
+build_in good || fail "a good build: code $?"
+for share in 10 50 100; do
+    [ "$(grep -c "^Building: $share %" "$folder/output")" = 1 ] || fail "no line says $share %"
+done
+[ "$(grep -c '^Building: ' "$folder/output")" -le 10 ] || fail "more lines of progress than tenths"
+grep -q '^a.cpp:1: warning: w$' "$folder/output" || fail "a warning is lost"
+build_in good || fail "nothing to build: code $?"
+grep -q '%\|ninja:' "$folder/output" && fail "progress without work"
+{
+    cat "$folder/good/build.ninja"
+    echo "build failing: fail"
+} >"$folder/bad/build.ninja"
+build_in bad && fail "a build that fails: code 0"
+grep -q '^b.cpp:1: error: e$' "$folder/output" && grep -q 'the build failed, see above' "$folder/output" || fail "the error is lost"
+exit $failed
