@@ -1,5 +1,6 @@
 // build_checks.hpp -- whether a builder is sound: what it writes, and how it behaves.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "check/steps.hpp"
@@ -7,7 +8,8 @@
 
 namespace clarity::check {
 
-// The checks of one structure's builder, in the order in which they run. quick: fewer scenes and repetitions.
-std::vector<Check> build_checks(const rt_plugin& plugin, bool quick);
+// The checks of one structure's builder, in the order in which they run. quick: fewer scenes and repetitions. seed: of random
+// numbers (seed.hpp).
+std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed = 0);
 
 }  // namespace clarity::check

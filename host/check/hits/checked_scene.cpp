@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "check/builds/pack_checks.hpp"
 #include "check/builds/refit_run.hpp"
 #include "check/builds/result_checks.hpp"
 #include "render/accel/topology_check.hpp"
@@ -41,12 +41,15 @@ std::string Variant::options() const {
 }
 
 CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
-                           const Scene* rest)
+                           const Scene* rest, const BuiltAs& as)
     : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
-    const ParameterValues params = default_parameters(plugin);
+    const ParameterValues params = as.params.empty() ? default_parameters(plugin) : as.params;
     const std::unique_ptr<const BuildCase> rest_case(rest ? new BuildCase("mixed", *rest) : nullptr);
     const BuildCase& built = rest_case ? *rest_case : case_;
-    run_ = built.run(plugin, params, Schedule::program);
+    if (as.packed_leaf > 0)
+        run_ = built.pack(plugin, Halves(built.scene(), as.packed_leaf).topology());
+    else
+        run_ = built.run(plugin, params, Schedule::program);
     if (layout && run_.why.empty() && !run_.cancelled) {
         const BuildRun tree = std::move(run_);
         run_ = built.pack(*layout, topology_of(tree.result));
@@ -90,6 +93,7 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     accel->leaves = AlignedBytes::borrow(leaves_.data(), leaves_.bytes());
     accel->roots = result.roots;
     accel->defines = result.defines;
+    for (const auto& [name, value] : as.defines) accel->defines[name] = value;
     accel->stats = result.stats;
     accel->instances = build.instances;
     for (size_t i = 0; i < accel->instances.size(); ++i) accel->instances[i].root = accel->roots[build.group_of_instance[i]];
@@ -113,14 +117,16 @@ void CheckedScene::compile(const Variant& variant) {
     trace(variant, {rt_ray{{0, 0, 0}, 1, {0, 0, 1}, -1}}, false);
 }
 
-Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit) {
-    return trace(*prepared(variant), rays, any_hit);
+Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit, bool counts) {
+    return trace(*prepared(variant), rays, any_hit, counts);
 }
 
-Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit) {
+Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit, bool counts) {
     Traced traced;
     RayQuery query;
     query.any_hit = any_hit;
+    query.count = counts;
+    query.quiet = true;  // the checks say it
     queries_->trace(in, RayBlocks(rays, in.layout.lanes), query, &traced.hits);
     traced.overflows = queries_->overflows();
     return traced;

@@ -1,5 +1,6 @@
 // hits_checks.hpp -- whether a structure's kernels hit what they should, on a device.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,9 +14,11 @@ namespace clarity::check {
 struct HitsOptions {
     bool quick = false;
     std::vector<int> lanes = {1, 4, 8, 16};
+    bool large = false;            // also scenes of more than 2^20 primitives
     bool lanes_are_named = false;  // by the user; otherwise those that the device cannot have are left out
     size_t rays = 0;               // of a set; 0: as `quick` says
     std::string report_folder;     // where wrong rays are written; "": nowhere
+    uint64_t seed = 0;             // of random numbers: see seed.hpp
 };
 
 // Leaves out numbers of lanes that the device cannot have, if the user has not named them.

@@ -97,6 +97,11 @@ Fault judge(const rt_ray& ray, const Truth& truth, const rt_hit& hit, bool any_h
     return any_hit ? judge_any(truth, hit) : judge_nearest(ray, truth, hit);
 }
 
+bool Faults::misses() const {
+    return std::any_of(wrong.begin(), wrong.end(),
+                       [](const One& one) { return one.fault == Fault::missed || one.fault == Fault::too_far; });
+}
+
 Faults Faults::of(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,
                   bool any_hit) {
     Faults faults;

@@ -97,7 +97,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
                 ? dynamic_fetch_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out, overflows_)
                 : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
         overflowed_ = debug ? overflows_.read(queue) : 0;
-        report_overflows(overflowed_, prepared.accel->plugin->id);
+        if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
         autotuner_.took(times.device_ms);
         tuning_.settled = autotuner_.settled();
         if (hits) {
