@@ -83,7 +83,8 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
         accel->slots.push_back(std::move(out));
     }
     accel->leaf_count = result.leaf_count;
-    leaves_ = GuardedBytes((result.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), "the leaves");
+    leaves_ =
+        GuardedBytes((result.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), "the leaves", 128, sizeof(rt_packed_prim));
     auto* leaves = static_cast<rt_packed_prim*>(leaves_.data());
     const auto* refs = static_cast<const rt_u32*>(result.refs.data());
     const BuildScene& build = case_.scene();
