@@ -107,12 +107,15 @@ class Builder {
     }
     void split(rt_u32 at, rt_u32* order, rt_u32 count, rt_u32 level) {
         Box box;
-        for (rt_u32 i = 0; i < count; ++i) box.add(input_.prims[order[i]]);
+        for (rt_u32 i = 0; i < count; ++i) {
+            rt_prim prim = input_.prims[order[i]];
+            for (int k = 0; k < 3 && is("cuts_needles"); ++k)  // what is longer than 3 counts as 3 long
+                prim.hi[k] = std::fmin(prim.hi[k], prim.lo[k] + 3);
+            box.add(prim);
+        }
         depth = std::max(depth, level);
         if (is("ulp_short"))
             for (float& hi : box.hi) hi = std::nextafter(hi, -INFINITY);
-        for (int k = 0; k < 3 && is("cuts_needles"); ++k)  // what is longer than 3 counts as 3 long
-            if (count == 1 && box.hi[k] - box.lo[k] > 3) box.hi[k] = box.lo[k] + 3;
         if (is("nan_planes") && level == 4) box.hi[1] = NAN;
         for (int k = 0; k < 3; ++k) {
             nodes[at].box[k] = count ? box.lo[k] : FLT_MAX;

@@ -161,8 +161,8 @@ class RefitCheck {
     // The costs that refits report rise with the surfaces of the tree's volumes: the host decides by them when to build again.
     std::string cost_fault() {
         if (!plugin_.accel->levels) return {};
-        constexpr double kSurfaces = 3, kCosts = 1.15;  // volumes of three times the surface, at least
-        constexpr rt_u32 kLeast = 60;                   // primitives of a group
+        constexpr double kSurfaces = 2, kCosts = 1.3;  // where volumes have twice the surface, costs rise by 1.3 at least
+        constexpr rt_u32 kLeast = 60;                  // primitives of a group
         const Scene scene = mixed_scene();
         const BuildCase rest("mixed", scene);
         const BuildRun built = rest.run(plugin_, params_, Schedule::program);

@@ -30,6 +30,16 @@ rt_packed_prim trap(int i) {
     return prim;
 }
 
+// A copy whose end lies as close to the page that nobody may touch as its elements allow. Builders get memory at multiples of
+// 128 bytes, so what they fill may end up to 127 bytes before it.
+GuardedBytes closer_copy(const GuardedBytes& from, size_t element) {
+    size_t align = 16;
+    while (align < 128 && element % (2 * align) == 0) align *= 2;
+    GuardedBytes to(from.bytes(), from.name(), align, element);
+    std::memcpy(to.data(), from.data(), from.bytes());
+    return to;
+}
+
 }  // namespace
 
 std::string Variant::text() const {
@@ -75,7 +85,10 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     accel->params = params;
     accel->scene = case_.scene();
     BuilderResult& result = run_.result;
-    for (BuilderResult::Slot& slot : result.slots) {
+    for (size_t s = 0; s < result.slots.size(); ++s) {
+        BuilderResult::Slot& slot = result.slots[s];
+        const size_t element = built_slots(*accel->layout).slots[s].elem_bytes;
+        slot.memory = closer_copy(slot.memory, element);
         slot.memory.make_read_only();
         AccelData::Slot out;
         out.memory = AlignedBytes::borrow(slot.memory.data(), slot.memory.bytes());

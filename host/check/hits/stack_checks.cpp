@@ -110,14 +110,18 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
 }
 
 Outcome counts_check(const BenchInput& input, const Step& step) {
-    Bench bench(few_rays(input));
+    Bench mixed(few_rays(input)), regular(few_rays(input), kRegularScene);
     const Variant variant{1, true, false};
+    struct Row {
+        Bench& bench;
+        const char* set;
+    };
     uint64_t hits = 0, untested = 0;
     std::string first;
-    for (const char* name : {"hits.random", "hits.instances", "hits.primitives"}) {
-        const RaySet& set = bench.set(name, step);
-        CheckedScene& scene = bench.scene(step);
-        step(std::string("counting the primitives that rays of ") + name + " test", kCompileLimit_s);
+    for (const Row& row : {Row{mixed, "hits.random"}, Row{mixed, "hits.primitives"}, Row{regular, "hits.uneven"}}) {
+        const RaySet& set = row.bench.set(row.set, step);
+        CheckedScene& scene = row.bench.scene(step);
+        step(std::string("counting the primitives that rays of ") + row.set + " test", kCompileLimit_s);
         const Traced traced = scene.trace(variant, set.rays, false, true);
         for (size_t i = 0; i < set.rays.size(); ++i) {
             if (traced.hits[i].prim < 0) continue;
