@@ -31,7 +31,8 @@ namespace {
 using worker::kChannelFd;
 using worker::MessageKind;
 
-constexpr uint64_t kBuilderBytes = uint64_t(1) << 30;   // for scenes of at most 40000 triangles
+constexpr uint64_t kBuilderBytes = uint64_t(1) << 30;  // for scenes of at most 70000 triangles
+constexpr uint64_t kLargeBuilderBytes = uint64_t(3) << 30;
 constexpr uint64_t kImporterBytes = uint64_t(1) << 30;  // what the program gives to small files
 constexpr size_t kMostText = 3000;
 
@@ -41,7 +42,7 @@ struct Arguments {
     std::vector<std::string> only;
     std::set<std::string> done;  // checks that an earlier worker ran
     std::vector<int> lanes;
-    bool quick = false;
+    bool quick = false, large = false;
     long parent = 0;
 };
 
@@ -67,6 +68,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
             arguments.phase = value;
         } else if (key == "--quick") {
             arguments.quick = value == "1";
+        } else if (key == "--large") {
+            arguments.large = value == "1";
         } else if (key == "--device") {
             arguments.device = value;
         } else if (key == "--report") {
@@ -137,8 +140,8 @@ std::string own_folder() {  // tells how large this process is
 
 std::vector<Check> builder_checks(const PluginRecord& record, const Arguments& arguments) {
     use_one_arena();
-    enter_sandbox(WorkerKind::builder, {own_folder()}, limits_of(kBuilderBytes));
-    return build_checks(*record.plugin, arguments.quick);
+    enter_sandbox(WorkerKind::builder, {own_folder()}, limits_of(arguments.large ? kLargeBuilderBytes : kBuilderBytes));
+    return build_checks(*record.plugin, arguments.quick, 0, arguments.large);
 }
 
 // The first structure among the libraries beside a shape; nullptr: none.
@@ -160,6 +163,7 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     enter_sandbox(WorkerKind::driver, {}, {});
     HitsOptions options;
     options.quick = arguments.quick;
+    options.large = arguments.large;
     options.report_folder = arguments.report;
     options.lanes_are_named = !arguments.lanes.empty();
     if (options.lanes_are_named) options.lanes = arguments.lanes;

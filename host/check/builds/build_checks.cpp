@@ -16,10 +16,10 @@
 namespace clarity::check {
 namespace {
 
-constexpr double kBuildLimit_s = 10;        // a build of a small scene that lasts longer counts as endless
-constexpr double kManyLimit_s = 30;         // the same for the many triangles
-constexpr unsigned kManyTriangles = 70000;  // above 2^16
-constexpr double kPatience_ms = 500;        // a build that lasts longer must ask whether it is cancelled
+constexpr double kBuildLimit_s = 10;  // a build of a small scene that lasts longer counts as endless
+constexpr double kManyLimit_s = 30;   // the same for the many triangles
+constexpr unsigned kManyTriangles = 70000, kLargeTriangles = (1u << 20) + 4099;  // above 2^16, and above 2^20
+constexpr double kPatience_ms = 500;  // a build that lasts longer must ask whether it is cancelled
 
 // The inputs, made on first use and shared by all checks of a structure.
 class Inputs {
@@ -27,6 +27,7 @@ class Inputs {
     Inputs(const rt_plugin& p, uint64_t s) : plugin(p), seed(s), params(default_parameters(p)) {}
     const rt_plugin& plugin;
     const uint64_t seed;  // of random numbers
+    bool large = false;
     const ParameterValues params;
 
     const std::vector<BuildCase>& small() {
@@ -39,7 +40,7 @@ class Inputs {
         return lazy(sparse_, "sparse", [this] { return sparse_scene(700, seed); });
     }
     const BuildCase& many() {
-        return lazy(many_, "many", [this] { return soup_scene(kManyTriangles, seed); });
+        return lazy(many_, "many", [this] { return soup_scene(large ? kLargeTriangles : kManyTriangles, seed); });
     }
     BuildRun run(const BuildCase& input, Schedule schedule = Schedule::program) const {
         return input.run(plugin, params, schedule);
@@ -103,7 +104,7 @@ Outcome bounds(Inputs& inputs, const Step& step) {
 
 Outcome threads(Inputs& inputs, const Step& step, bool quick) {
     std::vector<Schedule> schedules = {Schedule::backward, Schedule::shuffled2, Schedule::shuffled7, Schedule::program};
-    const int rounds = quick ? 2 : 8;
+    const int rounds = quick || inputs.large ? 2 : 8;
     for (const BuildCase* input : {&inputs.mixed(), &inputs.many()}) {
         step("building " + on(*input) + " with one thread", kManyLimit_s);
         const BuildRun first = inputs.run(*input, Schedule::forward);
@@ -252,8 +253,9 @@ Outcome afterwards(Inputs& inputs, const Step& step) {
 
 }  // namespace
 
-std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed) {
+std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed, bool large) {
     const auto inputs = std::make_shared<Inputs>(plugin, seed);
+    inputs->large = large;
     return {
         {"builds.sound", "builds scenes from nothing to 3000 primitives, in memory whose overrun is seen",
          [=](const Step& step) { return sound(*inputs, step); }},

@@ -157,7 +157,8 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
         for (const Variant& variant : bench.variants(step)) {
             CheckedScene& scene = bench.compiled(variant, step);
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
-            step("tracing " + std::to_string(set.rays.size()) + " rays, " + what, kTraceLimit_s);
+            step("tracing " + std::to_string(set.rays.size()) + " rays, " + what,
+                 bench.options().large ? kCompileLimit_s : kTraceLimit_s);
             const Traced traced = scene.trace(variant, set.rays, any_hit);
             const Faults faults = Faults::of(set.rays, truths, traced.hits, any_hit);
             if (!any_hit) nearest[variant.text()] = traced.hits;

@@ -101,6 +101,7 @@ bool add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Con
     if (contact.t + contact.t_error < ray.t_min || contact.t - contact.t_error > ray.t_max) return false;
     const bool steep = p.cosine > 1e-3 && is_within_limits(ray, contact);
     contact.certain = steep && p.inside && p.from_edge > blur;
+    contact.latest = contact.t + contact.t_error;
     contacts.push_back(contact);
     return steep && !contact.certain;
 }
@@ -141,8 +142,14 @@ void close_sheets(std::vector<AtEdge>& at, double blur, std::vector<Contact>& co
     std::vector<bool> open_sheet(at.size());
     for (size_t i = 0; i < at.size(); ++i)
         if (open[i]) open_sheet[root(i)] = true;
-    for (size_t i = 0; i < at.size(); ++i)
-        if (!open_sheet[root(i)]) contacts[at[i].contact].certain = true;
+    // Between two of them the ray may go through a third one that it only grazes: any of them may be the one that is hit.
+    std::vector<double> latest(at.size());
+    for (size_t i = 0; i < at.size(); ++i) latest[root(i)] = std::max(latest[root(i)], contacts[at[i].contact].latest);
+    for (size_t i = 0; i < at.size(); ++i) {
+        if (open_sheet[root(i)]) continue;
+        contacts[at[i].contact].certain = true;
+        contacts[at[i].contact].latest = latest[root(i)];
+    }
 }
 
 // at_edge, blur: receive what close_sheets() needs.
@@ -208,6 +215,7 @@ void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std
         if (contact.t + contact.t_error < least || contact.t - contact.t_error > ray.t_max) continue;
         contact.certain = away < radius - blur && (is_far ? surely_far : surely_near) && contact.t - contact.t_error > least &&
                           contact.t + contact.t_error < ray.t_max;
+        contact.latest = contact.t + contact.t_error;
         contacts.push_back(contact);
     }
 }
@@ -231,6 +239,13 @@ const Contact* Truth::nearest_certain() const {
     for (const Contact& contact : contacts)
         if (contact.certain) return &contact;
     return nullptr;
+}
+
+double Truth::latest() const {
+    double least = kInf;
+    for (const Contact& contact : contacts)
+        if (contact.certain) least = std::min(least, contact.latest);
+    return least;
 }
 
 const Contact* Truth::of(rt_i32 prim, rt_i32 instance) const {
