@@ -101,7 +101,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         if (inside != 0u && node->count != BROKEN_EMPTY) {
             if (node->count == 0u) {
                 stack[top] = node->first + 1u;
-#if defined(BROKEN_UNASKED) || (defined(BROKEN_UNASKED_ANY) && RT_ANY_HIT)
+#if defined(BROKEN_UNASKED) || (defined(BROKEN_UNASKED_ANY) && RT_ANY_HIT) || (defined(BROKEN_UNASKED_MESH) && RT_TRIANGLES_ONLY)
                 ++top;
 #else
                 if (RT_STACK_OK(top + 1u, BROKEN_STACK, hit)) ++top;

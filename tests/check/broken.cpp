@@ -62,6 +62,7 @@ constexpr Macro kMacros[] = {{"octant", "BROKEN_OCTANT"},
                              {"lanes_16_any", "BROKEN_LANES_16_ANY"},
                              {"unasked", "BROKEN_UNASKED"},
                              {"unasked_any", "BROKEN_UNASKED_ANY"},
+                             {"unasked_mesh", "BROKEN_UNASKED_MESH"},
                              {"own_test", "BROKEN_OWN_TEST"},
                              {"cut_positions", "BROKEN_CUT_POSITIONS"},
                              {"reads_past_empty", "BROKEN_READS_PAST_EMPTY"}};

@@ -112,6 +112,7 @@ const Defect kDefects[] = {
     // what must be asked
     {"unasked", "hits.pushes", {"it never asked RT_STACK_OK", "stack[BROKEN_STACK]"}},
     {"unasked_any", "hits.pushes", {"refuses every push", "any-hit queries"}},
+    {"unasked_mesh", "hits.pushes", {"refuses every push", "nearest hits in meshes"}},
     {"world_stack", "hits.stack", {"stack was full", "must hold the deepest tree"}},
     {"own_test", "hits.counts", {"tested none through the host"}},
     {"defines_lanes", "builds.sound", {"a define the name 'RT_LANES'", "are the host's"}},
