@@ -96,7 +96,7 @@ bool add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Con
     const double blur = blur_at(ray, p);
     if (!p.inside && p.from_edge > blur) return false;
     contact.t = p.t;
-    contact.t_error = (p.cosine > 0 ? blur / p.cosine : kInf) / ray.length_d + 1e-5 * std::fabs(p.t);
+    contact.t_error = (p.cosine > 0 ? blur / p.cosine : kInf) / ray.length_d + kRelativeError * std::fabs(p.t);
     if (!(std::fabs(contact.t) < kInf)) contact.t = 0, contact.t_error = kInf;
     if (contact.t + contact.t_error < ray.t_min || contact.t - contact.t_error > ray.t_max) return false;
     const bool steep = p.cosine > 1e-3 && is_within_limits(ray, contact);
@@ -203,7 +203,7 @@ void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std
     if (away > radius + blur) return;
     const double half = std::sqrt(std::max(radius * radius - away * away, 0.0)) / ray.length_d;
     const double cosine = std::max(half * ray.length_d / radius, 1e-9);
-    contact.t_error = blur / cosine / ray.length_d + 1e-5 * std::fabs(middle);
+    contact.t_error = blur / cosine / ray.length_d + kRelativeError * std::fabs(middle);
     if (away > radius - blur)
         contact.t_error = std::max(contact.t_error, half + std::sqrt(2 * radius * blur + blur * blur) / ray.length_d * 2);
     const double least = std::max(ray.t_min, 0.0), near = middle - half, far = middle + half;

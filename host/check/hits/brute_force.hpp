@@ -10,6 +10,9 @@
 
 namespace clarity::check {
 
+// Of a distance: part of Contact::t_error.
+constexpr double kRelativeError = 1e-5;
+
 // A primitive that a ray meets, or passes so closely that rounding decides.
 struct Contact {
     rt_i32 prim = -1;      // its number, as hits report it
