@@ -267,6 +267,7 @@ class Run {
             for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
             if (!options_.truth_folder.empty()) arguments.insert(arguments.end(), {"--truth", options_.truth_folder});
             if (name == "imports" || name == "keys") arguments.insert(arguments.end(), {"--scratch", folder()});
+            if (options_.large) arguments.insert(arguments.end(), {"--large", "1"});
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});

@@ -16,6 +16,7 @@ namespace clarity::check {
 struct CheckOptions {
     std::vector<std::string> only;  // names of checks, or their beginnings: "hits", "builds.refs"; empty: all
     bool quick = false;
+    bool large = false;                // of structures: also scenes of more than 2^20 primitives
     std::string report_folder;         // "": none
     std::string device;                // as for --device
     std::vector<int> lanes;            // with which kernels are compiled; empty: 1, 4, 8 and 16

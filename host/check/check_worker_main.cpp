@@ -44,7 +44,8 @@ namespace {
 using worker::kChannelFd;
 using worker::MessageKind;
 
-constexpr uint64_t kBuilderBytes = uint64_t(1) << 30;   // for scenes of at most 40000 triangles
+constexpr uint64_t kBuilderBytes = uint64_t(1) << 30;  // for scenes of at most 70000 triangles
+constexpr uint64_t kLargeBuilderBytes = uint64_t(3) << 30;
 constexpr uint64_t kImporterBytes = uint64_t(1) << 30;  // what the program gives to small files
 constexpr size_t kMostText = 3000;
 constexpr rlim_t kAloneLimit_s = 4;  // processor time for a sample that is read alone; of larger ones nothing is compared then
@@ -55,7 +56,7 @@ struct Arguments {
     std::vector<std::string> only;
     std::set<std::string> done;  // checks that an earlier worker ran
     std::vector<int> lanes;
-    bool quick = false, list = false, stop_at_first = false;
+    bool quick = false, large = false, list = false, stop_at_first = false;
     uint64_t seed = 0;
     long parent = 0;
 };
@@ -71,6 +72,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
         {"--beside", list(a.beside)},
         {"--phase", text(a.phase)},  // builds, hits, keys, shape, accesses or imports
         {"--quick", flag(a.quick)},
+        {"--large", flag(a.large)},
         {"--list", flag(a.list)},
         {"--stop", flag(a.stop_at_first)},
         {"--seed", [&](const char* value) { a.seed = std::strtoull(value, nullptr, 10); }},
@@ -149,8 +151,8 @@ std::string own_folder() {  // tells how large this process is
 
 std::vector<Check> builder_checks(const PluginRecord& record, const Arguments& arguments) {
     use_one_arena();
-    enter_sandbox(WorkerKind::builder, {own_folder()}, limits_of(kBuilderBytes));
-    return build_checks(*record.plugin, arguments.quick, arguments.seed);
+    enter_sandbox(WorkerKind::builder, {own_folder()}, limits_of(arguments.large ? kLargeBuilderBytes : kBuilderBytes));
+    return build_checks(*record.plugin, arguments.quick, arguments.seed, arguments.large);
 }
 
 // The first structure among the libraries beside a shape; nullptr: none.
@@ -179,6 +181,7 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     HitsOptions options;
     options.quick = arguments.quick;
     options.seed = arguments.seed;
+    options.large = arguments.large;
     options.report_folder = arguments.report;
     options.lanes_are_named = !arguments.lanes.empty();
     if (options.lanes_are_named) options.lanes = arguments.lanes;

@@ -2,109 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
-#include "base/angle.hpp"
+#include "check/scene_maker.hpp"
 
 namespace clarity::check {
 namespace {
-
-constexpr auto kHalfTurn = static_cast<float>(kPi);
-
-// Adds meshes, and places them, in a scene.
-class Maker {
- public:
-    Maker() { scene.materials.push_back({"default", default_material()}); }
-
-    void triangle(const Point& a, const Point& b, const Point& c) {
-        for (const Point& p : {a, b, c}) {
-            scene.triangles.push_back(static_cast<rt_u32>(scene.positions.size() / 3));
-            scene.positions.append(p.begin(), p.end());
-        }
-        scene.triangle_materials.push_back(0);
-    }
-    void quad(const Point& a, const Point& b, const Point& c, const Point& d) {
-        triangle(a, b, c);
-        triangle(a, c, d);
-    }
-    void box(const Point& lo, const Point& hi) {
-        const auto at = [&](int i) { return Point{i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2]}; };
-        constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-        for (const auto& q : kQuads) quad(at(q[0]), at(q[1]), at(q[2]), at(q[3]));
-    }
-    void ball(const Point& center, float radius, int segments, int rings) {
-        const auto at = [&](int r, int s) {
-            const float theta = kHalfTurn * float(r) / float(rings),
-                        phi = 2 * kHalfTurn * float(s % segments) / float(segments);
-            return Point{center[0] + radius * std::sin(theta) * std::sin(phi), center[1] + radius * std::cos(theta),
-                         center[2] + radius * std::sin(theta) * std::cos(phi)};
-        };
-        for (int r = 0; r < rings; ++r)
-            for (int s = 0; s < segments; ++s) {
-                if (r > 0) triangle(at(r, s), at(r + 1, s), at(r, s + 1));
-                if (r + 1 < rings) triangle(at(r + 1, s), at(r + 1, s + 1), at(r, s + 1));
-            }
-    }
-    void soup(const Point& center, float spread, float size, unsigned count) {
-        for (unsigned i = 0; i < count; ++i) {
-            const Point p = around(center, spread);
-            const float s = size * (0.1f + random() * random());
-            triangle(p, around(p, s), around(p, s));
-        }
-    }
-    float random() { return std::uniform_real_distribution<float>(0, 1)(random_); }
-    Point around(const Point& center, float spread) {
-        Point p = center;
-        for (float& c : p) c += spread * (2 * random() - 1);
-        return p;
-    }
-
-    // Ends the mesh of the triangles since the last call. Returns its number.
-    rt_u32 mesh() {
-        Mesh mesh;
-        mesh.first_vertex = vertices_;
-        mesh.first_triangle = triangles_;
-        vertices_ = static_cast<rt_u32>(scene.positions.size() / 3);
-        triangles_ = static_cast<rt_u32>(scene.triangles.size() / 3);
-        mesh.vertex_count = vertices_ - mesh.first_vertex;
-        mesh.triangle_count = mesh.polygon_count = triangles_ - mesh.first_triangle;
-        scene.meshes.push_back(mesh);
-        return static_cast<rt_u32>(scene.meshes.size() - 1);
-    }
-    void place(rt_u32 mesh, const Affine& world_from_object = kIdentity) {
-        Instance instance;
-        instance.mesh = mesh;
-        instance.world_from_object = world_from_object;
-        scene.instances.push_back(instance);
-    }
-    void sphere(const Point& center, float radius) { scene.spheres.push_back({center, radius, 0}); }
-    void polygon(const std::vector<Point>& corners) {
-        Polygon polygon;
-        polygon.first_corner = static_cast<rt_u32>(scene.polygon_corners.size() / 3);
-        polygon.corner_count = static_cast<rt_u32>(corners.size());
-        scene.polygons.push_back(polygon);
-        for (const Point& p : corners) scene.polygon_corners.insert(scene.polygon_corners.end(), p.begin(), p.end());
-    }
-
-    Scene scene;
-
- private:
-    std::mt19937 random_{17};
-    rt_u32 vertices_ = 0, triangles_ = 0;
-};
-
-// A turn about a slanted axis, with a scale for each axis and a translation.
-Affine placed(const Point& at, float angle, const Point& scale) {
-    const float c = std::cos(angle), s = std::sin(angle), x = 0.48f, y = 0.6f, z = 0.64f, k = 1 - c;
-    const float turn[9] = {c + k * x * x,     k * x * y - s * z, k * x * z + s * y, k * x * y + s * z, c + k * y * y,
-                           k * y * z - s * x, k * x * z - s * y, k * y * z + s * x, c + k * z * z};
-    Affine m{};
-    for (int r = 0; r < 3; ++r) {
-        for (int j = 0; j < 3; ++j) m[4 * r + j] = turn[3 * r + j] * scale[j];
-        m[4 * r + 3] = at[r];
-    }
-    return m;
-}
 
 constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{-40, 0, 0}, kTiny{0, 0, 40},
     kFar{9000, 2000, -7000}, kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40},
@@ -169,8 +71,8 @@ const std::vector<Region>& mixed_regions() {
     return regions;
 }
 
-Scene mixed_scene() {
-    Maker make;
+Scene mixed_scene(uint64_t seed) {
+    Maker make(seed);
     make.soup(kSoup, 4, 0.9f, 700);
     make.place(make.mesh());
     for (int i = 0; i < 27; ++i) {
@@ -276,10 +178,10 @@ Scene rippled(Scene mixed) {
     return mixed;
 }
 
-std::vector<NamedScene> small_scenes() {
+std::vector<NamedScene> small_scenes(uint64_t seed) {
     std::vector<NamedScene> scenes;
     const auto add = [&](const char* name, auto fill) {
-        Maker make;
+        Maker make(seed);
         fill(make);
         scenes.push_back({name, std::move(make.scene)});
     };
@@ -335,12 +237,12 @@ std::vector<NamedScene> small_scenes() {
         make.soup({0, 0, 0}, 1e-30f, 1e-31f, 200);
         make.place(make.mesh());
     });
-    scenes.push_back({"mixed", mixed_scene()});
+    scenes.push_back({"mixed", mixed_scene(seed)});
     return scenes;
 }
 
-Scene sparse_scene(unsigned count) {
-    Maker make;
+Scene sparse_scene(unsigned count, uint64_t seed) {
+    Maker make(seed);
     const int side = static_cast<int>(std::ceil(std::cbrt(double(count))));
     for (unsigned i = 0; i < count; ++i) {
         const int n = static_cast<int>(i);
@@ -353,8 +255,8 @@ Scene sparse_scene(unsigned count) {
     return std::move(make.scene);
 }
 
-Scene soup_scene(unsigned count) {
-    Maker make;
+Scene soup_scene(unsigned count, uint64_t seed) {
+    Maker make(seed);
     make.soup({0, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);
     make.place(make.mesh());
     return std::move(make.scene);

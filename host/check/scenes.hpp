@@ -1,6 +1,8 @@
-// scenes.hpp -- the scenes on which structures are checked. They are made by formula: the same on every machine.
+// scenes.hpp -- the scenes on which structures are checked. They are made by formula: the same on every machine. A seed other
+// than 0 moves what is random in them.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,7 @@ struct Region {
 // distance, degenerate triangles, tiny, huge and far-away ones, nested shells, copies at one place, and instances that are
 // turned, mirrored, stretched, tiny, large and within each other. About 3000 triangles. One scene, so that one program of each
 // lane count does.
-Scene mixed_scene();
+Scene mixed_scene(uint64_t seed = 0);
 const std::vector<Region>& mixed_regions();
 // The mixed scene with other vertices and instances: each region's content moves within it, by up to a third of its radius.
 Scene rippled(Scene mixed);
@@ -31,11 +33,11 @@ struct NamedScene {
     std::string name;
     Scene scene;
 };
-std::vector<NamedScene> small_scenes();
+std::vector<NamedScene> small_scenes(uint64_t seed = 0);
 
 // Triangles that lie apart, so that a bound that is too small is seen: no neighbour covers what it leaves out.
-Scene sparse_scene(unsigned count);
+Scene sparse_scene(unsigned count, uint64_t seed = 0);
 // `count` triangles of any size in a cube; for tests of time and memory.
-Scene soup_scene(unsigned count);
+Scene soup_scene(unsigned count, uint64_t seed = 0);
 
 }  // namespace clarity::check

@@ -20,8 +20,8 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "import/import.hpp"
-#include "render/tracers/rays/ray_text.hpp"
 #include "render/settings/edit.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity {
 namespace {

@@ -220,6 +220,8 @@ void add_check(CLI::App& app, CheckCommand& command) {
                    "Only checks with names that begin with this, such as hits, builds.refs or keys; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
+    app.add_flag("--large", command.options.large,
+                 "Of structures: also scenes of more than 2^20 triangles, which takes minutes");
     app.add_option("--lanes", command.options.lanes,
                    "Only kernels of this many lanes; may be repeated; default: 1, 4, 8 and 16")
         ->type_name("N")

@@ -32,12 +32,14 @@ alignas(16) char signal_stack[64 << 10];
 // Read by the signal handler, so it is plain memory.
 struct Named {
     std::atomic<uintptr_t> begin{0};
-    size_t bytes = 0;
+    size_t bytes = 0, element_bytes = 0;
     char name[64] = {};
 };
 Named named[kMostNamed];
 std::mutex named_mutex;
-constexpr uintptr_t kNear = 1u << 20;  // bytes beside a range within which an access is blamed on the range
+// Bytes beside a range within which an access is blamed on the range: as many as guards have (GuardedBytes), and, if there is
+// no other cause, as an index of 32 bits may reach from the range before.
+constexpr uintptr_t kNear = uintptr_t(8) << 30, kFar = uintptr_t(1) << 40;
 
 void append(char* text, size_t size, const char* more) {
     const size_t at = std::strlen(text);
@@ -51,9 +53,32 @@ void append(char* text, size_t size, uintptr_t number) {
     append(text, size, end);
 }
 
-// Says where an address is in terms of named memory; leaves the text empty if it is not near any.
+// Appends where an address is in terms of a range.
+void append_place(char* text, size_t size, uintptr_t address, const Named& range) {
+    const uintptr_t begin = range.begin, end = begin + range.bytes;
+    append(text, size, "an access ");
+    if (address >= begin && address < end) {
+        append(text, size, "at byte ");
+        append(text, size, address - begin);
+        append(text, size, " of ");
+    } else {
+        append(text, size, address < begin ? begin - address : address - end + 1);
+        append(text, size, address < begin ? " bytes before " : " bytes beyond the end of ");
+    }
+    append(text, size, range.name);
+    if (range.element_bytes == 0) return;
+    append(text, size, address < begin ? ", at element -" : ", at element ");
+    append(text, size,
+           address < begin ? (begin - address + range.element_bytes - 1) / range.element_bytes
+                           : (address - begin) / range.element_bytes);
+    append(text, size, " of ");
+    append(text, size, range.bytes / range.element_bytes);
+}
+
+// Says where an address is in terms of the nearest named memory; leaves the text empty if it is not near any.
 void place_of(uintptr_t address, char* text, size_t size) {
     uintptr_t nearest = kNear;
+    const Named* best = nullptr;
     for (const Named& range : named) {
         const uintptr_t begin = range.begin;
         if (begin == 0) continue;
@@ -61,18 +86,21 @@ void place_of(uintptr_t address, char* text, size_t size) {
         const uintptr_t away = address < begin ? begin - address : address < end ? 0 : address - end + 1;
         if (away >= nearest) continue;
         nearest = away;
-        text[0] = 0;
-        append(text, size, "an access ");
-        if (address >= begin && address < end) {
-            append(text, size, "at byte ");
-            append(text, size, address - begin);
-            append(text, size, " of ");
-        } else {
-            append(text, size, address < begin ? begin - address : address - end + 1);
-            append(text, size, address < begin ? " bytes before " : " bytes beyond the end of ");
-        }
-        append(text, size, range.name);
+        best = &range;
     }
+    if (best) append_place(text, size, address, *best);
+}
+
+// The same for an address that is near none: in terms of the nearest named memory before it, from which a wild index may lead
+// there.
+void far_place_of(uintptr_t address, char* text, size_t size) {
+    const Named* best = nullptr;
+    for (const Named& range : named)
+        if (range.begin != 0 && range.begin < address && address - range.begin < kFar && (!best || range.begin > best->begin))
+            best = &range;
+    if (!best) return;
+    append(text, size, "far from all memory that was given to it; from the nearest before, ");
+    append_place(text, size, address, *best);
 }
 
 void on_crash(int signal, siginfo_t* info, void* context) {
@@ -92,6 +120,8 @@ void on_crash(int signal, siginfo_t* info, void* context) {
         send_short(kChannelFd, MessageKind::death, text);
     } else if (stack_pointer != 0 && distance < (1u << 20)) {
         send_short(kChannelFd, MessageKind::death, "stack overflow");
+    } else if (far_place_of(address, text, sizeof text); text[0]) {
+        send_short(kChannelFd, MessageKind::death, text);
     } else {
         // Kernels run on many threads. Another one may be about to say more.
         const timespec moment = {0, 50000000};
@@ -185,11 +215,12 @@ void take_crash_signals() {
     for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
 }
 
-void name_memory(const void* begin, size_t bytes, const std::string& name) {
+void name_memory(const void* begin, size_t bytes, const std::string& name, size_t element_bytes) {
     const std::lock_guard<std::mutex> lock(named_mutex);
     for (Named& range : named) {
         if (range.begin != 0) continue;
         range.bytes = bytes;
+        range.element_bytes = element_bytes;
         std::snprintf(range.name, sizeof range.name, "%s", name.c_str());
         range.begin = reinterpret_cast<uintptr_t>(begin);
         return;

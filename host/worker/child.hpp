@@ -40,9 +40,9 @@ class ChannelProgress : public Progress {
 };
 
 // Memory with a name. If the worker dies of an access to it or beside it, the message names it: "64 bytes behind slot nodes".
-// Thread-safe; at most kMostNamed ranges at a time.
-constexpr unsigned kMostNamed = 64;
-void name_memory(const void* begin, size_t bytes, const std::string& name);
+// element_bytes: of an array; its elements are then counted, too. 0: none. Thread-safe; at most kMostNamed ranges at a time.
+constexpr unsigned kMostNamed = 256;
+void name_memory(const void* begin, size_t bytes, const std::string& name, size_t element_bytes = 0);
 void forget_memory(const void* begin);
 
 }  // namespace clarity::worker

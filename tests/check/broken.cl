@@ -1,9 +1,46 @@
 /* broken.cl -- a binary BVH without any optimisation. The builder defines one BROKEN_... at most; without it the traversal is
  * right. */
+#ifdef BROKEN_SLABS
+/* A slab test of one's own. Without another define it is a textbook's: right but for the slack that rounding needs. */
+RT_INLINE vmask RT_CAT(RT_TRAVERSE, _slabs)(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
+{
+    const vfloat d[3] = {r->dx, r->dy, r->dz}, o[3] = {r->ox, r->oy, r->oz}, i[3] = {r->ix, r->iy, r->iz};
+    vfloat in = r->t_min, out = h->t;
+    for (int k = 0; k < 3; ++k) {
+        vfloat lo = rt_vfloat(box[k]), hi = rt_vfloat(box[k + 3]), scale = i[k];
+#ifdef BROKEN_ROUNDS_BOXES
+        lo = floor(lo * rt_vfloat(1024.0f) + rt_vfloat(0.5f)) / rt_vfloat(1024.0f);
+        hi = floor(hi * rt_vfloat(1024.0f) + rt_vfloat(0.5f)) / rt_vfloat(1024.0f);
+#endif
+#ifdef BROKEN_DIVIDES
+        scale = rt_vfloat(1.0f) / d[k]; /* infinity; and 0 * infinity on a plane */
+#endif
+        const vfloat a = (lo - o[k]) * scale, b = (hi - o[k]) * scale;
+#ifdef BROKEN_SIGN_OF_D
+        const vmask negative = RT_MASK(d[k] < rt_vfloat(0.0f)); /* -0 is not below 0, but its reciprocal is */
+        in = rt_max(in, rt_select(negative, b, a)), out = rt_min(out, rt_select(negative, a, b) * RT_WIDE);
+#elif defined(BROKEN_ROUNDS_BOXES)
+        in = rt_max(in, rt_min(a, b) * (1.0f - 4e-7f)), out = rt_min(out, rt_max(a, b) * RT_WIDE);
+#else
+        in = rt_max(rt_min(a, b), in), out = rt_min(rt_max(a, b), out);
+#endif
+    }
+    *entry = in;
+#ifdef BROKEN_STRICT
+    return RT_MASK(in < out);
+#else
+    return RT_MASK(in <= out);
+#endif
+}
+#endif
+
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     uint stack[BROKEN_STACK];
     uint top = 0, ref = root;
+#ifdef BROKEN_GIVES_UP
+    uint steps = 0;
+#endif
 #if defined(BROKEN_ANY_FORGETS_T_MAX) && RT_ANY_HIT
     hit->t = rt_select(RT_MASK(hit->t >= rt_vfloat(0.0f)), RT_INFINITY, hit->t);
 #endif
@@ -20,8 +57,29 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #else
         uint inside = rt_bits(rt_enter_box(node->box, ray, hit, &entry));
 #endif
+#ifdef BROKEN_SLABS
+        inside = rt_bits(RT_CAT(RT_TRAVERSE, _slabs)(node->box, ray, hit, &entry));
+#endif
 #ifdef BROKEN_CULLS_EAGERLY
         inside &= rt_bits(RT_MASK(entry <= hit->t * rt_vfloat(0.999f)));
+#endif
+#ifdef BROKEN_CULLS_CLOSELY
+        inside &= rt_bits(RT_MASK(entry <= hit->t * rt_vfloat(0.9999f)));
+#endif
+#ifdef BROKEN_CULLS_LEAVES
+        if (node->count > 0u) inside &= rt_bits(RT_MASK(entry <= hit->t * rt_vfloat(0.9995f)));
+#endif
+#ifdef BROKEN_NOT_FAR
+        inside &= rt_bits(RT_MASK(entry < rt_vfloat(2e4f)));
+#endif
+#ifdef BROKEN_NOT_INSIDE
+        if (node->count > 0u) inside &= rt_bits(RT_MASK(entry > ray->t_min)); /* leaves that hold the origin */
+#endif
+#ifdef BROKEN_GIVES_UP
+        if (++steps > 100u) return;
+#endif
+#if defined(BROKEN_LANES_16_ANY) && RT_LANES == 16 && RT_ANY_HIT
+        inside &= 0x7fffu;
 #endif
 #ifdef BROKEN_OCTANT
         /* A wrong sign: this octant's rays take the far side for the near one. */
@@ -41,10 +99,17 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         inside &= 0x7fu;
 #endif
         RT_COUNT_VISIT(hit, inside);
+#ifdef BROKEN_READS_PAST_EMPTY
+        if (node->count == BROKEN_EMPTY && node[1].count == 77u) return;
+#endif
         if (inside != 0u && node->count != BROKEN_EMPTY) {
             if (node->count == 0u) {
                 stack[top] = node->first + 1u;
+#if defined(BROKEN_UNASKED) || (defined(BROKEN_UNASKED_ANY) && RT_ANY_HIT) || (defined(BROKEN_UNASKED_MESH) && RT_TRIANGLES_ONLY)
+                ++top;
+#else
                 if (RT_STACK_OK(top + 1u, BROKEN_STACK, hit)) ++top;
+#endif
                 ref = node->first;
 #ifdef BROKEN_DEVICE_LOOP
                 if (top == 3u) --top, ref = root; /* begins anew, for ever */
@@ -59,7 +124,16 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                     continue;
                 }
 #endif
+#ifdef BROKEN_SKIPS_EIGHTH
+                if (i == 7u) continue;
+#endif
+#ifdef BROKEN_CUT_POSITIONS
+                RT_LEAF(ctx, (node->first + i) & 0xffffu, ray, hit);
+#elif defined(BROKEN_OWN_TEST) && RT_TRIANGLES_ONLY
+                RT_FN(rt_hit_triangle)(ctx->leaves + node->first + i, node->first + i, ray, hit); /* not counted */
+#else
                 RT_LEAF(ctx, node->first + i, ray, hit);
+#endif
             }
 #ifdef BROKEN_WRITES_T
             hit->t *= rt_vfloat(0.9f);

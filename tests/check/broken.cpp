@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -48,7 +49,25 @@ constexpr Macro kMacros[] = {{"octant", "BROKEN_OCTANT"},
                              {"ignores_transform", "BROKEN_IGNORES_TRANSFORM"},
                              {"writes_t", "BROKEN_WRITES_T"},
                              {"stops_at_first_leaf", "BROKEN_STOPS_AT_FIRST_LEAF"},
-                             {"reads_beyond_slot", "BROKEN_READS_BEYOND_SLOT"}};
+                             {"reads_beyond_slot", "BROKEN_READS_BEYOND_SLOT"},
+                             {"no_slack", "BROKEN_SLABS"},
+                             {"strict_slabs", "BROKEN_STRICT"},
+                             {"divides", "BROKEN_DIVIDES"},
+                             {"sign_of_d", "BROKEN_SIGN_OF_D"},
+                             {"rounds_boxes", "BROKEN_ROUNDS_BOXES"},
+                             {"culls_closely", "BROKEN_CULLS_CLOSELY"},
+                             {"culls_leaves", "BROKEN_CULLS_LEAVES"},
+                             {"not_far", "BROKEN_NOT_FAR"},
+                             {"not_inside", "BROKEN_NOT_INSIDE"},
+                             {"gives_up", "BROKEN_GIVES_UP"},
+                             {"lanes_16_any", "BROKEN_LANES_16_ANY"},
+                             {"unasked", "BROKEN_UNASKED"},
+                             {"unasked_any", "BROKEN_UNASKED_ANY"},
+                             {"unasked_mesh", "BROKEN_UNASKED_MESH"},
+                             {"own_test", "BROKEN_OWN_TEST"},
+                             {"cut_positions", "BROKEN_CUT_POSITIONS"},
+                             {"reads_past_empty", "BROKEN_READS_PAST_EMPTY"}};
+constexpr const char* kWithSlabs[] = {"strict_slabs", "divides", "sign_of_d", "rounds_boxes"};  // need BROKEN_SLABS, too
 
 constexpr rt_param kParams[] = {rt::int_param("max_leaf", "Leaf size", "primitives in a leaf, at most", 1, 8, 3)};
 
@@ -75,12 +94,13 @@ class Builder {
         if (is("half")) order.resize((order.size() + 1) / 2);
         const rt_u32 root = add_nodes(1);
         split(root, order.data(), rt_u32(order.size()), 1);
+        if (g == 0) depth_of_world = depth;
         return root;
     }
 
     std::vector<broken_node> nodes;
     std::vector<rt_u32> refs;
-    rt_u32 depth = 1;
+    rt_u32 depth = 1, depth_of_world = 1;
 
  private:
     rt_u32 add_nodes(rt_u32 count) {
@@ -89,7 +109,12 @@ class Builder {
     }
     void split(rt_u32 at, rt_u32* order, rt_u32 count, rt_u32 level) {
         Box box;
-        for (rt_u32 i = 0; i < count; ++i) box.add(input_.prims[order[i]]);
+        for (rt_u32 i = 0; i < count; ++i) {
+            rt_prim prim = input_.prims[order[i]];
+            for (int k = 0; k < 3 && is("cuts_needles"); ++k)  // what is longer than 3 counts as 3 long
+                prim.hi[k] = std::fmin(prim.hi[k], prim.lo[k] + 3);
+            box.add(prim);
+        }
         depth = std::max(depth, level);
         if (is("ulp_short"))
             for (float& hi : box.hi) hi = std::nextafter(hi, -INFINITY);
@@ -113,6 +138,8 @@ class Builder {
             const float p = middle(x), q = middle(y);
             return p < q || (p == q && x < y);
         });
+        if (is("random_when_large") && count > 65536)
+            std::swap(order[0], order[count / 2 + std::random_device()() % (count / 2)]);
         const rt_u32 first = add_nodes(2);
         nodes[at].first = first;
         nodes[at].count = 0;
@@ -162,6 +189,7 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
             return RT_CANCELLED;
     }
     std::vector<broken_node>& nodes = builder.nodes;
+    if (is("roots_rotated")) std::rotate(roots.begin(), roots.begin() + 1, roots.end());
     if (is("root_of_another") && roots.size() > 2) std::swap(roots[1], roots[2]);
     if (is("refs_of_another_group") && roots.size() > 1)  // the second tree's leaves name the world's primitives
         for (size_t i = roots[1]; i < nodes.size(); ++i)
@@ -170,6 +198,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         const bool leaf = node.count != 0 && node.count != BROKEN_EMPTY;
         if (is("leaf_reaches_too_far") && leaf && node.first + node.count == builder.refs.size()) node.count += 3;
         if (is("leaf_far_outside") && leaf && node.first % 7 == 3) node.first += 8000;  // within the guard of 1 MiB
+        if (is("leaf_very_far") && leaf && node.first % 7 == 3) node.first += 9000000;  // 432 MB
+        if (is("node_far_outside") && node.count == 0 && node.first % 7 == 3) node.first += 100000;
         if (is("leaf_off_by_three") && leaf) node.first = node.first >= 3 ? node.first - 3 : 0;
     }
     const size_t more = is("wasteful") ? 40 * nodes.size() : 0;
@@ -199,8 +229,15 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         if (!(is("no_root") && g == 1)) rt::root(out, g, roots[g]);
     for (const Macro& macro : kMacros)
         if (is(macro.defect)) rt::define(out, macro.macro, 1);
+    for (const char* defect : kWithSlabs)
+        if (is(defect)) rt::define(out, "BROKEN_SLABS", 1);
+    if (is("wrong_at_most") && input->params[0] == 8) rt::define(out, "BROKEN_SKIPS_EIGHTH", 1);
+    if (is("defines_lanes")) rt::define(out, "RT_LANES", 4);
     if (is("reads_beyond_slot")) rt::define(out, "BROKEN_NODES", rt_u32(nodes.size()));
-    rt::define(out, "BROKEN_STACK", is("small_stack") ? builder.depth - 1 : (builder.depth + 8) / 8 * 8 + 24);
+    rt::define(out, "BROKEN_STACK",
+               is("world_stack")   ? builder.depth_of_world + 1
+               : is("small_stack") ? builder.depth - 1
+                                   : (builder.depth + 8) / 8 * 8 + 24);
     rt::stat(out, "nodes", double(nodes.size()));
     return RT_OK;
 }
@@ -223,6 +260,18 @@ int32_t levels(const rt_host*, const rt_built* built, rt_u32 group, rt_u32 level
     return RT_OK;
 }
 
+// The surface area heuristic: the area of all boxes in units of the root's.
+double area_of(const broken_node& node) {
+    const double x = double(node.box[3]) - node.box[0], y = double(node.box[4]) - node.box[1],
+                 z = double(node.box[5]) - node.box[2];
+    return node.count == BROKEN_EMPTY ? 0 : x * y + y * z + z * x;
+}
+double cost_of(const broken_node* nodes, rt_u32 root, rt_u32 end) {
+    double sum = 0;
+    for (rt_u32 at = root; at < end; ++at) sum += area_of(nodes[at]);
+    return area_of(nodes[root]) > 0 ? sum / area_of(nodes[root]) : 0;
+}
+
 // Nodes in the order of their making: children after their parents, group by group.
 int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out) {
     auto* const nodes = static_cast<broken_node*>(out->slots[0]);
@@ -231,6 +280,7 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         if (!in->changed[g] && !is("refit_of_all")) continue;
         const rt_u32 end = g + 1 < in->group_count ? in->roots[g + 1] : node_count;
+        const double cost_before = cost_of(nodes, in->roots[g], end);
         for (rt_u32 at = end; at-- > in->roots[g];) {
             broken_node& node = nodes[at];
             if (node.count == BROKEN_EMPTY) continue;
@@ -249,6 +299,7 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
                         box.hi[k] = std::fmax(box.hi[k], nodes[child].box[3 + k]);
                     }
             }
+            if (is("refit_moves_leaves") && node.count == 2) ++node.first;  // the boxes are right
             if (is("refit_rounds_inwards") && node.count > 0)
                 for (float& hi : box.hi) hi = std::nextafter(hi, -INFINITY);
             for (int k = 0; k < 3; ++k) {
@@ -257,6 +308,10 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
                 node.box[3 + k] = is("refit_only_grows") ? std::fmax(node.box[3 + k], box.hi[k]) : box.hi[k];
             }
         }
+        if (is("refit_costs_of_before"))
+            out->cost(out->ctx, g, cost_before);
+        else
+            out->cost(out->ctx, g, is("refit_constant_cost") ? 1.0 : cost_of(nodes, in->roots[g], end));
         if (is("refit_ignores_group") && g + 1 < in->group_count) nodes[in->roots[g + 1]].box[0] -= 1;
     }
     if (is("refit_race") && in->group_count > 0 && in->changed[0]) {
@@ -303,8 +358,12 @@ constexpr rt_cl_file kFiles[] = {
 #include "broken.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<broken_node>("broken_nodes", "broken_node")};
-constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), rt::file(kFiles, "broken.cl"),
-                                      rt::guarded<build>, rt::guarded<levels>, rt::Traits());
+constexpr rt_cl_file kTraversal = is("redefines_lanes") ? rt_cl_file{"broken.cl",
+                                                                     "#define RT_LANES 4\nvoid RT_TRAVERSE(const rt_ctx *ctx, "
+                                                                     "uint root, const rt_rays *ray, rt_hits *hit) {}\n"}
+                                                        : rt::file(kFiles, "broken.cl");
+constexpr rt_accel kAccel =
+    rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), kTraversal, rt::guarded<build>, rt::guarded<levels>, rt::Traits());
 
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
 constexpr rt_device_build kDeviceBuild =

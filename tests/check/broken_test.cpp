@@ -97,6 +97,40 @@ const Defect kDefects[] = {
     {"stops_at_first_leaf", "hits.random", {"behind the nearest"}},
     {"reads_beyond_slot", "hits.random", {"crashed (segmentation fault", "beyond the end of slot broken_nodes"}},
     {"small_stack", "hits.stack", {"stack was full"}},
+    // boxes and planes without slack, and what is at their edges
+    {"no_slack", "hits.floor", {"hit nothing", "need slack"}},
+    {"strict_slabs", "hits.floor", {"hit nothing"}},
+    {"divides", "hits.splits", {"0 or -0"}},
+    {"sign_of_d", "hits.axes", {"hit nothing"}},
+    {"rounds_boxes", "hits.edges", {"are wrong"}},
+    {"not_far", "hits.distant", {"hit nothing"}},
+    {"not_inside", "hits.inside", {"behind the nearest"}},
+    // culls a little too much
+    {"culls_closely", "hits.decals", {"are lost when t_max is just behind them"}},
+    {"culls_leaves", "hits.decals", {"behind the nearest", "begins before the nearest hit"}},
+    {"gives_up", "hits.uneven", {"are wrong"}},
+    {"lanes_16_any", "hits.random", {"any-hit", "but something is hit"}, "16"},
+    // what must be asked
+    {"unasked", "hits.pushes", {"it never asked RT_STACK_OK", "stack[BROKEN_STACK]"}},
+    {"unasked_any", "hits.pushes", {"refuses every push", "any-hit queries"}},
+    {"unasked_mesh", "hits.pushes", {"refuses every push", "nearest hits in meshes"}},
+    {"world_stack", "hits.stack", {"stack was full", "must hold the deepest tree"}},
+    {"own_test", "hits.counts", {"tested none through the host"}},
+    {"defines_lanes", "builds.sound", {"a define the name 'RT_LANES'", "are the host's"}},
+    {"redefines_lanes", "hits.kernels", {"broken.cl:1", "`#define RT_LANES`"}},
+    // sizes, ends and empty groups
+    {"cut_positions", "hits.large", {"are wrong"}},
+    {"random_when_large", "builds.threads", {"another than with one thread"}},
+    {"wrong_at_most", "hits.parameters", {"with broken,max_leaf=8", "are wrong"}},
+    {"reads_past_empty", "hits.empty", {"beyond the end of slot broken_nodes", "element 1"}},
+    {"cuts_needles", "builds.bounds", {"is in no volume"}},
+    // said well
+    {"roots_rotated", "builds.bounds", {"root", "of the tree of group"}},
+    {"leaf_very_far", "hits.random", {"crashed", "beyond the end of the leaves", "element"}},
+    {"node_far_outside", "hits.random", {"crashed", "beyond the end of slot broken_nodes", "element"}},
+    {"refit_constant_cost", "builds.refit", {"the cost", "does not follow its boxes"}},
+    {"refit_costs_of_before", "builds.refit", {"the cost", "does not follow its boxes"}},
+    {"refit_moves_leaves", "hits.refit", {"after a refit"}},
 };
 INSTANTIATE_TEST_SUITE_P(Plugins, Broken, testing::ValuesIn(kDefects), name_of);
 

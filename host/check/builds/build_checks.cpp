@@ -5,9 +5,9 @@
 #include <memory>
 #include <thread>
 
-#include "base/numbers.hpp"
 #include "check/builds/build_run.hpp"
 #include "check/builds/pack_checks.hpp"
+#include "check/builds/parameter_tries.hpp"
 #include "check/builds/refit_checks.hpp"
 #include "check/builds/result_checks.hpp"
 #include "check/process_size.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kBuildLimit_s = 10;  // a build of a small scene that lasts longer counts as endless
 constexpr double kManyLimit_s = 30;   // the same for the many triangles
-constexpr unsigned kManyTriangles = 40000;
+constexpr unsigned kManyTriangles = 70000, kLargeTriangles = (1u << 20) + 4099;  // above 2^16, and above 2^20
 constexpr double kPatience_ms = 500;  // a build that lasts longer must ask whether it is cancelled
 
 // The inputs, made on first use and shared by all checks of a structure.
@@ -27,19 +27,20 @@ class Inputs {
     Inputs(const rt_plugin& p, uint64_t s) : plugin(p), seed(s), params(default_parameters(p)) {}
     const rt_plugin& plugin;
     const uint64_t seed;  // of random numbers
+    bool large = false;
     const ParameterValues params;
 
     const std::vector<BuildCase>& small() {
         if (small_.empty())
-            for (NamedScene& scene : small_scenes()) small_.emplace_back(scene.name, scene.scene);
+            for (NamedScene& scene : small_scenes(seed)) small_.emplace_back(scene.name, scene.scene);
         return small_;
     }
     const BuildCase& mixed() { return small().back(); }
     const BuildCase& sparse() {
-        return lazy(sparse_, "sparse", [] { return sparse_scene(700); });
+        return lazy(sparse_, "sparse", [this] { return sparse_scene(700, seed); });
     }
     const BuildCase& many() {
-        return lazy(many_, "many", [] { return soup_scene(kManyTriangles); });
+        return lazy(many_, "many", [this] { return soup_scene(large ? kLargeTriangles : kManyTriangles, seed); });
     }
     BuildRun run(const BuildCase& input, Schedule schedule = Schedule::program) const {
         return input.run(plugin, params, schedule);
@@ -62,18 +63,6 @@ std::string on(const BuildCase& input) {
 // How a run failed that nobody cancelled; empty: it did not.
 std::string failure_of(const BuildRun& run) {
     return run.cancelled ? "said that it was cancelled, but nobody had cancelled it" : run.why;
-}
-
-// "bvh2,max_leaf=1": as --accel takes it.
-std::string choice_text(const rt_plugin& plugin, const ParameterValues& params) {
-    std::string text = plugin.id;
-    for (rt_u32 p = 0; p < plugin.param_count; ++p) {
-        const rt_param& param = plugin.params[p];
-        if (params[p] == param.def) continue;
-        text += std::string(",") + param.key + "=" +
-                (param.kind == RT_PARAM_ENUM ? param.choices[static_cast<size_t>(params[p])] : exact_text(params[p]));
-    }
-    return text;
 }
 
 Outcome sound(Inputs& inputs, const Step& step) {
@@ -115,7 +104,7 @@ Outcome bounds(Inputs& inputs, const Step& step) {
 
 Outcome threads(Inputs& inputs, const Step& step, bool quick) {
     std::vector<Schedule> schedules = {Schedule::backward, Schedule::shuffled2, Schedule::shuffled7, Schedule::program};
-    const int rounds = quick ? 2 : 8;
+    const int rounds = quick || inputs.large ? 2 : 8;
     for (const BuildCase* input : {&inputs.mixed(), &inputs.many()}) {
         step("building " + on(*input) + " with one thread", kManyLimit_s);
         const BuildRun first = inputs.run(*input, Schedule::forward);
@@ -202,19 +191,7 @@ Outcome cancel(Inputs& inputs, const Step& step) {
 Outcome parameters(Inputs& inputs, const Step& step, bool quick) {
     const rt_plugin& plugin = inputs.plugin;
     if (plugin.param_count == 0) return Outcome::skipped("the plugin has no parameters");
-    std::vector<ParameterValues> tries;
-    ParameterValues least = inputs.params, most = inputs.params;
-    for (rt_u32 p = 0; p < plugin.param_count; ++p) {
-        for (const double value : {plugin.params[p].min, plugin.params[p].max}) {
-            if (value == plugin.params[p].def) continue;
-            tries.push_back(inputs.params);
-            tries.back()[p] = value;
-        }
-        least[p] = plugin.params[p].min;
-        most[p] = plugin.params[p].max;
-    }
-    tries.push_back(least);
-    tries.push_back(most);
+    const std::vector<ParameterValues> tries = parameter_tries(plugin, inputs.seed);
     std::vector<const BuildCase*> cases;
     if (!quick)
         for (const BuildCase& input : inputs.small()) cases.push_back(&input);
@@ -229,7 +206,7 @@ Outcome parameters(Inputs& inputs, const Step& step, bool quick) {
             if (const std::string why = missing_refs(input->scene(), run.result); !why.empty())
                 return Outcome::failed(what + ": " + why);
         }
-    return Outcome::passed(std::to_string(tries.size()) + " sets of values at the ends of their ranges");
+    return Outcome::passed(std::to_string(tries.size()) + " sets of values at the ends of their ranges and in between");
 }
 
 // Other builders' trees: of leaves of one primitive, and of leaves that are larger than any layout has.
@@ -276,8 +253,9 @@ Outcome afterwards(Inputs& inputs, const Step& step) {
 
 }  // namespace
 
-std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed) {
+std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed, bool large) {
     const auto inputs = std::make_shared<Inputs>(plugin, seed);
+    inputs->large = large;
     return {
         {"builds.sound", "builds scenes from nothing to 3000 primitives, in memory whose overrun is seen",
          [=](const Step& step) { return sound(*inputs, step); }},

@@ -106,7 +106,8 @@ BuilderResult copy_of(const BuilderResult& from, const rt_plugin& plugin) {
     BuilderResult copy;
     for (size_t s = 0; s < from.slots.size(); ++s) {
         BuilderResult::Slot slot;
-        slot.memory = GuardedBytes(from.slots[s].memory.bytes(), std::string("slot ") + plugin.accel->slots[s].name);
+        slot.memory = GuardedBytes(from.slots[s].memory.bytes(), std::string("slot ") + plugin.accel->slots[s].name, 128,
+                                   plugin.accel->slots[s].elem_bytes);
         std::memcpy(slot.memory.data(), from.slots[s].memory.data(), from.slots[s].memory.bytes());
         slot.count = from.slots[s].count;
         slot.allocated = true;
@@ -175,6 +176,7 @@ RefitRun run_refit(const rt_plugin& plugin, const ParameterValues& params, const
     }
     run.reports = progress.reports();
     if (!run.why.empty() || run.cancelled) return run;
+    run.costs = costs.of_group;
     run.why = asked.missing();
     if (const std::string overrun = overrun_of(run.result); run.why.empty() && !overrun.empty())
         run.why = "the refit wrote beyond the end of " + overrun;

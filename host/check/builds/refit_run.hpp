@@ -11,8 +11,9 @@ namespace clarity::check {
 struct RefitRun {
     std::string why;  // how it failed or broke its contract; empty: as far as the ABI goes it is sound
     bool cancelled = false;
-    unsigned reports = 0;  // calls of host->progress
-    BuilderResult result;  // with copies of the slots
+    unsigned reports = 0;       // calls of host->progress
+    BuilderResult result;       // with copies of the slots
+    std::vector<double> costs;  // that it reported of each group; -1: none
 };
 
 // The groups of the positions in leaf order. A position that a group does not have: RT_NONE.

@@ -55,6 +55,11 @@ struct Volume {
         // A traversal computes with spheres in single precision, so rounding is theirs to plan for: 1e-6 of the radius.
         return std::sqrt(d2) <= double(box[3]) * (1 + 1e-6);
     }
+    double surface() const {
+        if (sphere) return 4 * 3.14159265 * double(box[3]) * box[3];
+        const double x = double(box[3]) - box[0], y = double(box[4]) - box[1], z = double(box[5]) - box[2];
+        return 2 * (x * y + y * z + z * x);
+    }
     // How far p is outside, along the axis on which it is most; a sphere: from its surface.
     double outside(const float* p) const {
         double most = 0;
@@ -183,20 +188,60 @@ std::string missing_refs(const BuildScene& scene, const BuilderResult& result) {
            name_of(first) + ": rays cannot hit them";
 }
 
-std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result) {
+namespace {
+
+// A finished build, as plugins are given it.
+struct Finished {
+    explicit Finished(const BuilderResult& result) : roots(result.roots) {
+        for (const BuilderResult::Slot& slot : result.slots) {
+            slots.push_back(slot.memory.data());
+            counts.push_back(slot.count);
+        }
+        built = {sizeof built, static_cast<rt_u32>(roots.size()), slots.data(), counts.data(), roots.data()};
+    }
     std::vector<const void*> slots;
     std::vector<uint64_t> counts;
-    for (BuilderResult::Slot& slot : result.slots) {
-        slots.push_back(slot.memory.data());
-        counts.push_back(slot.count);
-    }
-    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(result.roots.size()), slots.data(), counts.data(),
-                         result.roots.data()};
+    std::vector<rt_u32> roots;
+    rt_built built;
+};
+
+}  // namespace
+
+std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result) {
+    Finished finished(result);
     for (rt_u32 g = 0; g < result.roots.size(); ++g) {
-        const std::string why = loose_in_group(plugin, scene, built, g);
-        if (!why.empty()) return why;
+        const std::string why = loose_in_group(plugin, scene, finished.built, g);
+        if (why.empty()) continue;
+        // Are its primitives below another group's root?
+        for (rt_u32 other = 0; other < result.roots.size(); ++other) {
+            if (result.roots[other] == result.roots[g]) continue;
+            finished.roots[g] = result.roots[other];
+            if (!loose_in_group(plugin, scene, finished.built, g).empty()) continue;
+            return "root " + std::to_string(result.roots[g]) + ", which was reported for group " + std::to_string(g) +
+                   ", is not that of its tree: its primitives are below root " + std::to_string(result.roots[other]) +
+                   ", which was reported as that of the tree of group " + std::to_string(other);
+        }
+        return why;
     }
     return {};
+}
+
+std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResult& result) {
+    constexpr rt_u32 kMostLevels = 128;
+    const Finished finished(result);
+    std::vector<double> surfaces;
+    for (rt_u32 g = 0; g < result.roots.size(); ++g) {
+        double first = 0, all = 0;
+        for (rt_u32 level = 0; level < kMostLevels; ++level) {
+            std::string why;
+            const std::vector<Volume> volumes = volumes_of(plugin, finished.built, g, level, why);
+            if (volumes.empty()) break;
+            for (const Volume& v : volumes) all += v.surface();
+            if (level == 0) first = all;
+        }
+        surfaces.push_back(first > 0 && std::isfinite(all) ? all / first : 0);
+    }
+    return surfaces;
 }
 
 std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result) {

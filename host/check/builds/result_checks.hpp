@@ -1,6 +1,7 @@
 // result_checks.hpp -- whether what a builder wrote is sound. Each function returns what is wrong; empty: nothing.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "check/builds/build_run.hpp"
 
@@ -11,6 +12,9 @@ std::string missing_refs(const BuildScene& scene, const BuilderResult& result);
 
 // The volumes that `levels` shows are numbers, and hold the triangles below them. Returns nothing where the plugin shows none.
 std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result);
+
+// For each group: the surface of all volumes that `levels` shows, in units of that of the first level. 0: there is none.
+std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResult& result);
 
 // Slots are not far larger than what the builder filled, nor than the input.
 std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result);

@@ -33,6 +33,14 @@ struct Passing {
     double size = 0;           // largest coordinate
 };
 
+// A triangle that the ray meets or passes at its edge, where rounding decides. Together with its neighbours it may be sure to
+// be hit.
+struct AtEdge {
+    size_t contact;  // its number
+    Vec corners[3];
+    double x[3], y[3];  // in the plane across the ray, which is at 0
+};
+
 // The plane across the ray, in two axes.
 struct Across {
     Vec u, v;
@@ -73,21 +81,80 @@ Passing pass_face(const Ray& ray, const Across& across, const Vec* corners, size
     return p;
 }
 
-// Judges the contact with a flat face.
-void add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Contact>& contacts) {
-    const double blur = ray.blur + kRounding * (p.size + std::min(std::fabs(p.t) * ray.length_d, 1e9));
-    if (!p.inside && p.from_edge > blur) return;
-    contact.t = p.t;
-    contact.t_error = (p.cosine > 0 ? blur / p.cosine : kInf) / ray.length_d + 1e-5 * std::fabs(p.t);
-    if (!(std::fabs(contact.t) < kInf)) contact.t = 0, contact.t_error = kInf;
-    if (contact.t + contact.t_error < ray.t_min || contact.t - contact.t_error > ray.t_max) return;
-    contact.certain = p.inside && p.from_edge > blur && p.cosine > 1e-3 && contact.t - contact.t_error > ray.t_min &&
-                      contact.t + contact.t_error < ray.t_max && contact.t - contact.t_error > 0;
-    contacts.push_back(contact);
+// How far rounding moves the ray at a face.
+double blur_at(const Ray& ray, const Passing& p) {
+    return ray.blur + kRounding * (p.size + std::min(std::fabs(p.t) * ray.length_d, 1e9));
 }
 
+bool is_within_limits(const Ray& ray, const Contact& contact) {
+    return contact.t - contact.t_error > ray.t_min && contact.t + contact.t_error < ray.t_max &&
+           contact.t - contact.t_error > 0;
+}
+
+// Judges the contact with a flat face. Returns whether only its edges leave in doubt that it is hit.
+bool add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Contact>& contacts) {
+    const double blur = blur_at(ray, p);
+    if (!p.inside && p.from_edge > blur) return false;
+    contact.t = p.t;
+    contact.t_error = (p.cosine > 0 ? blur / p.cosine : kInf) / ray.length_d + kRelativeError * std::fabs(p.t);
+    if (!(std::fabs(contact.t) < kInf)) contact.t = 0, contact.t_error = kInf;
+    if (contact.t + contact.t_error < ray.t_min || contact.t - contact.t_error > ray.t_max) return false;
+    const bool steep = p.cosine > 1e-3 && is_within_limits(ray, contact);
+    contact.certain = steep && p.inside && p.from_edge > blur;
+    contact.latest = contact.t + contact.t_error;
+    contacts.push_back(contact);
+    return steep && !contact.certain;
+}
+
+// Triangles at whose shared edge or corner a ray arrives are in doubt one by one. It is certain that one of them is hit if they
+// surround the ray: each of their edges within `blur` has a triangle on either side. Traversals must keep all of them, and the
+// test of triangles is watertight.
+void close_sheets(std::vector<AtEdge>& at, double blur, std::vector<Contact>& contacts) {
+    std::vector<size_t> sheet(at.size());
+    std::vector<bool> open(at.size());
+    for (size_t i = 0; i < at.size(); ++i) sheet[i] = i;
+    const auto root = [&](size_t i) {
+        while (sheet[i] != i) i = sheet[i];
+        return i;
+    };
+    const auto side = [](const AtEdge& of, int a, int b, int c) {
+        return (of.x[b] - of.x[a]) * (of.y[c] - of.y[a]) - (of.y[b] - of.y[a]) * (of.x[c] - of.x[a]);
+    };
+    for (size_t i = 0; i < at.size(); ++i)
+        for (int e = 0; e < 3; ++e) {
+            const AtEdge& own = at[i];
+            const int a = e, b = (e + 1) % 3;
+            if (segment_distance(own.x[a], own.y[a], own.x[b], own.y[b]) > blur) continue;
+            const double own_side = side(own, a, b, (e + 2) % 3);
+            bool shared = false;
+            for (size_t j = 0; j < at.size(); ++j)
+                for (int f = 0; f < 3; ++f)
+                    for (const bool turned : {false, true}) {
+                        const AtEdge& other = at[j];
+                        const int p = turned ? (f + 1) % 3 : f, q = turned ? f : (f + 1) % 3;
+                        if (j == i || other.corners[p] != own.corners[a] || other.corners[q] != own.corners[b]) continue;
+                        if (side(other, p, q, (f + 2) % 3) * own_side >= 0) continue;
+                        shared = true;
+                        sheet[root(i)] = root(j);
+                    }
+            if (!shared) open[i] = true;
+        }
+    std::vector<bool> open_sheet(at.size());
+    for (size_t i = 0; i < at.size(); ++i)
+        if (open[i]) open_sheet[root(i)] = true;
+    // Between two of them the ray may go through a third one that it only grazes: any of them may be the one that is hit.
+    std::vector<double> latest(at.size());
+    for (size_t i = 0; i < at.size(); ++i) latest[root(i)] = std::max(latest[root(i)], contacts[at[i].contact].latest);
+    for (size_t i = 0; i < at.size(); ++i) {
+        if (open_sheet[root(i)]) continue;
+        contacts[at[i].contact].certain = true;
+        contacts[at[i].contact].latest = latest[root(i)];
+    }
+}
+
+// at_edge, blur: receive what close_sheets() needs.
 void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& prim, Contact contact,
-                  std::vector<Contact>& contacts) {
+                  std::vector<Contact>& contacts, std::vector<AtEdge>& at_edge, double& blur) {
     const Vec corners[3] = {to_vec(prim.a), to_vec(prim.b), to_vec(prim.c)};
     // Most triangles are far from the ray: a quick look first.
     const Vec middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
@@ -101,7 +168,8 @@ void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& pr
     // A triangle without area, as far as rounding can tell, may be hit or not.
     const double edge =
         std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
-    if (length(normal) <= 1e-5 * edge * edge || length(normal) <= 4 * edge * kRounding * p.size) {
+    const bool slim = length(normal) <= 1e-5 * edge * edge || length(normal) <= 4 * edge * kRounding * p.size;
+    if (slim) {
         p.inside = false;
         if (!(std::fabs(p.t) < kInf) || p.cosine < 1e-3) {
             p.t = dot(middle - ray.o, ray.d) / (ray.length_d * ray.length_d);
@@ -109,7 +177,14 @@ void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& pr
             p.size += edge * 1e6;  // its distance may be anything along its edges
         }
     }
-    add_face(ray, p, contact, contacts);
+    if (!add_face(ray, p, contact, contacts) || slim) return;
+    AtEdge at{contacts.size() - 1, {corners[0], corners[1], corners[2]}, {}, {}};
+    for (int c = 0; c < 3; ++c) {
+        at.x[c] = dot(corners[c] - ray.o, across.u);
+        at.y[c] = dot(corners[c] - ray.o, across.v);
+    }
+    at_edge.push_back(at);
+    blur = std::max(blur, blur_at(ray, p));
 }
 
 void add_polygon(const Ray& ray, const Across& across, const BuildScene& scene, const rt_packed_prim& prim, Contact contact,
@@ -128,7 +203,7 @@ void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std
     if (away > radius + blur) return;
     const double half = std::sqrt(std::max(radius * radius - away * away, 0.0)) / ray.length_d;
     const double cosine = std::max(half * ray.length_d / radius, 1e-9);
-    contact.t_error = blur / cosine / ray.length_d + 1e-5 * std::fabs(middle);
+    contact.t_error = blur / cosine / ray.length_d + kRelativeError * std::fabs(middle);
     if (away > radius - blur)
         contact.t_error = std::max(contact.t_error, half + std::sqrt(2 * radius * blur + blur * blur) / ray.length_d * 2);
     const double least = std::max(ray.t_min, 0.0), near = middle - half, far = middle + half;
@@ -140,8 +215,22 @@ void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std
         if (contact.t + contact.t_error < least || contact.t - contact.t_error > ray.t_max) continue;
         contact.certain = away < radius - blur && (is_far ? surely_far : surely_near) && contact.t - contact.t_error > least &&
                           contact.t + contact.t_error < ray.t_max;
+        contact.latest = contact.t + contact.t_error;
         contacts.push_back(contact);
     }
+}
+
+// Whether a ray passes a box closely enough to meet what is in it. Most instances are far from the ray.
+bool may_enter(const Ray& ray, const rt_prim& box) {
+    Vec middle;
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) {
+        middle[k] = 0.5 * (double(box.lo[k]) + box.hi[k]);
+        reach += 0.25 * (double(box.hi[k]) - box.lo[k]) * (double(box.hi[k]) - box.lo[k]);
+    }
+    const Vec from = middle - ray.o;
+    const double along = dot(from, ray.d) / (ray.length_d * ray.length_d), away = length(from - along * ray.d);
+    return away <= std::sqrt(reach) * 1.001 + 8 * (ray.blur + kRounding * (largest(middle) + length(from)));
 }
 
 }  // namespace
@@ -150,6 +239,13 @@ const Contact* Truth::nearest_certain() const {
     for (const Contact& contact : contacts)
         if (contact.certain) return &contact;
     return nullptr;
+}
+
+double Truth::latest() const {
+    double least = kInf;
+    for (const Contact& contact : contacts)
+        if (contact.certain) least = std::min(least, contact.latest);
+    return least;
 }
 
 const Contact* Truth::of(rt_i32 prim, rt_i32 instance) const {
@@ -164,16 +260,23 @@ Truth BruteForce::trace(const rt_ray& given) const {
     ray.length_d = length(ray.d);
     ray.blur = kRounding * largest(ray.o);
     const Across across(ray);
+    std::vector<AtEdge> at_edge;
+    double blur = 0;
     const auto add = [&](const Ray& r, const Across& a, const rt_packed_prim& prim, Contact contact) {
         contact.ref = prim.ref;
         switch (RT_REF_KIND(prim.ref)) {
             case RT_REF_TRIANGLE:
-                return add_triangle(r, a, prim, contact, truth.contacts);
+                return add_triangle(r, a, prim, contact, truth.contacts, at_edge, blur);
             case RT_REF_SPHERE:
                 return add_sphere(r, prim, contact, truth.contacts);
             case RT_REF_POLYGON:
                 return add_polygon(r, a, scene_, prim, contact, truth.contacts);
         }
+    };
+    const auto close = [&] {
+        close_sheets(at_edge, blur, truth.contacts);
+        at_edge.clear();
+        blur = 0;
     };
     const auto packed = [&](rt_u32 ref) -> const rt_packed_prim& {
         const rt_u32 index = RT_REF_INDEX(ref);
@@ -184,13 +287,16 @@ Truth BruteForce::trace(const rt_ray& given) const {
     const rt_group& world = scene_.groups[0];
     for (rt_u32 i = world.first; i < world.first + world.count; ++i) {
         const rt_u32 ref = scene_.prims[i].ref;
-        if (RT_REF_KIND(ref) != RT_REF_INSTANCE) {
-            const rt_packed_prim& prim = packed(ref);
-            Contact contact;
-            contact.prim = static_cast<rt_i32>(prim.prim);
-            add(ray, across, prim, contact);
-            continue;
-        }
+        if (RT_REF_KIND(ref) == RT_REF_INSTANCE) continue;
+        const rt_packed_prim& prim = packed(ref);
+        Contact contact;
+        contact.prim = static_cast<rt_i32>(prim.prim);
+        add(ray, across, prim, contact);
+    }
+    close();
+    for (rt_u32 i = world.first; i < world.first + world.count; ++i) {
+        const rt_u32 ref = scene_.prims[i].ref;
+        if (RT_REF_KIND(ref) != RT_REF_INSTANCE || !may_enter(ray, scene_.prims[i])) continue;
         const rt_u32 index = RT_REF_INDEX(ref);
         const rt_instance& instance = scene_.instances[index];
         const float* m = instance.object_from_world;
@@ -219,6 +325,7 @@ Truth BruteForce::trace(const rt_ray& given) const {
             contact.instance = static_cast<rt_i32>(index);
             add(inner, inner_across, prim, contact);
         }
+        close();
     }
     std::sort(truth.contacts.begin(), truth.contacts.end(), [](const Contact& a, const Contact& b) { return a.t < b.t; });
     return truth;

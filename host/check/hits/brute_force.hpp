@@ -10,6 +10,9 @@
 
 namespace clarity::check {
 
+// Of a distance: part of Contact::t_error.
+constexpr double kRelativeError = 1e-5;
+
 // A primitive that a ray meets, or passes so closely that rounding decides.
 struct Contact {
     rt_i32 prim = -1;      // its number, as hits report it
@@ -17,13 +20,16 @@ struct Contact {
     rt_u32 ref = 0;
     double t = 0;
     double t_error = 0;    // by which a sound answer may differ
-    bool certain = false;  // a sound structure cannot miss it
+    bool certain = false;  // a sound structure cannot miss it, or one of the triangles around it
+    double latest = 0;     // if it is certain: a sound structure has hit it, or one of these, before
 };
 
 // All primitives that one ray may hit between t_min and t_max, the nearest first.
 struct Truth {
     std::vector<Contact> contacts;
     const Contact* nearest_certain() const;
+    // No sound answer is farther; infinity: none is certain.
+    double latest() const;
     const Contact* of(rt_i32 prim, rt_i32 instance) const;
 };
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "check/builds/pack_checks.hpp"
 #include "check/builds/refit_run.hpp"
 #include "check/builds/result_checks.hpp"
 #include "render/accel/topology_check.hpp"
@@ -30,6 +30,16 @@ rt_packed_prim trap(int i) {
     return prim;
 }
 
+// A copy whose end lies as close to the page that nobody may touch as its elements allow. Builders get memory at multiples of
+// 128 bytes, so what they fill may end up to 127 bytes before it.
+GuardedBytes closer_copy(const GuardedBytes& from, size_t element) {
+    size_t align = 16;
+    while (align < 128 && element % (2 * align) == 0) align *= 2;
+    GuardedBytes to(from.bytes(), from.name(), align, element);
+    std::memcpy(to.data(), from.data(), from.bytes());
+    return to;
+}
+
 }  // namespace
 
 std::string Variant::text() const {
@@ -41,12 +51,15 @@ std::string Variant::options() const {
 }
 
 CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
-                           const Scene* rest)
+                           const Scene* rest, const BuiltAs& as)
     : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
-    const ParameterValues params = default_parameters(plugin);
+    const ParameterValues params = as.params.empty() ? default_parameters(plugin) : as.params;
     const std::unique_ptr<const BuildCase> rest_case(rest ? new BuildCase("mixed", *rest) : nullptr);
     const BuildCase& built = rest_case ? *rest_case : case_;
-    run_ = built.run(plugin, params, Schedule::program);
+    if (as.packed_leaf > 0)
+        run_ = built.pack(plugin, Halves(built.scene(), as.packed_leaf).topology());
+    else
+        run_ = built.run(plugin, params, Schedule::program);
     if (layout && run_.why.empty() && !run_.cancelled) {
         const BuildRun tree = std::move(run_);
         run_ = built.pack(*layout, topology_of(tree.result));
@@ -72,7 +85,10 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     accel->params = params;
     accel->scene = case_.scene();
     BuilderResult& result = run_.result;
-    for (BuilderResult::Slot& slot : result.slots) {
+    for (size_t s = 0; s < result.slots.size(); ++s) {
+        BuilderResult::Slot& slot = result.slots[s];
+        const size_t element = built_slots(*accel->layout).slots[s].elem_bytes;
+        slot.memory = closer_copy(slot.memory, element);
         slot.memory.make_read_only();
         AccelData::Slot out;
         out.memory = AlignedBytes::borrow(slot.memory.data(), slot.memory.bytes());
@@ -80,7 +96,8 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
         accel->slots.push_back(std::move(out));
     }
     accel->leaf_count = result.leaf_count;
-    leaves_ = GuardedBytes((result.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), "the leaves");
+    leaves_ =
+        GuardedBytes((result.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), "the leaves", 128, sizeof(rt_packed_prim));
     auto* leaves = static_cast<rt_packed_prim*>(leaves_.data());
     const auto* refs = static_cast<const rt_u32*>(result.refs.data());
     const BuildScene& build = case_.scene();
@@ -90,6 +107,7 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     accel->leaves = AlignedBytes::borrow(leaves_.data(), leaves_.bytes());
     accel->roots = result.roots;
     accel->defines = result.defines;
+    for (const auto& [name, value] : as.defines) accel->defines[name] = value;
     accel->stats = result.stats;
     accel->instances = build.instances;
     for (size_t i = 0; i < accel->instances.size(); ++i) accel->instances[i].root = accel->roots[build.group_of_instance[i]];
@@ -113,14 +131,16 @@ void CheckedScene::compile(const Variant& variant) {
     trace(variant, {rt_ray{{0, 0, 0}, 1, {0, 0, 1}, -1}}, false);
 }
 
-Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit) {
-    return trace(*prepared(variant), rays, any_hit);
+Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit, bool counts) {
+    return trace(*prepared(variant), rays, any_hit, counts);
 }
 
-Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit) {
+Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit, bool counts) {
     Traced traced;
     RayQuery query;
     query.any_hit = any_hit;
+    query.count = counts;
+    query.quiet = true;  // the checks say it
     queries_->trace(in, RayBlocks(rays, in.layout.lanes), query, &traced.hits);
     traced.overflows = queries_->overflows();
     return traced;

@@ -28,22 +28,30 @@ struct Traced {
 // not exist. On a CPU an access further behind ends the process.
 constexpr rt_u32 kTrapPrim = 0x40000000u;  // an instance adds the first number of its mesh, of at most 28 bits
 
+// How the structure is built.
+struct BuiltAs {
+    ParameterValues params;  // empty: the defaults
+    rt_u32 packed_leaf = 0;  // not 0: the plugin packs halves of the scene, in leaves of that many (pack_checks.hpp)
+    std::map<std::string, rt_u32> defines;  // more ones for its kernels
+};
+
 class CheckedScene {
  public:
     // Builds the structure. layout: what packs and traces it if the plugin builds a topology, otherwise nullptr. Throws Error
     // with the reason if the build fails. rest: the same scene in another pose, if the structure is built in that one and
     // refitted to `scene`; otherwise nullptr.
     CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
-                 const Scene* rest = nullptr);
+                 const Scene* rest = nullptr, const BuiltAs& as = {});
     const BuildScene& build_scene() const { return case_.scene(); }
     const Device& device() const { return *device_; }
     // Compiles on first use. Throws Error.
     void compile(const Variant& variant);
-    Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
+    // counts: fills in what rays count, by another program.
+    Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit, bool counts = false);
     // For scenes that move on the device: the structure as it was built, what rays need of it, and rays in a copy of that.
     const std::shared_ptr<const AccelData>& accel() const { return accel_; }
     std::shared_ptr<const Prepared> prepared(const Variant& variant);
-    Traced trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit);
+    Traced trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit, bool counts = false);
 
  private:
     std::shared_ptr<const Scene> scene_;

@@ -39,7 +39,7 @@ Pose pose_of(const Scene& scene) {
 // A pose, its rays, and what they hit.
 struct PosedRays {
     explicit PosedRays(const Scene& scene) : input("mixed", scene), pose(pose_of(scene)) {
-        for (const RaySet& set : ray_sets(input.scene(), kDeviceRays))
+        for (const RaySet& set : ray_sets(input.scene(), kDeviceRays, 0))
             if (set.name == std::string("hits.random") || set.name == std::string("hits.instances"))
                 rays.insert(rays.end(), set.rays.begin(), set.rays.end());
         truths = BruteForce(input.scene()).trace(rays);

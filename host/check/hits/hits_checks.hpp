@@ -14,6 +14,7 @@ namespace clarity::check {
 struct HitsOptions {
     bool quick = false;
     std::vector<int> lanes = {1, 4, 8, 16};
+    bool large = false;            // also scenes of more than 2^20 primitives
     bool lanes_are_named = false;  // by the user; otherwise those that the device cannot have are left out
     size_t rays = 0;               // of a set; 0: as `quick` says
     std::string report_folder;     // where wrong rays are written; "": nowhere

@@ -69,9 +69,8 @@ std::string truth_text(const Truth& truth, bool any_hit) {
 }
 
 Fault judge_nearest(const rt_ray& ray, const Truth& truth, const rt_hit& hit) {
-    const Contact* certain = truth.nearest_certain();
     if (std::isnan(hit.t)) return Fault::not_a_number;
-    if (hit.prim < 0 || !std::isfinite(hit.t)) return certain ? Fault::missed : Fault::none;
+    if (hit.prim < 0 || !std::isfinite(hit.t)) return truth.nearest_certain() ? Fault::missed : Fault::none;
     if (hit.prim >= static_cast<rt_i32>(kTrapPrim)) return Fault::no_leaf;
     if (hit.t < ray.t_min || hit.t > ray.t_max) return Fault::outside_limits;
     bool named = false;
@@ -79,7 +78,7 @@ Fault judge_nearest(const rt_ray& ray, const Truth& truth, const rt_hit& hit) {
         if (contact.prim != hit.prim || contact.instance != hit.instance) continue;
         named = true;
         if (std::fabs(contact.t - hit.t) > contact.t_error) continue;
-        return certain && hit.t > certain->t + certain->t_error + contact.t_error ? Fault::too_far : Fault::none;
+        return hit.t > truth.latest() + contact.t_error ? Fault::too_far : Fault::none;
     }
     return named ? Fault::wrong_distance : Fault::not_there;
 }
@@ -95,6 +94,11 @@ Fault judge_any(const Truth& truth, const rt_hit& hit) {
 
 Fault judge(const rt_ray& ray, const Truth& truth, const rt_hit& hit, bool any_hit) {
     return any_hit ? judge_any(truth, hit) : judge_nearest(ray, truth, hit);
+}
+
+bool Faults::misses() const {
+    return std::any_of(wrong.begin(), wrong.end(),
+                       [](const One& one) { return one.fault == Fault::missed || one.fault == Fault::too_far; });
 }
 
 Faults Faults::of(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,

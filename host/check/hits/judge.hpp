@@ -23,6 +23,8 @@ struct Faults {
     std::vector<One> wrong;
     size_t rays = 0;
     bool any_hit = false;
+    // Whether something was lost: missed, or hit behind something nearer.
+    bool misses() const;
     // Judges all answers to a set.
     static Faults of(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,
                      bool any_hit);

@@ -14,12 +14,14 @@ struct RaySet {
     const char* tried;  // what these rays are
     std::vector<rt_ray> rays;
     bool strange = false;  // rays that are not numbers: there is no truth, but answers must be sound and neighbours undisturbed
+    const char* hint = "";  // what wrong answers to these rays mostly mean
 };
 
-// count: rays of a set, roughly. scene: the mixed scene as builders see it.
-std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count);
+// count: rays of a set, roughly; 0: sets without rays, for their names. scene: the mixed scene as builders see it.
+std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
 
-// The same without rays.
-std::vector<RaySet> ray_sets_by_name();
+// Rays into regular_scene() and floor_scene().
+std::vector<RaySet> regular_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
+std::vector<RaySet> floor_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
 
 }  // namespace clarity::check

@@ -25,7 +25,7 @@ struct Contents {
         std::optional<std::array<double, 2>> uv;
     };
     std::vector<Corner> corners;
-    std::string keys;  // those that are there: "triangles, area"
+    std::string keys;         // those that are there: "triangles, area"
     bool undeformed = false;  // it is of meshes as they are stored, without what skins and morphs do
 };
 

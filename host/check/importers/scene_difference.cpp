@@ -181,8 +181,8 @@ std::string difference(const Scene& scene, const Contents& truth) {
             const double least = bounds.min[k] + scene.origin[k], most = bounds.max[k] + scene.origin[k];
             if (!(std::fabs(least - lo[k]) <= kRoom * size && std::fabs(most - hi[k]) <= kRoom * size))
                 return std::string("goes from ") + exact_text(static_cast<float>(least)) + " to " +
-                       exact_text(static_cast<float>(most)) + " along " + "xyz"[k] + ", not from " + exact_text(lo[k]) + " to " +
-                       exact_text(hi[k]);
+                       exact_text(static_cast<float>(most)) + " along " + "xyz"[k] + ", not from " + exact_text(lo[k]) +
+                       " to " + exact_text(hi[k]);
         }
     }
     if (truth.volume) why = difference_of_volume(scene, *truth.volume);

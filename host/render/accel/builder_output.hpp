@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <new>
@@ -114,7 +115,10 @@ class BuilderOutput {
     }
     void define(const char* name, rt_u32 value) {
         const std::lock_guard<std::mutex> lock(mutex_);
-        if (is_identifier(name))
+        if (name && (std::strncmp(name, "RT_", 3) == 0 || std::strncmp(name, "rt_", 3) == 0))
+            refuse(std::string("gave a define the name '") + name +
+                   "', but names that begin so are the host's: take one of your own");
+        else if (is_identifier(name))
             result_.defines[name] = value;
         else  // the name becomes a line of the kernel's source
             refuse(std::string("gave a define the name '") + (name ? name : "NULL") + "', which is no identifier");

@@ -7,7 +7,7 @@ namespace {
 
 template <class T>
 GuardedBytes read_only_copy(const T* data, uint64_t count, const char* name) {
-    GuardedBytes copy(count * sizeof(T), name, sizeof(T) % 16 == 0 ? 16 : alignof(T));
+    GuardedBytes copy(count * sizeof(T), name, sizeof(T) % 16 == 0 ? 16 : alignof(T), sizeof(T));
     if (count > 0) std::memcpy(copy.data(), data, count * sizeof(T));
     copy.make_read_only();
     return copy;
@@ -55,7 +55,7 @@ const rt_build_input& BuilderInput::table() {
 GuardedOutput::GuardedOutput(const rt_plugin& plugin, rt_u32 group_count, HostServices& services)
     : BuilderOutput(built_slots(plugin), group_count, services,
                     [](uint64_t count, size_t element_bytes, const std::string& name) {
-                        return GuardedBytes(count * element_bytes, name);
+                        return GuardedBytes(count * element_bytes, name, 128, element_bytes);
                     }) {}
 
 std::string overrun_of(const BuilderResult& result) {

@@ -72,7 +72,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const LaunchTimes times =
             trace({prepared, *program, static_cast<unsigned>(rays.block_count()), query.any_hit, fields, in, out});
         overflowed_ = debug ? overflows_.read(queue) : 0;
-        report_overflows(overflowed_, prepared.accel->plugin->id);
+        if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
         autotuner_.took(times.device_ms);
         tuning_.settled = autotuner_.settled();
         if (hits) {

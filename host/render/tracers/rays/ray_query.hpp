@@ -10,6 +10,8 @@ struct RayQuery {
     bool count = false;
     // Write only t and prim of the nearest hit. Use it to compare times with libraries that write no more than that.
     bool brief = false;
+    // Full stacks of a debug program are counted and not logged: the caller expects them.
+    bool quiet = false;
 };
 
 // How the last RayQueries::trace() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.

@@ -1,0 +1,214 @@
+#include "check/hits/bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/files/output_file.hpp"
+#include "check/hits/report_picture.hpp"
+#include "check/regular_scenes.hpp"
+#include "render/queries/ray_text.hpp"
+
+namespace clarity::check {
+
+const TestScene kMixedScene{"the mixed scene", mixed_scene, ray_sets, rippled},
+    kRegularScene{"the scene of tessellations", regular_scene, regular_ray_sets, bent},
+    kFloorScene{"the floor", [](uint64_t) { return floor_scene(); }, floor_ray_sets, bent};
+
+namespace {
+
+constexpr size_t kRays = 2400, kQuickRays = 800;  // of a set
+
+// Draws the scene around the first wrong ray.
+std::string write_picture(const Bench& bench, CheckedScene& scene, const Variant& variant, const std::string& name,
+                          const rt_ray& ray, bool any_hit, const Step& step) {
+    if (bench.options().report_folder.empty()) return {};
+    const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".png";
+    step("drawing the picture of the report", kCompileLimit_s);
+    try {
+        const ReportPicture picture = write_report_picture(path, scene, variant, ray, any_hit);
+        return "; the view along the first of them is " + path + ": " + std::to_string(picture.differing) + " of " +
+               std::to_string(picture.pixels) + " pixels differ, in red";
+    } catch (const Error& e) {
+        return std::string("; the picture was not written: ") + e.what();
+    }
+}
+
+// Where hits were, again with t_max just behind them, and with every other ray's t_min just before: the same must be found. By
+// 2e-6 of the distance, which is 16 times a float's rounding, or by as much as rounding may move the hit: more than box tests
+// leave out, less than what culls eagerly.
+constexpr double kJust = 2e-6;
+std::vector<rt_ray> rays_again(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hits,
+                               const std::vector<Truth>& truths) {
+    std::vector<rt_ray> again = rays;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const double t = hits[i].t;
+        double just = INFINITY;
+        for (const Contact& c : truths[i].contacts)
+            if (c.prim == hits[i].prim && c.instance == hits[i].instance && std::fabs(c.t - t) <= c.t_error)
+                just = std::min(just, std::max(kJust * t, c.t_error - kRelativeError * std::fabs(c.t)));
+        if (hits[i].prim < 0 || !(t > 1e-30 && t < 1e30) || just > 0.1 * t) {
+            again[i].t_max = -1;  // no ray
+            continue;
+        }
+        again[i].t_max = std::min(rays[i].t_max, static_cast<float>(t + just));
+        if (i % 2 == 1) again[i].t_min = std::max(rays[i].t_min, static_cast<float>(t - just));
+    }
+    return again;
+}
+
+// Returns what is wrong; empty: nothing.
+std::string again_fault(CheckedScene& scene, const Variant& variant, const std::vector<rt_ray>& rays,
+                        const std::vector<rt_hit>& hits, const std::vector<Truth>& truths, bool any_hit) {
+    const std::vector<rt_ray> again = rays_again(rays, hits, truths);
+    const Traced traced = scene.trace(variant, again, any_hit);
+    size_t lost = 0, of = 0, first = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (again[i].t_max < 0) continue;
+        ++of;
+        const rt_hit& hit = traced.hits[i];
+        if (any_hit ? hit.t == 0 : hit.prim >= 0 && hit.t <= again[i].t_max) continue;
+        if (lost++ == 0) first = i;
+    }
+    if (lost == 0) return {};
+    return std::to_string(lost) + " of " + std::to_string(of) +
+           " hits are lost when t_max is just behind them, by as much as rounding explains, or t_min just before: a node, a "
+           "cell or a "
+           "leaf "
+           "is left out though it begins before t_max and ends behind t_min. The first: ray " +
+           ray_text(again[first]) + " -- found nothing, expected t " + std::to_string(hits[first].t) + ", prim " +
+           std::to_string(hits[first].prim) + ", as with t_max " + std::to_string(rays[first].t_max);
+}
+
+}  // namespace
+
+std::vector<Variant> Bench::variants(const Step& step) {
+    scene(step);
+    const HitsOptions& options = input_.options;
+    std::vector<Variant> list;
+    for (const int lanes : options.lanes) list.push_back({lanes, true, false});
+    if (options.quick) return list;
+    for (const int lanes : options.lanes) list.push_back({lanes, false, false});
+    list.push_back({1, false, true});
+    return list;
+}
+
+CheckedScene& Bench::scene(const Step& step) {
+    if (!scene_) {
+        step("opening the device", kCompileLimit_s);
+        device_ = input_.open();
+        fit_lanes(input_.options, device_->info());
+        step(std::string("building ") + test_.what, kCompileLimit_s);
+        const Scene rest = test_.scene(input_.options.seed);
+        scene_ = refits_ ? std::make_unique<CheckedScene>(input_.plugin, input_.layout, test_.moved(rest), device_, &rest, as_)
+                         : std::make_unique<CheckedScene>(input_.plugin, input_.layout, rest, device_, nullptr, as_);
+    }
+    return *scene_;
+}
+
+CheckedScene& Bench::compiled(const Variant& variant, const Step& step) {
+    CheckedScene& at = scene(step);
+    if (std::find(compiled_.begin(), compiled_.end(), variant.text()) != compiled_.end()) return at;
+    step("compiling for " + variant.text(), kCompileLimit_s);
+    at.compile(variant);
+    compiled_.push_back(variant.text());
+    return at;
+}
+
+const std::vector<RaySet>& Bench::sets(const Step& step) {
+    const HitsOptions& options = input_.options;
+    if (sets_.empty())
+        sets_ = test_.rays(scene(step).build_scene(),
+                           options.rays > 0 ? options.rays
+                           : options.quick  ? kQuickRays
+                                            : kRays,
+                           options.seed);
+    return sets_;
+}
+
+const RaySet& Bench::set(const std::string& name, const Step& step) {
+    const auto& all = sets(step);
+    return *std::find_if(all.begin(), all.end(), [&](const RaySet& set) { return name == set.name; });
+}
+
+const std::vector<Truth>& Bench::truths(const RaySet& set, const Step& step) {
+    std::vector<Truth>& known = truths_[set.name];
+    if (known.empty()) known = BruteForce(scene(step).build_scene()).trace(set.rays);
+    return known;
+}
+
+std::string write_report(const Bench& bench, const std::string& name, const Faults& faults, const std::vector<rt_ray>& rays,
+                         const std::vector<rt_hit>& hits, const std::string& what) {
+    if (bench.options().report_folder.empty()) return {};
+    const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".rays";
+    std::string text = "# " + what + "\n";
+    for (const Faults::One& one : faults.wrong)
+        text += ray_text(rays[one.ray]) + "  # found t " + std::to_string(hits[one.ray].t) + " prim " +
+                std::to_string(hits[one.ray].prim) + "\n";
+    try {
+        write_text_file(path, text);
+    } catch (const Error& e) {
+        return std::string("the report was not written: ") + e.what();
+    }
+    return "the rays are in " + path;
+}
+
+Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
+    const RaySet& set = bench.set(name, step);
+    step("computing what these rays hit", 60);
+    const std::vector<Truth>& truths = bench.truths(set, step);
+    std::vector<std::string> wrong_variants, right_variants;
+    Outcome first;
+    std::map<std::string, std::vector<rt_hit>> nearest;  // of each variant
+    for (const bool any_hit : {false, true})
+        for (const Variant& variant : bench.variants(step)) {
+            CheckedScene& scene = bench.compiled(variant, step);
+            const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
+            step("tracing " + std::to_string(set.rays.size()) + " rays, " + what,
+                 bench.options().large ? kCompileLimit_s : kTraceLimit_s);
+            const Traced traced = scene.trace(variant, set.rays, any_hit);
+            const Faults faults = Faults::of(set.rays, truths, traced.hits, any_hit);
+            if (!any_hit) nearest[variant.text()] = traced.hits;
+            if (faults.wrong.empty()) {
+                const std::string lost = again_fault(scene, variant, set.rays, nearest[variant.text()], truths, any_hit);
+                if (lost.empty()) {
+                    right_variants.push_back(what);
+                    continue;
+                }
+                if (wrong_variants.empty()) first = Outcome::failed(what + ": " + lost);
+            } else if (wrong_variants.empty()) {
+                first = Outcome::failed(what + ": " + faults.text(set.rays, truths, traced.hits, variant.lanes) +
+                                        (*set.hint && faults.misses() ? ". Mostly: " + std::string(set.hint) : ""));
+                first.repeat = write_report(bench, name, faults, set.rays, traced.hits, what) +
+                               write_picture(bench, scene, variant, name, set.rays[faults.wrong.front().ray], any_hit, step);
+            }
+            wrong_variants.push_back(what);
+        }
+    if (wrong_variants.empty())
+        return Outcome::passed(std::to_string(set.rays.size()) + " rays, nearest and any, are right with " +
+                               std::to_string(bench.variants(step).size()) + " programs");
+    if (right_variants.empty()) {
+        first.found += ". With every number of lanes, nearest and any";
+        return first;
+    }
+    first.found += ". Wrong: ";
+    for (size_t i = 0; i < wrong_variants.size(); ++i) first.found += (i ? "; " : "") + wrong_variants[i];
+    first.found += ". Right: ";
+    for (size_t i = 0; i < right_variants.size(); ++i) first.found += (i ? "; " : "") + right_variants[i];
+    return first;
+}
+
+Outcome trace_sets(Bench& bench, const std::vector<const char*>& names, const std::string& after, const Step& step) {
+    size_t rays = 0;
+    for (const char* name : names) {
+        Outcome outcome = trace_set(bench, name, step);
+        if (outcome.kind == Outcome::Kind::failed) {
+            outcome.found = after + ", rays of " + name + ": " + outcome.found;
+            return outcome;
+        }
+        rays += bench.set(name, step).rays.size();
+    }
+    return Outcome::passed(std::to_string(rays) + " rays, nearest and any, are right " + after);
+}
+
+}  // namespace clarity::check

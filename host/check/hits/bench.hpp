@@ -1,0 +1,77 @@
+// bench.hpp -- a structure over one scene, the rays that are sent into it, and what they hit: shared by the checks of hits.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "check/hits/brute_force.hpp"
+#include "check/hits/checked_scene.hpp"
+#include "check/hits/hits_checks.hpp"
+#include "check/hits/judge.hpp"
+#include "check/hits/ray_sets.hpp"
+
+namespace clarity::check {
+
+constexpr double kCompileLimit_s = 120;
+constexpr double kTraceLimit_s = 10;  // some thousand rays take milliseconds; a loop without end takes for ever
+
+// A scene, and the rays for it.
+struct TestScene {
+    const char* what;  // "the mixed scene"
+    Scene (*scene)(uint64_t seed);
+    std::vector<RaySet> (*rays)(const BuildScene& scene, size_t count, uint64_t seed);
+    Scene (*moved)(Scene scene) = nullptr;  // in another pose
+};
+extern const TestScene kMixedScene, kRegularScene, kFloorScene;
+
+using OpenDevice = std::function<std::shared_ptr<Device>()>;
+
+// What a bench is for. Plugin and layout must outlive it.
+struct BenchInput {
+    const rt_plugin& plugin;
+    const rt_plugin* layout;  // what traces the tree if the plugin builds a topology, otherwise nullptr
+    OpenDevice open;          // on first use
+    HitsOptions options;
+};
+
+// Used from one thread.
+class Bench {
+ public:
+    // refits: the structure is built for the scene at rest, and refitted to a moved one.
+    explicit Bench(BenchInput input, const TestScene& test = kMixedScene, BuiltAs as = {}, bool refits = false)
+        : input_(std::move(input)), test_(test), as_(std::move(as)), refits_(refits) {}
+
+    const HitsOptions& options() const { return input_.options; }
+    const rt_plugin& plugin() const { return input_.plugin; }
+    const TestScene& test() const { return test_; }
+    std::vector<Variant> variants(const Step& step);
+    CheckedScene& scene(const Step& step);
+    CheckedScene& compiled(const Variant& variant, const Step& step);
+    const std::vector<RaySet>& sets(const Step& step);
+    const RaySet& set(const std::string& name, const Step& step);
+    const std::vector<Truth>& truths(const RaySet& set, const Step& step);
+
+ private:
+    BenchInput input_;
+    const TestScene& test_;
+    const BuiltAs as_;
+    const bool refits_;
+    std::shared_ptr<Device> device_;
+    std::unique_ptr<CheckedScene> scene_;
+    std::vector<std::string> compiled_;
+    std::vector<RaySet> sets_;
+    std::map<std::string, std::vector<Truth>> truths_;
+};
+
+// Traces a set with every variant, nearest and any, and judges all answers.
+Outcome trace_set(Bench& bench, const std::string& name, const Step& step);
+// Sets one after the other until one fails. after: "after a refit", for the message.
+Outcome trace_sets(Bench& bench, const std::vector<const char*>& names, const std::string& after, const Step& step);
+
+// Writes the wrong rays, for `clarity trace`, with what was found as comments; if the user wants a report. Returns where.
+std::string write_report(const Bench& bench, const std::string& name, const Faults& faults, const std::vector<rt_ray>& rays,
+                         const std::vector<rt_hit>& hits, const std::string& what);
+
+}  // namespace clarity::check

@@ -1,0 +1,154 @@
+#include "check/hits/stack_checks.hpp"
+
+#include <algorithm>
+#include <regex>
+
+#include "device/kernel_files.hpp"
+#include "render/queries/ray_text.hpp"
+
+namespace clarity::check {
+namespace {
+
+// The number of full stacks, or of packets that asked in vain.
+uint64_t overflows(Bench& bench, const char* name, const Variant& variant, bool any_hit, const Step& step) {
+    const RaySet& set = bench.set(name, step);
+    CheckedScene& scene = bench.compiled(variant, step);
+    step(std::string("filling the stack with rays of ") + name + ", " + variant.text(), kTraceLimit_s);
+    return scene.trace(variant, set.rays, any_hit).overflows;
+}
+
+// A traversal's array that is a stack by its name, or by that of its size: "uint stack[BVH2_STACK]". Empty: none.
+std::string stack_in(const rt_plugin& tracer) {
+    static const std::regex declaration(
+        R"(\b\w+\s+\w*(?:stack|Stack|todo|pending)\w*\s*\[[^\];]+\]|\b\w+\s+\w+\s*\[\w*(?:STACK|DEPTH)\w*[^\];]*\])");
+    const std::string text = plugin_kernel_text(tracer, tracer.accel->traverse);
+    std::smatch found;
+    return std::regex_search(text, found, declaration) ? found.str() : "";
+}
+
+// Leaf tests of the sets that make traversals go through most of a tree: the nearest hits, and any-hit queries with a t_max
+// before the nearest hit, which find nothing.
+struct Effort {
+    uint64_t tests[2] = {0, 0};  // nearest, any
+    uint64_t asked = 0;          // packets that asked in vain
+};
+Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step& step) {
+    const Variant variant{1, true, false};
+    Effort effort;
+    for (const char* name : names) {
+        const RaySet& set = bench.set(name, step);
+        const std::vector<Truth>& truths = bench.truths(set, step);
+        CheckedScene& scene = bench.scene(step);
+        for (const bool any_hit : {false, true}) {
+            std::vector<rt_ray> rays = set.rays;
+            for (size_t i = 0; any_hit && i < rays.size(); ++i)
+                if (!truths[i].contacts.empty()) rays[i].t_max = static_cast<float>(truths[i].contacts.front().t * 0.99);
+            step(std::string("counting the primitives that rays of ") + name + " test", kCompileLimit_s);
+            const Traced traced = scene.trace(variant, rays, any_hit, true);
+            for (const rt_hit& hit : traced.hits) effort.tests[any_hit] += hit.leaf_tests;
+            effort.asked += traced.overflows;
+        }
+    }
+    return effort;
+}
+
+BenchInput few_rays(BenchInput input) {
+    input.options.rays = 400;
+    return input;
+}
+
+}  // namespace
+
+Outcome stack_check(Bench& mixed, Bench& regular, const Step& step) {
+    struct Row {
+        Bench& bench;
+        std::vector<const char*> sets;
+    };
+    uint64_t rays = 0;
+    for (const Row& row : {Row{mixed, {"hits.nested", "hits.random", "hits.instances", "hits.axes"}},
+                           Row{regular, {"hits.uneven", "hits.inside", "hits.edges"}}})
+        for (const char* name : row.sets)
+            for (const bool any_hit : {false, true})
+                for (const Variant& variant : row.bench.variants(step)) {
+                    if (!variant.debug) continue;
+                    const uint64_t full = overflows(row.bench, name, variant, any_hit, step);
+                    rays += row.bench.set(name, step).rays.size();
+                    if (full == 0) continue;
+                    return Outcome::failed(
+                        "the traversal stack was full " + std::to_string(full) + " times (" + name + ", " + variant.text() +
+                        "): the define of its size is too small for the tree; without --debug it would write beyond it" +
+                        (&row.bench == &regular
+                             ? ". The world of this scene is ten instances, and the trees of their meshes are "
+                               "deeper: the stack must hold the deepest tree of all groups"
+                             : ""));
+                }
+    return Outcome::passed("no stack was full, as far as the traversal asks RT_STACK_OK (" + std::to_string(rays) + " rays)");
+}
+
+Outcome pushes_check(const BenchInput& input, const Step& step) {
+    // Share of the usual tests that may be left: wide nodes test children that are leaves without a push. In cwbvh it is 0.51
+    // of the mixed scene, whose trees are small.
+    struct Row {
+        const TestScene& scene;
+        std::vector<const char*> sets;
+        double most;
+        const char* where;
+    };
+    const BuiltAs refusing{{}, 0, {{"RT_STACK_REFUSED", 1}}};
+    uint64_t asked = 0, tested = 0, usually = 0;
+    for (const Row& row : {Row{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
+                           Row{kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"}}) {
+        Bench usual(few_rays(input), row.scene), refused(few_rays(input), row.scene, refusing);
+        const Effort all = effort_of(usual, row.sets, step), left = effort_of(refused, row.sets, step);
+        asked += left.asked;
+        if (left.asked == 0) continue;
+        for (const int any : {0, 1}) {
+            tested += left.tests[any], usually += all.tests[any];
+            if (double(left.tests[any]) <= row.most * double(all.tests[any]) + 100) continue;
+            return Outcome::failed(std::string("when RT_STACK_OK refuses every push, ") +
+                                   (any ? "any-hit queries " : "nearest hits ") + row.where + " still test " +
+                                   std::to_string(left.tests[any]) + " primitives of " + std::to_string(all.tests[any]) +
+                                   ": some pushes go on without it. Ask before each push");
+        }
+    }
+    if (asked > 0)
+        return Outcome::passed("every push asks RT_STACK_OK: when it refuses, " + std::to_string(tested) +
+                               " primitives are tested instead of " + std::to_string(usually));
+    const std::string stack = stack_in(input.layout ? *input.layout : input.plugin);
+    if (stack.empty()) return Outcome::passed("the traversal has no stack: it never asked RT_STACK_OK, and declares none");
+    return Outcome::failed(
+        "the traversal has a stack, `" + stack +
+        "`, but it never asked RT_STACK_OK: a stack that is too small would be written beyond its end, and nothing "
+        "would say so. Ask before each push");
+}
+
+Outcome counts_check(const BenchInput& input, const Step& step) {
+    Bench mixed(few_rays(input)), regular(few_rays(input), kRegularScene);
+    const Variant variant{1, true, false};
+    struct Row {
+        Bench& bench;
+        const char* set;
+    };
+    uint64_t hits = 0, untested = 0;
+    std::string first;
+    for (const Row& row : {Row{mixed, "hits.random"}, Row{mixed, "hits.primitives"}, Row{regular, "hits.uneven"}}) {
+        const RaySet& set = row.bench.set(row.set, step);
+        CheckedScene& scene = row.bench.scene(step);
+        step(std::string("counting the primitives that rays of ") + row.set + " test", kCompileLimit_s);
+        const Traced traced = scene.trace(variant, set.rays, false, true);
+        for (size_t i = 0; i < set.rays.size(); ++i) {
+            if (traced.hits[i].prim < 0) continue;
+            ++hits;
+            if (traced.hits[i].leaf_tests == 0 && untested++ == 0) first = ray_text(set.rays[i]);
+        }
+    }
+    if (untested > 0)
+        return Outcome::failed(
+            std::to_string(untested) + " of " + std::to_string(hits) +
+            " rays hit a primitive, though the traversal tested none through the host: primitives are tested by "
+            "RT_LEAF or the other functions of cl/CONTRACT.md, which also count them. The first: ray " +
+            first);
+    return Outcome::passed("the host tested and counted a primitive for each of " + std::to_string(hits) + " hits");
+}
+
+}  // namespace clarity::check
