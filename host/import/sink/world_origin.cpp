@@ -63,8 +63,8 @@ void SceneBuilder::subtract_origin() {
     for (const Instance& instance : world_.instances) {
         Bounds& bounds = of_mesh[instance.mesh];
         const Mesh& mesh = scene_.meshes[instance.mesh];
-        for (rt_u32 v = 0; bounds.empty && v < mesh.vertex_count; ++v)
-            bounds.add(&scene_.positions[3 * (size_t(mesh.first_vertex) + v)]);
+        const rt_u32 unread = bounds.empty ? mesh.vertex_count : 0;
+        for (rt_u32 v = 0; v < unread; ++v) bounds.add(&scene_.positions[3 * (size_t(mesh.first_vertex) + v)]);
         box.add(bounds, placed(instance));
         has_digits |= instance.rounded_off != std::array<double, 3>{};
         Box own;
