@@ -7,7 +7,7 @@
 #include "base/files/output_file.hpp"
 #include "check/hits/report_picture.hpp"
 #include "check/regular_scenes.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 

@@ -4,7 +4,7 @@
 #include <regex>
 
 #include "device/kernel_files.hpp"
-#include "render/queries/ray_text.hpp"
+#include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {
