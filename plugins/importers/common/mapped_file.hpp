@@ -51,7 +51,9 @@ class MappedFile {
         void* memory = size_ > 0 ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;
         const int error = errno;
         ::close(file);
-        if (!known) throw std::runtime_error("it is not a regular file");
+        if (!known)
+            throw std::runtime_error(S_ISDIR(about.st_mode) ? std::string("cannot read the file: ") + std::strerror(EISDIR)
+                                                            : "it is not a regular file");
         if (memory == MAP_FAILED) throw std::runtime_error(std::string("cannot read the file: ") + std::strerror(error));
         data_ = static_cast<const char*>(memory);
     }

@@ -215,8 +215,7 @@ Reading read_obj(const Source& source, FlatMesh& mesh) {
         until.read(face + 1);
         return "line " + std::to_string(until.line_number()) + ": ";
     };
-    reading.contents = std::to_string(mesh.vertex_count()) + (mesh.vertex_count() == 1 ? " vertex and " : " vertices and ") +
-                       counted(reader.points_and_lines, "point or line element");
+    reading.points_and_lines = reader.points_and_lines;
     if (mesh.sizes.empty()) return reading;
     assign_materials(source, reader, mesh);
     if (reader.has_colors) warn(source, "its vertices have colours, which are left out");

@@ -130,8 +130,11 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
         warn(source, text);
     }
     if (std::none_of(mesh.sizes.begin(), mesh.sizes.end(), [](rt_u32 n) { return n >= 3; })) {
-        if (vertices > 0)
-            throw std::runtime_error("contains no polygons" + (reading.contents.empty() ? "" : ", only " + reading.contents));
+        if (vertices > 0 && reading.points_and_lines > 0) {
+            warn(source, "contains no polygons (points and lines were skipped)");
+            return RT_OK;
+        }
+        if (vertices > 0) throw std::runtime_error("contains no polygons, only " + counted(vertices, "point"));
         throw std::runtime_error("byte 0: found " + quoted(file.bytes().substr(0, 24)) +
                                  " and no vertex behind it, expected a ." + std::string(format.extension) + " file");
     }

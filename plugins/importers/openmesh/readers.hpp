@@ -21,7 +21,7 @@ struct Reading {
     std::string texture;  // of the whole mesh (MeshLab's "comment TextureFile" in PLY), or empty
     std::function<std::string(size_t face)> place_of_face;  // "line 7: ", for messages; may be empty
     rt_u32 first_number = 0;                                // with which the file counts vertices
-    std::string contents;  // what a file without faces has instead: "8 vertices, 3 point or line elements"; may be empty
+    uint64_t points_and_lines = 0;                          // elements of a sound file that has no faces, or has them besides
 };
 
 void warn(const Source& source, const std::string& text);

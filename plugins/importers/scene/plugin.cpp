@@ -25,9 +25,7 @@ int32_t report(const Diagnostics& diagnostics, const char* path, const rt_host& 
     return host.fail(host.ctx, first.c_str());
 }
 
-int32_t load_file(const rt_host& host, const char* path, const rt_scene_sink& sink) {
-    const importers::MappedFile file(&host, path);
-    const std::string_view text = file.bytes();
+int32_t load_text(std::string_view text, const rt_host& host, const char* path, const rt_scene_sink& sink) {
     if (text.size() > kMaxFileBytes)
         throw std::runtime_error("the file is larger than " + std::to_string(kMaxFileBytes >> 20) +
                                  " MiB; give large meshes as PLY or OBJ and `load` them");
@@ -41,7 +39,12 @@ int32_t load_file(const rt_host& host, const char* path, const rt_scene_sink& si
 }
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    return load_file(*host, path, *sink);
+    try {
+        const importers::MappedFile file(host, path);
+        return load_text(file.bytes(), *host, path, *sink);
+    } catch (const std::runtime_error& error) {
+        throw rt::fail(host, std::string(path) + ": " + error.what());
+    }
 }
 
 constexpr const char* kExtensions[] = {"scene", nullptr};

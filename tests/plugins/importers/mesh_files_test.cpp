@@ -92,7 +92,9 @@ TEST_F(MeshFiles, HaveAnyLineEnds) {
 }
 
 TEST_F(MeshFiles, WithoutASurfaceAreRefused) {
-    expect_refused("points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n", "contains no polygons, only 2 vertices and 1 point");
+    expect_refused("points.obj", "v 0 0 0\nv 1 0 0\n", "contains no polygons, only 2 points");
+    // Points and lines are sound, and only cannot be seen.
+    EXPECT_TRUE(warns(import("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"), "contains no polygons"));
     expect_refused("words.obj", "This is no model.\n", "expected a .obj file");
     expect_refused("names.stl", "solid a\nendsolid a\n", "no facet");
     expect_refused("empty.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "contains no polygons");
