@@ -92,7 +92,7 @@ static const rt_slot slots[] = {SLOTS};
 static const rt_accel accel = {ACCEL_BYTES, CONTRACT, sizeof slots / sizeof slots[0], SLOT_BYTES, slots, {NULL, NULL}, {TRAVERSE},
                                BUILD, NULL, TREE, TRAITS};
 static const char* const extensions[] = {"sound", NULL};
-static const rt_importer importer = {IMPORTER_BYTES, extensions, NULL, load};
+static const rt_importer importer = {IMPORTER_BYTES, extensions, NULL, load, 0, 0};
 /* Avoids warnings about unused parts: not every library uses all of them. */
 const void* const sound_parts[] = {choices, no_choices, &accel, &importer, params, (const void*)&build};
 
