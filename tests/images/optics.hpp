@@ -3,16 +3,10 @@
 #include <array>
 #include <functional>
 
+#include "scene/vec.hpp"
 #include "support/generated.hpp"
 
 namespace clarity::test {
-
-using Vec = std::array<double, 3>;
-Vec operator+(const Vec& a, const Vec& b);
-Vec operator-(const Vec& a, const Vec& b);
-Vec operator*(double s, const Vec& a);
-double dot(const Vec& a, const Vec& b);
-Vec normalized(const Vec& a);
 
 // A ray of the formulas.
 struct Line {
