@@ -116,7 +116,8 @@ Built build(const rt_plugin& plugin, const Input& input, const Options& options,
     built.slot_counts.resize(accel.slot_count);
     built.roots.assign(input.groups.size(), RT_NONE);
     HostContext host_context{options.threads, &options.progress, {}, {}};
-    const rt_host host{sizeof(rt_host), &host_context, fail, [](void*, int32_t, const char*) {}, progress, parallel_for};
+    const rt_host host{sizeof(rt_host), &host_context, fail,    [](void*, int32_t, const char*) {},
+                       progress,        parallel_for,  nullptr, 0};
     const rt_geometry geometry{sizeof(rt_geometry), input.triangles.data(), input.triangles.size()};
     rt_device device{};
     device.struct_bytes = sizeof device;
@@ -155,7 +156,8 @@ std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 
     std::vector<Volume> result;
     std::function<bool(float)> no_progress;
     HostContext host_context{1, &no_progress, {}, {}};
-    const rt_host host{sizeof(rt_host), &host_context, fail, [](void*, int32_t, const char*) {}, progress, parallel_for};
+    const rt_host host{sizeof(rt_host), &host_context, fail,    [](void*, int32_t, const char*) {},
+                       progress,        parallel_for,  nullptr, 0};
     rt_volume_sink sink{};
     sink.struct_bytes = sizeof sink;
     sink.ctx = &result;

@@ -37,8 +37,8 @@ class Services {
     const unsigned threads_;
     std::string why_;
     const rt_host host_{
-        sizeof(rt_host), this, fail, [](void*, int32_t, const char*) {}, [](void*, float) -> int32_t { return 1; },
-        parallel_for};
+        sizeof(rt_host), this,    fail, [](void*, int32_t, const char*) {}, [](void*, float) -> int32_t { return 1; },
+        parallel_for,    nullptr, 0};
 };
 
 }  // namespace bvh_test
