@@ -121,6 +121,21 @@ void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host,
     if (strayed) warn(sink, "nodes left out because their transforms are not finite: " + std::to_string(strayed));
 }
 
+// Vertices are as the file stores them, and nodes as at rest.
+void report_motion(const aiScene& scene, const rt_scene_sink& sink) {
+    const auto meshes_with = [&](const auto& has) {
+        return std::count_if(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, has);
+    };
+    std::string parts;
+    const auto add = [&](size_t count, const char* what) {
+        if (count > 0) parts += (parts.empty() ? "" : ", ") + std::string(what) + ": " + std::to_string(count);
+    };
+    add(static_cast<size_t>(meshes_with([](const aiMesh* mesh) { return mesh->mNumBones > 0; })), "meshes with skins");
+    add(static_cast<size_t>(meshes_with([](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })), "meshes with morphs");
+    add(scene.mNumAnimations, "animations");
+    if (!parts.empty()) warn(sink, "what moves the scene is left out (" + parts + "); vertices are shown as they are stored");
+}
+
 // Warns about everything that was left out. Throws if nothing is left.
 void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes, const std::vector<std::string>& errors,
             const rt_host* host, const rt_scene_sink& sink) {
@@ -131,6 +146,7 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
     }
     if (meshes.faces() > 0) {
         if (meshes.points_and_lines()) warn(sink, "points and lines skipped: " + std::to_string(meshes.points_and_lines()));
+        report_motion(scene, sink);
         return;
     }
     // A file that lost its polygons during the import is damaged. A file that never had any (NURBS, curves, cameras) is not.
