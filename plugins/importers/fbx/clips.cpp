@@ -37,6 +37,8 @@ class Clips {
     void report() const;  // warns about what was left out
 
  private:
+    std::pair<double, double> range_of_take(const Node* take) const;
+    std::pair<double, double> range_of_stack(uint32_t stack) const;
     rt_u32 add_clip(const std::string& name, double begin, double end, const std::vector<rt_layer>& layers);
     std::vector<Output> outputs_of(rt_u32 clip, uint32_t object, std::string_view property);
     void add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object);
@@ -158,7 +160,32 @@ void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
     }
 }
 
-// Source of the names and numbers: FBX SDK help, "FbxAnimStack" and "FbxAnimLayer". LocalStart is 0 if it is not there.
+// In ticks: `Take: "name" { LocalTime: begin, end  ReferenceTime: begin, end }`.
+std::pair<double, double> Clips::range_of_take(const Node* take) const {
+    const Node* time = document_.child(take, "LocalTime");
+    if (!time) time = document_.child(take, "ReferenceTime");
+    const double begin = document_.number(time, 0, 0);
+    return {begin, document_.number(time, 1, begin)};
+}
+
+// Likewise. ZBrush writes stacks without properties; the take of the same name has the range then (measured from
+// zbrush_polygroup_mess_7500_binary).
+std::pair<double, double> Clips::range_of_stack(uint32_t stack) const {
+    const Properties p = context_.properties(stack);
+    for (const std::string kind : {"Local", "Reference"}) {
+        if (!p.has(kind + "Start") && !p.has(kind + "Stop")) continue;
+        return {static_cast<double>(p.whole(kind + "Start", 0)), static_cast<double>(p.whole(kind + "Stop", 0))};
+    }
+    const Node* takes = document_.child(&document_.root(), "Takes");
+    if (!takes) return {0, 0};
+    for (const Node& take : document_.children(*takes)) {
+        if (take.name == "Take" && plain_name(document_, document_.text(&take, 0)) == context_.objects[stack].name)
+            return range_of_take(&take);
+    }
+    return {0, 0};
+}
+
+// Source of the names and numbers: FBX SDK help, "FbxAnimStack" and "FbxAnimLayer". A start that is not there is 0.
 void Clips::add_stacks() {
     const Objects& objects = context_.objects;
     for (const uint32_t stack : objects.of_kind("AnimationStack")) {
@@ -176,8 +203,7 @@ void Clips::add_stacks() {
             layers.push_back(out);
             layer_objects.push_back(layer);
         }
-        const Properties p = context_.properties(stack);
-        const double begin = static_cast<double>(p.whole("LocalStart", 0)), end = static_cast<double>(p.whole("LocalStop", 0));
+        const auto [begin, end] = range_of_stack(stack);
         const rt_u32 clip = add_clip(objects[stack].name, begin, end, layers);
         for (rt_u32 l = 0; l < layers.size(); ++l) {
             for (const uint32_t node : objects.below(layer_objects[l], "AnimationCurveNode")) add_curve_node(clip, l, node);
@@ -191,8 +217,7 @@ void Clips::add_takes() {
     if (!takes) return;
     for (const Node& take : document_.children(*takes)) {
         if (take.name != "Take") continue;
-        const Node* time = document_.child(&take, "LocalTime");
-        const double begin = document_.number(time, 0, 0), end = document_.number(time, 1, begin);
+        const auto [begin, end] = range_of_take(&take);
         const rt_u32 clip = add_clip(plain_name(document_, document_.text(&take, 0)), begin, end, {});
         for (const Node& model : document_.children(take)) {
             if (model.name == "Model") add_take_model(clip, model);

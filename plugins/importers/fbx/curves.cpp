@@ -215,13 +215,13 @@ double frames_of_second(const Document& document, const Objects& objects) {
     return stated > 0 && stated < 1e6 ? stated : 0;
 }
 
-// 46186158000, or 141120000 if FBXHeaderVersion is 1004 or more and TCDefinition is there and not 127. Source: README of the
-// shared scenes; measured from synthetic_tcdefinition_127_7700_ascii.
+// 46186158000, or 141120000 from version 8 on. If FBXHeaderVersion is 1004 or more, TCDefinition says which: 127 is the first.
+// Source: README of the shared scenes; measured from synthetic_tcdefinition_127_7700_ascii.
 double ticks_of_second(const Document& document) {
     const Node* header = document.child(&document.root(), "FBXHeaderExtension");
     const Node* definition = document.child(document.child(header, "OtherFlags"), "TCDefinition");
-    const bool is_new = document.integer(document.child(header, "FBXHeaderVersion"), 0, 0) >= 1004 &&
-                        (definition ? document.integer(definition, 0, 127) != 127 : document.version() >= 8000);
+    const bool is_defined = definition && document.integer(document.child(header, "FBXHeaderVersion"), 0, 0) >= 1004;
+    const bool is_new = is_defined ? document.integer(definition, 0, 127) != 127 : document.version() >= 8000;
     return is_new ? 141120000.0 : 46186158000.0;
 }
 

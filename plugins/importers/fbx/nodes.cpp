@@ -44,10 +44,7 @@ const Node* axis_of(const Document& document, const Node* owner, const char* let
 // Up to version 5.8, the values at rest are the defaults of the channels, of the model itself (measured from
 // max7_skin_5000_binary) or of the current take (measured from max2009_cube_anim_5800_ascii).
 Vec3 oldest_rest(const Document& document, const Object& model, const char* letter, Vec3 out) {
-    const Node* takes = document.child(&document.root(), "Takes");
-    const Node* take = document.child(takes, "Take", document.text(takes, "Current"));
-    if (!take) take = document.child(takes, "Take");
-    const Node* in_take = document.child(take, "Model", document.text(model.node, 0));
+    const Node* in_take = in_current_take(document, *model.node);
     for (size_t k = 0; k < 3; ++k) {
         const std::string_view axis = std::string_view("XYZ").substr(k, 1);
         const Node* found = axis_of(document, model.node, letter, axis);

@@ -117,6 +117,34 @@ TEST_P(FbxCurves, ABrokenCurveCostsItself) {
     EXPECT_NE(scene.warnings[0].find("order of their times"), std::string::npos) << scene.warnings[0];
 }
 
+TEST_P(FbxCurves, StacksWithoutPropertiesHaveTheRangeOfTheirTake) {
+    const auto stack = [](int64_t id, const std::string& name, const std::vector<FbxNode>& properties) {
+        return node("AnimationStack", {whole(id), text("AnimStack::" + name), text("")},
+                    {node("Properties70", {}, properties)});
+    };
+    const auto take = [](const std::string& name, const std::string& kind) {
+        return node("Take", {text(name)}, {node(kind, {whole(46186158000), whole(3 * 46186158000)})});
+    };
+    const FbxNode stop = node("P", {text("LocalStop"), text("KTime"), text("Time"), text(""), whole(46186158000)});
+    const Scene scene = import_file(folder_.write(
+        "takes.fbx",
+        FbxWriter(GetParam())
+            .file(
+                {node("FBXHeaderExtension", {}, {node("FBXVersion", {whole(GetParam().version)})}),
+                 node("Objects", {},
+                      {geometry(1), model(2, "A"), stack(3, "Own", {stop}), stack(4, "Local", {}), stack(5, "Reference", {})}),
+                 node("Connections", {}, {link(2, 0), link(1, 2)}),
+                 node("Takes", {},
+                      {take("Own", "LocalTime"), take("Local", "LocalTime"), take("Reference", "ReferenceTime")})})));
+    const std::vector<ClipInfo> infos = clips(scene);
+    ASSERT_EQ(infos.size(), 3u);
+    EXPECT_NEAR(infos[0].end_s, 1, 1e-9);
+    for (const size_t i : {1u, 2u}) {
+        EXPECT_NEAR(infos[i].begin_s, 1, 1e-9) << infos[i].name;
+        EXPECT_NEAR(infos[i].end_s, 3, 1e-9) << infos[i].name;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Forms, FbxCurves, kFbxForms, fbx_form_name);
 
 // A square of version 6.1 that a channel of a take moves along x.
