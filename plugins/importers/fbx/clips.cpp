@@ -168,10 +168,10 @@ std::pair<double, double> Clips::range_of_take(const Node* take) const {
     return {begin, document_.number(time, 1, begin)};
 }
 
-// Likewise. ZBrush writes stacks without properties; the take of the same name has the range then (measured from
-// zbrush_polygroup_mess_7500_binary).
+// Likewise. ZBrush writes stacks without properties of their own; the take of the same name has the range then (measured from
+// zbrush_polygroup_mess_7500_binary, whose template says 0).
 std::pair<double, double> Clips::range_of_stack(uint32_t stack) const {
-    const Properties p = context_.properties(stack);
+    const Properties p(document_, context_.objects[stack].node);
     for (const std::string kind : {"Local", "Reference"}) {
         if (!p.has(kind + "Start") && !p.has(kind + "Stop")) continue;
         return {static_cast<double>(p.whole(kind + "Start", 0)), static_cast<double>(p.whole(kind + "Stop", 0))};

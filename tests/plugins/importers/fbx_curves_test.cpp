@@ -125,12 +125,18 @@ TEST_P(FbxCurves, StacksWithoutPropertiesHaveTheRangeOfTheirTake) {
     const auto take = [](const std::string& name, const std::string& kind) {
         return node("Take", {text(name)}, {node(kind, {whole(46186158000), whole(3 * 46186158000)})});
     };
-    const FbxNode stop = node("P", {text("LocalStop"), text("KTime"), text("Time"), text(""), whole(46186158000)});
+    const auto local_stop = [](int64_t ticks) {
+        return node("P", {text("LocalStop"), text("KTime"), text("Time"), text(""), whole(ticks)});
+    };
+    const FbxNode stop = local_stop(46186158000), none = local_stop(0);
     const Scene scene = import_file(folder_.write(
         "takes.fbx",
         FbxWriter(GetParam())
             .file(
                 {node("FBXHeaderExtension", {}, {node("FBXVersion", {whole(GetParam().version)})}),
+                 node("Definitions", {},
+                      {node("ObjectType", {text("AnimationStack")},
+                            {node("PropertyTemplate", {text("FbxAnimStack")}, {node("Properties70", {}, {none})})})}),
                  node("Objects", {},
                       {geometry(1), model(2, "A"), stack(3, "Own", {stop}), stack(4, "Local", {}), stack(5, "Reference", {})}),
                  node("Connections", {}, {link(2, 0), link(1, 2)}),
