@@ -90,7 +90,8 @@ void Document::AsciiReader::skip_values() {
         while (at_ < end_ && (class_of(*at_) == other || class_of(*at_) == space || *at_ == ',')) {
             if (*at_ == ':' && goes_back_to_name(values)) return;
             if (*at_ == ',' || class_of(*at_) == other) after_comma = *at_ == ',';
-            ++at_;
+            if (*at_++ != ':') continue;
+            while (at_ < end_ && class_of(*at_) == other) ++at_;  // names have no colon, so that the word is looked at once
         }
         if (at_ == end_ || *at_ == '{' || *at_ == '}') return;
         if (*at_ == '"') {

@@ -248,6 +248,16 @@ TEST(FbxDocument, JoinsContentInPieces) {
     }
 }
 
+// In time that is linear in their length, or this test takes hours.
+TEST(FbxDocument, PassesManyOfOneCharacter) {
+    for (const char* const part :
+         {":", ": ", "a:", " :a", ",", "\n", "\n,", ";", "-", "1 ", "\"\"", "; \r", "{}", "*", "a\n:"}) {
+        std::string bytes = "; FBX 7.4.0 project file\nA: 1";
+        while (bytes.size() < 1u << 20) bytes += part;
+        trouble(bytes);
+    }
+}
+
 TEST(FbxDocument, CountsLinesOfEachKindInMessages) {
     for (const char* const end : {"\n", "\r\n", "\r"}) {
         const std::string why = trouble(with_ends("; FBX 7.4.0 project file\n\nVertices: *2 {\n\ta: 1,x\n}\n", end));
