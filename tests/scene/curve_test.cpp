@@ -127,6 +127,35 @@ TEST(Nodes, InheritScaleInEachWay) {
     EXPECT_NEAR(x_axis(RT_INHERIT_RRS)[1], 1, 1e-12);
 }
 
+// A chain of nodes with several ways, whose scales do not commute with the rotations. S: the scale of the node at the top,
+// which Rrs at the end leaves in, because it is not that of the parent itself.
+TEST(Nodes, InheritScaleThroughChains) {
+    const auto matrix_of = [](const std::vector<rt_node_desc>& chain) {
+        PlacedNode placed;
+        for (size_t i = 0; i < chain.size(); ++i)
+            placed = place_node(chain[i], values_at_rest(chain[i]), i ? &placed : nullptr);
+        return placed.world;
+    };
+    const Vec turn_a{20, 50, -30}, turn_b{-70, 10, 40}, turn_c{15, 25, 80};
+    const Matrix a = rotation(from_angles(turn_a, RT_ROTATE_XYZ)), b = rotation(from_angles(turn_b, RT_ROTATE_XYZ)),
+                 c = rotation(from_angles(turn_c, RT_ROTATE_XYZ));
+    const Matrix sa = scaling({3, 1, 0.5}), sb = scaling({1, 4, 2}), sc = scaling({0.5, 1, 2});
+    const auto expect = [&](rt_u32 way_b, rt_u32 way_c, const Matrix& wanted) {
+        const Matrix found = matrix_of({node_of(RT_INHERIT_RSRS, turn_a, {3, 1, 0.5}), node_of(way_b, turn_b, {1, 4, 2}),
+                                        node_of(way_c, turn_c, {0.5, 1, 2})});
+        for (size_t i = 0; i < 12; ++i) EXPECT_NEAR(found[i], wanted[i], 1e-12) << "ways " << way_b << " " << way_c;
+    };
+    expect(RT_INHERIT_RSRS, RT_INHERIT_RSRS, a * sa * b * sb * c * sc);
+    expect(RT_INHERIT_RSRS, RT_INHERIT_RRSS, a * sa * b * c * sb * sc);
+    expect(RT_INHERIT_RSRS, RT_INHERIT_RRS, a * sa * b * c * sc);
+    expect(RT_INHERIT_RRSS, RT_INHERIT_RSRS, a * b * sa * sb * c * sc);
+    expect(RT_INHERIT_RRSS, RT_INHERIT_RRSS, a * b * c * sa * sb * sc);
+    expect(RT_INHERIT_RRSS, RT_INHERIT_RRS, a * b * c * sa * sc);
+    expect(RT_INHERIT_RRS, RT_INHERIT_RSRS, a * b * sb * c * sc);
+    expect(RT_INHERIT_RRS, RT_INHERIT_RRSS, a * b * c * sb * sc);
+    expect(RT_INHERIT_RRS, RT_INHERIT_RRS, a * b * c * sc);
+}
+
 TEST(Nodes, TransformsApplyInOrder) {
     rt_node_desc node = node_of(RT_INHERIT_RSRS, {0, 0, 90}, {2, 2, 2});
     node.translation[0] = 10;

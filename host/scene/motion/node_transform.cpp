@@ -23,28 +23,31 @@ NodeValues values_at_rest(const rt_node_desc& node) {
     return values;
 }
 
+// The scale of nodes that inherit it in FBX's ways RrSs and Rrs stays apart from their rotation, down to the next node of the
+// way RSrs. "Computing transformation matrices" of the FBX SDK's help computes the same from matrices, but turns the scales of
+// nodes farther up with the rotations of those below. Maya, whose segment scale compensation is the way Rrs, does not: its
+// frames of maya_mixed_inherit_mode_7700_ascii (ufbx) tell the two apart.
 PlacedNode place_node(const rt_node_desc& node, const NodeValues& values, const PlacedNode* parent) {
     const Quaternion q =
         node.rotation_order == RT_ROTATE_QUATERNION ? values.rotation : from_angles(values.degrees, node.rotation_order);
     const Matrix turn = matrix(node.before_rotation) * rotation(q) * matrix(node.after_rotation);
-    PlacedNode placed;
-    placed.scale = scaling(values.scale);
-    Matrix local = turn * placed.scale * matrix(node.after_scale);
+    const Matrix own_scale = scaling(values.scale);
+    Matrix local = turn * own_scale * matrix(node.after_scale);
     for (int i = 0; i < 3; ++i) local[4 * i + 3] += values.translation[i];
+    PlacedNode placed;
     placed.visible = values.visible && (!parent || parent->visible || (node.flags & RT_NODE_OWN_VISIBILITY));
-    placed.rotation = linear_part(turn);
-    placed.world = local;
+    placed.world = parent ? parent->world * local : local;
+    placed.scale = own_scale;
+    placed.unscaled = linear_part(turn);
     if (!parent) return placed;
-    placed.rotation = parent->rotation * placed.rotation;
-    placed.world = parent->world * local;
-    if (node.inherit == RT_INHERIT_RSRS) return placed;
-    // "Computing transformation matrices" of the FBX SDK's help: the parent's scale is its linear part without its rotation, so
-    // that shear counts as scale.
-    Matrix unturned, unscaled;
-    if (!invert(parent->rotation, unturned)) return placed;
-    Matrix scale = unturned * linear_part(parent->world);
-    if (node.inherit == RT_INHERIT_RRS && invert(parent->scale, unscaled)) scale = scale * unscaled;
-    const Matrix linear = placed.rotation * scale * placed.scale;
+    if (node.inherit == RT_INHERIT_RSRS) {
+        placed.unscaled = linear_part(parent->world) * placed.unscaled;
+        return placed;
+    }
+    placed.unscaled = parent->unscaled * placed.unscaled;
+    placed.inherited = node.inherit == RT_INHERIT_RRS ? parent->inherited : parent->scale;
+    placed.scale = own_scale * placed.inherited;
+    const Matrix linear = placed.unscaled * placed.scale;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) placed.world[4 * i + j] = linear[4 * i + j];
     return placed;

@@ -16,8 +16,9 @@ NodeValues values_at_rest(const rt_node_desc& node);
 
 struct PlacedNode {
     Matrix world = kIdentityMatrix;
-    Matrix rotation = kIdentityMatrix;  // the product of all rotations from the root, without scales
-    Matrix scale = kIdentityMatrix;     // of the node itself
+    // For child nodes: `world` without its translation is `unscaled` times `scale`, which is the node's own times `inherited`.
+    Matrix unscaled = kIdentityMatrix, scale = kIdentityMatrix;
+    Matrix inherited = kIdentityMatrix;  // the scale that the node has from nodes above it along its own axes
     bool visible = true;
 };
 // parent: NULL for a node without one.

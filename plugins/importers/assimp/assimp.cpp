@@ -97,6 +97,17 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
     sink.warn(sink.ctx, text.c_str());
 }
 
+// assimp reads wrap modes that Maya's extension of COLLADA has (`wrapU`, `mirrorU`), but not those of the standard.
+bool has_wrap_modes_left_out(std::string_view collada) {
+    for (const std::string_view tag : {"<wrap_s>", "<wrap_t>"}) {
+        for (size_t at = 0; (at = collada.find(tag, at)) != collada.npos;) {
+            at = std::min(collada.find_first_not_of(" \t\r\n", at + tag.size()), collada.size());
+            if (collada.substr(at, 4) != "WRAP") return true;
+        }
+    }
+    return false;
+}
+
 // Adds one instance for each node with polygons.
 void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host, const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
@@ -121,6 +132,21 @@ void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host,
     if (strayed) warn(sink, "nodes left out because their transforms are not finite: " + std::to_string(strayed));
 }
 
+// Vertices are as the file stores them, and nodes as at rest.
+void report_motion(const aiScene& scene, const rt_scene_sink& sink) {
+    const auto meshes_with = [&](const auto& has) {
+        return std::count_if(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, has);
+    };
+    std::string parts;
+    const auto add = [&](size_t count, const char* what) {
+        if (count > 0) parts += (parts.empty() ? "" : ", ") + std::string(what) + ": " + std::to_string(count);
+    };
+    add(static_cast<size_t>(meshes_with([](const aiMesh* mesh) { return mesh->mNumBones > 0; })), "meshes with skins");
+    add(static_cast<size_t>(meshes_with([](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; })), "meshes with morphs");
+    add(scene.mNumAnimations, "animations");
+    if (!parts.empty()) warn(sink, "what moves the scene is left out (" + parts + "); vertices are shown as they are stored");
+}
+
 // Warns about everything that was left out. Throws if nothing is left.
 void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes, const std::vector<std::string>& errors,
             const rt_host* host, const rt_scene_sink& sink) {
@@ -131,6 +157,7 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
     }
     if (meshes.faces() > 0) {
         if (meshes.points_and_lines()) warn(sink, "points and lines skipped: " + std::to_string(meshes.points_and_lines()));
+        report_motion(scene, sink);
         return;
     }
     // A file that lost its polygons during the import is damaged. A file that never had any (NURBS, curves, cameras) is not.
@@ -173,6 +200,8 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     MaterialTable materials(*scene, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
     add_instances(tree, meshes, host, *sink);
+    if (extension == "dae" && has_wrap_modes_left_out(bytes))
+        warn(*sink, "the <wrap_s> and <wrap_t> of its samplers are not read; textures repeat outside of their pictures");
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
     add_cameras(*scene, tree, *sink);

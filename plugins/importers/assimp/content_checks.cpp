@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "xml_check.hpp"
+#include "collada_check.hpp"
 
 namespace assimp_import {
 namespace {
@@ -93,18 +93,18 @@ bool has(const std::string& text, const char* words) {
 
 }  // namespace
 
+std::string in_quotes(std::string_view text) {
+    std::string out = "'";
+    for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
+    return out + (text.size() > 60 ? "...'" : "'");
+}
+
 std::string damage_in(std::string_view bytes, const std::string& extension) {
-    if (is_xml(extension)) {
-        const std::string damage = xml_damage(bytes);
-        return damage.empty() && extension == "dae" ? collada_accessor_damage(bytes) : damage;
-    }
+    if (is_xml(extension)) return crash_in_xml(bytes);
     return extension == "3ds" ? damage_in_3ds(bytes) : std::string();
 }
 
 std::string explain_refusal(std::string_view bytes, const std::string& extension, const std::string& message) {
-    if (extension == "dae" && !bytes.empty()) {
-        if (const std::string damage = collada_damage(bytes); !damage.empty()) return damage;
-    }
     const std::string_view magic = magic_of(extension);
     if (!magic.empty() && !bytes.empty() && bytes.substr(0, magic.size()) != magic)
         return place(0, in_quotes(bytes.substr(0, std::max<size_t>(magic.size(), 4))),

@@ -98,30 +98,39 @@ rt_u32 MaterialTable::texture(const aiMaterial& material) {
         aiString path;
         if (material.GetTextureCount(type) == 0 || material.GetTexture(type, 0, &path) != aiReturn_SUCCESS) continue;
         if (path.length == 0) continue;
-        return add_texture(path.C_Str());
+        return add_texture(path.C_Str(), wrap_mode(material, AI_MATKEY_MAPPINGMODE_U(type, 0)),
+                           wrap_mode(material, AI_MATKEY_MAPPINGMODE_V(type, 0)));
     }
     return RT_NONE;
 }
 
-rt_u32 MaterialTable::add_texture(const std::string& reference) {
-    const auto known = textures_.find(reference);
-    if (known != textures_.end()) return known->second;
-    rt_u32 id = RT_NONE;
-    if (const aiTexture* embedded = scene_.GetEmbeddedTexture(reference.c_str())) {
-        id = embedded_texture(*embedded);
-    } else {
-        const std::string path = importers::existing_picture(place_, {reference});
-        rt_texture_desc desc{};
-        desc.struct_bytes = sizeof desc;
-        desc.path = path.c_str();
-        id = sink_.texture(sink_.ctx, &desc);
-    }
-    return textures_[reference] = id;
+// aiTextureMapMode.
+rt_u32 MaterialTable::wrap_mode(const aiMaterial& material, const char* key, unsigned type, unsigned index) {
+    int mode = aiTextureMapMode_Wrap;
+    material.Get(key, type, index, mode);
+    if (mode == aiTextureMapMode_Wrap) return RT_WRAP_REPEAT;
+    if (mode == aiTextureMapMode_Mirror) return RT_WRAP_MIRROR;
+    if (mode == aiTextureMapMode_Decal && !warned_of_decals_)
+        rt::warn(sink_, "outside of their pictures, decals show the material's colour; here they show their border");
+    warned_of_decals_ = warned_of_decals_ || mode == aiTextureMapMode_Decal;
+    return RT_WRAP_CLAMP;
 }
 
-rt_u32 MaterialTable::embedded_texture(const aiTexture& texture) {
+rt_u32 MaterialTable::add_texture(const std::string& reference, rt_u32 wrap_u, rt_u32 wrap_v) {
+    const auto [known, is_new] = textures_.insert({{reference, wrap_u, wrap_v}, RT_NONE});
+    if (!is_new) return known->second;
     rt_texture_desc desc{};
     desc.struct_bytes = sizeof desc;
+    desc.wrap_u = wrap_u;
+    desc.wrap_v = wrap_v;
+    if (const aiTexture* embedded = scene_.GetEmbeddedTexture(reference.c_str()))
+        return known->second = embedded_texture(*embedded, desc);
+    const std::string path = importers::existing_picture(place_, {reference});
+    desc.path = path.c_str();
+    return known->second = sink_.texture(sink_.ctx, &desc);
+}
+
+rt_u32 MaterialTable::embedded_texture(const aiTexture& texture, rt_texture_desc& desc) {
     if (!texture.pcData || texture.mWidth == 0) return RT_NONE;
     if (texture.mHeight == 0) {  // an encoded picture; mWidth is its size in bytes
         desc.bytes = reinterpret_cast<const uint8_t*>(texture.pcData);

@@ -2,8 +2,9 @@
 #pragma once
 #include <assimp/scene.h>
 
+#include <map>
 #include <string>
-#include <unordered_map>
+#include <tuple>
 #include <vector>
 
 #include "../common/texture_path.hpp"
@@ -27,15 +28,17 @@ class MaterialTable {
 
  private:
     rt_u32 texture(const aiMaterial& material);
-    rt_u32 add_texture(const std::string& reference);
-    rt_u32 embedded_texture(const aiTexture& texture);
+    rt_u32 wrap_mode(const aiMaterial& material, const char* key, unsigned type, unsigned index);
+    rt_u32 add_texture(const std::string& reference, rt_u32 wrap_u, rt_u32 wrap_v);
+    rt_u32 embedded_texture(const aiTexture& texture, rt_texture_desc& desc);
 
     const aiScene& scene_;
     const importers::FilePlace place_;
     const rt_scene_sink& sink_;
     std::vector<rt_u32> ids_;
     std::vector<bool> done_;
-    std::unordered_map<std::string, rt_u32> textures_;
+    bool warned_of_decals_ = false;
+    std::map<std::tuple<std::string, rt_u32, rt_u32>, rt_u32> textures_;  // by reference and wrap modes
 };
 
 }  // namespace assimp_import

@@ -37,6 +37,19 @@ inline Transform transposed(const Transform& m) {
     return {m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0};
 }
 
+// False: the matrix flattens space.
+inline bool invert(const Transform& m, Transform& out) {
+    const auto minor = [&](int a, int b, int c, int d) { return m[a] * m[d] - m[b] * m[c]; };
+    out = {minor(5, 6, 9, 10), minor(2, 1, 10, 9), minor(1, 2, 5, 6), 0,
+           minor(6, 4, 10, 8), minor(0, 2, 8, 10), minor(2, 0, 6, 4), 0,
+           minor(4, 5, 8, 9),  minor(1, 0, 9, 8),  minor(0, 1, 4, 5), 0};
+    const double determinant = m[0] * out[0] + m[1] * out[4] + m[2] * out[8];
+    if (!(std::abs(determinant) > 0) || !std::isfinite(1 / determinant)) return false;
+    for (double& x : out) x /= determinant;
+    for (int i = 0; i < 12; i += 4) out[i + 3] = -(out[i] * m[3] + out[i + 1] * m[7] + out[i + 2] * m[11]);
+    return true;
+}
+
 inline Transform translation(const Vec3& by) {
     return {1, 0, 0, by[0], 0, 1, 0, by[1], 0, 0, 1, by[2]};
 }

@@ -3,6 +3,7 @@
 
 #include "../common/base64.hpp"
 #include "../common/inflate.hpp"
+#include "../common/text_lines.hpp"
 #include "binary.hpp"
 
 namespace fbx_import {
@@ -73,10 +74,10 @@ std::vector<T> Document::text_array(const Node& node, size_t declared) const {
     const char *at = node.values.data(), *const end = at + node.values.size();
     out.reserve(std::min(declared ? declared : node.values.size() / 4, node.values.size() / 2 + 1));
     while (true) {
-        while (at < end && (*at == ' ' || *at == ',' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
+        while (at < end && (*at == ' ' || *at == ',' || *at == '\t' || importers::is_line_end(*at))) ++at;
         if (at == end) return out;
         if (*at == ';') {
-            at = std::find(at, end, '\n');
+            at = std::find_if(at, end, importers::is_line_end);
             continue;
         }
         int64_t whole = 0;
@@ -107,7 +108,6 @@ std::vector<T> Document::numbers(const Node* node) const {
             fail(*node, quoted(node->name) + " declares " + std::to_string(declared) + " values, but has " +
                             std::to_string(out.size()));
         }
-        out.resize(declared);
         return out;
     }
     if (first.kind == Value::array) return binary_array<T>(*node, first);
@@ -136,18 +136,22 @@ uint64_t Document::count(const Node& node) const {
 }
 
 std::string Document::content(const Node& node) const {
-    std::string out;
+    std::string out, digits;
+    const auto decode = [&] {
+        importers::decode_base64(digits, out);
+        digits.clear();
+    };
     Values values(*this, node);
     for (Value v; values.next(v);) {
         if (v.kind != Value::string) continue;
         if (binary_) {
             out += v.text;
-        } else {
-            std::string digits(v.text);
-            digits.erase(std::remove_if(digits.begin(), digits.end(), [](char c) { return c <= ' '; }), digits.end());
-            importers::decode_base64(digits, out);
+            continue;
         }
+        std::copy_if(v.text.begin(), v.text.end(), std::back_inserter(digits), [](char c) { return c > ' '; });
+        if (!digits.empty() && digits.back() == '=') decode();  // otherwise, the next text goes on within the same byte
     }
+    decode();
     return out;
 }
 

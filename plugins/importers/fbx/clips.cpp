@@ -34,8 +34,11 @@ class Clips {
     }
     void add_stacks();
     void add_takes();
+    void report() const;  // warns about what was left out
 
  private:
+    std::pair<double, double> range_of_take(const Node* take) const;
+    std::pair<double, double> range_of_stack(uint32_t stack) const;
     rt_u32 add_clip(const std::string& name, double begin, double end, const std::vector<rt_layer>& layers);
     std::vector<Output> outputs_of(rt_u32 clip, uint32_t object, std::string_view property);
     void add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object);
@@ -44,6 +47,8 @@ class Clips {
     }
     void add_channels(rt_u32 clip, uint32_t object, const Node& parent);
     void add(rt_u32 clip, rt_u32 layer, const Output& output, Curve curve);
+    template <class Read>
+    Curve curve(const Read& read, const Node& node);
 
     const Context& context_;
     const Document& document_;
@@ -52,6 +57,7 @@ class Clips {
     const double ticks_;
     std::map<uint32_t, std::vector<rt_u32>> nodes_;                             // of the host, by object
     std::map<std::pair<rt_u32, uint32_t>, std::string_view> light_properties_;  // that move, by clip and object
+    std::map<const Node*, std::string> broken_;                                 // curves, and why
 };
 
 template <class Map>
@@ -70,7 +76,10 @@ std::vector<Output> Clips::outputs_of(rt_u32 clip, uint32_t object, std::string_
         }
     }
     // A channel of a shape has its percentage; before version 7 the shape's name is that of the property.
-    for (const rt_u32 id : found_in(morphs_, {object, property == "DeformPercent" ? "" : std::string(property)}))
+    const std::string_view suffix = document_.version() < 6000 ? kShapeSuffix : "";
+    const bool is_oldest = property.size() > suffix.size() && property.substr(property.size() - suffix.size()) == suffix;
+    const std::string_view shape = is_oldest ? property.substr(0, property.size() - suffix.size()) : property;
+    for (const rt_u32 id : found_in(morphs_, {object, property == "DeformPercent" ? "" : std::string(shape)}))
         out.push_back({RT_MOVES_MORPH, id, 0, 0, [](double percent) { return percent / 100; }});
     for (const LightView& light : found_in(views_.lights, is_color || property == "Intensity" ? object : kNoObject)) {
         const std::string_view other = light_properties_.emplace(std::make_pair(clip, object), property).first->second;
@@ -108,6 +117,24 @@ void Clips::add(rt_u32 clip, rt_u32 layer, const Output& output, Curve curve) {
     curve.pass(importers::channel(clip, layer, output.moves, output.target, output.component), context_.sink);
 }
 
+// The curve of a node, or none if it is broken: it costs itself alone.
+template <class Read>
+Curve Clips::curve(const Read& read, const Node& node) {
+    try {
+        return read(document_, node, ticks_);
+    } catch (const Broken& why) {
+        broken_.emplace(&node, why.what());
+        return {};
+    }
+}
+
+void Clips::report() const {
+    if (broken_.empty()) return;
+    const std::string many =
+        broken_.size() == 1 ? "a curve of an animation is" : std::to_string(broken_.size()) + " curves of animations are";
+    context_.warn(many + " left out: " + broken_.begin()->second);
+}
+
 // A curve node gathers the curves of one property: those of `d|X`, `d|Y`, `d|Z`, or of `d|DeformPercent` and the like. Its own
 // properties are the values of components without a curve. Source: Blender developer blog; FBX SDK help, "FbxAnimCurveNode".
 void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
@@ -121,9 +148,9 @@ void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
             outputs.push_back({RT_MOVES_LAYER, layer, 0, 0, [](double percent) { return percent / 100; }});
         for (rt_u32 k = 0; k < 3 && !outputs.empty(); ++k) {
             const std::string name = "d|" + (is_vector(property) ? std::string(1, "XYZ"[k]) : std::string(property));
-            const auto curve = std::find_if(curves.begin(), curves.end(), [&](const Link* l) { return l->property == name; });
+            const auto found = std::find_if(curves.begin(), curves.end(), [&](const Link* l) { return l->property == name; });
             Curve read;
-            if (curve != curves.end()) read = read_curve(document_, *objects[(*curve)->from].node, ticks_);
+            if (found != curves.end()) read = curve(read_curve, *objects[(*found)->from].node);
             if (read.times.empty() && rest.has(name)) read = Curve::constant(rest.number(name, 0));
             for (const Output& output : outputs) {
                 if (output.curve == k) add(clip, layer, output, read);
@@ -133,7 +160,32 @@ void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
     }
 }
 
-// Source of the names and numbers: FBX SDK help, "FbxAnimStack" and "FbxAnimLayer". LocalStart is 0 if it is not there.
+// In ticks: `Take: "name" { LocalTime: begin, end  ReferenceTime: begin, end }`.
+std::pair<double, double> Clips::range_of_take(const Node* take) const {
+    const Node* time = document_.child(take, "LocalTime");
+    if (!time) time = document_.child(take, "ReferenceTime");
+    const double begin = document_.number(time, 0, 0);
+    return {begin, document_.number(time, 1, begin)};
+}
+
+// Likewise. ZBrush writes stacks without properties of their own; the take of the same name has the range then (measured from
+// zbrush_polygroup_mess_7500_binary, whose template says 0).
+std::pair<double, double> Clips::range_of_stack(uint32_t stack) const {
+    const Properties p(document_, context_.objects[stack].node);
+    for (const std::string kind : {"Local", "Reference"}) {
+        if (!p.has(kind + "Start") && !p.has(kind + "Stop")) continue;
+        return {static_cast<double>(p.whole(kind + "Start", 0)), static_cast<double>(p.whole(kind + "Stop", 0))};
+    }
+    const Node* takes = document_.child(&document_.root(), "Takes");
+    if (!takes) return {0, 0};
+    for (const Node& take : document_.children(*takes)) {
+        if (take.name == "Take" && plain_name(document_, document_.text(&take, 0)) == context_.objects[stack].name)
+            return range_of_take(&take);
+    }
+    return {0, 0};
+}
+
+// Source of the names and numbers: FBX SDK help, "FbxAnimStack" and "FbxAnimLayer". A start that is not there is 0.
 void Clips::add_stacks() {
     const Objects& objects = context_.objects;
     for (const uint32_t stack : objects.of_kind("AnimationStack")) {
@@ -151,8 +203,7 @@ void Clips::add_stacks() {
             layers.push_back(out);
             layer_objects.push_back(layer);
         }
-        const Properties p = context_.properties(stack);
-        const double begin = static_cast<double>(p.whole("LocalStart", 0)), end = static_cast<double>(p.whole("LocalStop", 0));
+        const auto [begin, end] = range_of_stack(stack);
         const rt_u32 clip = add_clip(objects[stack].name, begin, end, layers);
         for (rt_u32 l = 0; l < layers.size(); ++l) {
             for (const uint32_t node : objects.below(layer_objects[l], "AnimationCurveNode")) add_curve_node(clip, l, node);
@@ -166,8 +217,7 @@ void Clips::add_takes() {
     if (!takes) return;
     for (const Node& take : document_.children(*takes)) {
         if (take.name != "Take") continue;
-        const Node* time = document_.child(&take, "LocalTime");
-        const double begin = document_.number(time, 0, 0), end = document_.number(time, 1, begin);
+        const auto [begin, end] = range_of_take(&take);
         const rt_u32 clip = add_clip(plain_name(document_, document_.text(&take, 0)), begin, end, {});
         for (const Node& model : document_.children(take)) {
             if (model.name == "Model") add_take_model(clip, model);
@@ -192,17 +242,25 @@ void Clips::add_channels(rt_u32 clip, uint32_t object, const Node& parent) {
         if (name == "Transform") add_channels(clip, object, channel);
         for (const Output& output : outputs_of(clip, object, name)) {
             const std::string_view axis = std::string_view("XYZ").substr(output.curve, 1);
-            const Node* curve = is_vector(name) ? document_.child(&channel, "Channel", axis) : &channel;
-            if (curve) add(clip, 0, output, read_take_curve(document_, *curve, ticks_));
+            const Node* node = is_vector(name) ? document_.child(&channel, "Channel", axis) : &channel;
+            if (node) add(clip, 0, output, curve(read_take_curve, *node));
         }
     }
 }
 
 }  // namespace
 
+const Node* in_current_take(const Document& document, const Node& model) {
+    const Node* takes = document.child(&document.root(), "Takes");
+    const Node* take = document.child(takes, "Take", document.text(takes, "Current"));
+    if (!take) take = document.child(takes, "Take");
+    return document.child(take, "Model", document.text(&model, 0));
+}
+
 void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs) {
     Clips clips(context, nodes, views, morphs);
     context.document.version() >= 7000 ? clips.add_stacks() : clips.add_takes();
+    clips.report();
 }
 
 }  // namespace fbx_import

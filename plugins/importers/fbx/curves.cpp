@@ -11,73 +11,162 @@ namespace {
 enum : uint32_t {
     kConstant = 0x2,
     kLinear = 0x4,
-    kNextValue = 0x100,
-    kAuto = 0x100,
-    kClampProgressive = 0x4000,
+    kCubic = 0x8,
+    kNextValue = 0x100,  // of constant keys
+    kTcb = 0x200,        // of cubic keys, as are the next five; without kTcb and kUser their slopes are automatic
+    kUser = 0x400,
     kClamp = 0x1000,
+    kTimeIndependent = 0x2000,
+    kClampProgressive = 0x4000,
     kWeightedRight = 0x1000000,
     kWeightedNextLeft = 0x2000000
 };
 constexpr double kUsualWeight = 1.0 / 3;
 
-// The rest of a key. slope: at its right side; next_slope: at the left side of the next key; both are values a second. The
-// weights say how far the handles reach, as parts of the span between the two keys.
-struct Tangents {
+// The rest of a key, which says how the span behind it begins and ends. data: of kUser keys the slope at the key's right side
+// and at the left side of the next key, in values a second; of kTcb keys tension, continuity and bias; of automatic keys how
+// far the same two sides lean, in percent. The weights say how far the handles reach, as parts of the span.
+struct KeyAttributes {
     uint32_t flags = 0;
-    double slope = 0, next_slope = 0, weight = kUsualWeight, next_weight = kUsualWeight;
+    double data[3] = {0, 0, 0};
+    double weight = kUsualWeight, next_weight = kUsualWeight;
+    bool is_cubic() const { return (flags & (kConstant | kCubic)) == kCubic; }
+    bool is_tcb() const { return is_cubic() && (flags & kTcb); }
+    bool is_automatic() const { return is_cubic() && (flags & (kTcb | kUser)) == 0; }
 };
 
-// The slope of an automatic key: that of the line from the previous key to the next one; 0 at the first and last key. Clamped
-// keys are flat at peaks and valleys, and their handles stay between the values of the neighbours. Measured from
-// motionbuilder_tangent_auto_7700_ascii, maya_extrapolate_cube_7700_binary and maya_game_sausage_7500_binary_combined.
-double auto_slope(const Curve& c, size_t i, uint32_t flags, double weight_before, double weight_behind) {
-    if (i == 0 || i + 1 == c.times.size()) return 0;
-    const double before = c.times[i] - c.times[i - 1], behind = c.times[i + 1] - c.times[i];
-    const double down = c.values[i] - c.values[i - 1], up = c.values[i + 1] - c.values[i];
-    if (!(before > 0 && behind > 0)) return 0;
-    double slope = (down + up) / (before + behind);
-    if ((flags & (kClamp | kClampProgressive)) == 0) return slope;
-    if (down * up <= 0) return 0;
-    const double sign = slope < 0 ? -1 : 1;
-    slope = std::min({std::abs(slope), std::abs(down) / (before * std::max(weight_before, 1e-6)),
-                      std::abs(up) / (behind * std::max(weight_behind, 1e-6))});
-    return sign * slope;
+struct Slopes {
+    double left = 0, right = 0;
+};
+
+// A key and the lines to its neighbours. before, behind: their lengths in seconds, 0 where there is none.
+struct Neighbours {
+    Neighbours(const Curve& c, size_t i) {
+        if (i > 0) before = c.times[i] - c.times[i - 1], down = c.values[i] - c.values[i - 1];
+        if (i + 1 < c.times.size()) behind = c.times[i + 1] - c.times[i], up = c.values[i + 1] - c.values[i];
+        if (before > 0) slopes.left = down / before;
+        if (behind > 0) slopes.right = up / behind;
+    }
+    bool is_edge() const { return !(before > 0 && behind > 0); }
+    double before = 0, behind = 0, down = 0, up = 0;
+    Slopes slopes;
+};
+
+// D. Kochanek, R. Bartels, "Interpolating splines with local tension, continuity, and bias control", SIGGRAPH 1984, with slopes
+// in place of differences, because keys are not evenly spaced. A first or last key has one line, which counts fully. Measured
+// from motionbuilder_tangent_tcb_7700_ascii of ufbx.
+Slopes tcb_slopes(const Neighbours& n, const double* tcb) {
+    const double factor = (n.is_edge() ? 1.0 : 0.5) * (1 - tcb[0]);
+    const double sharp = 1 - tcb[1], smooth = 1 + tcb[1], from_left = factor * (1 + tcb[2]), from_right = factor * (1 - tcb[2]);
+    return {from_left * sharp * n.slopes.left + from_right * smooth * n.slopes.right,
+            from_left * smooth * n.slopes.left + from_right * sharp * n.slopes.right};
 }
 
-void add_handles(const std::vector<Tangents>& tangents, Curve& c) {
+// A lean of more than 500 percent adds to the slope, whatever the keys are. Measured by ufbx.
+double added_by_lean(double lean, double sign) {
+    const double beyond = std::abs(lean) / 100 - 5;
+    return beyond > 0 ? beyond * beyond * 40 * (sign > 0 ? 1 : -1) : 0;
+}
+
+// One side of an automatic key: the slope from the previous key to the next one. If the key is not independent of time, half
+// of that and half of a parabola's. At the first and last key, that of the only line, or 0 if the key is clamped progressively.
+// Clamped keys are flat where a neighbour has the same value; those clamped progressively also at peaks and valleys, and their
+// handles stay between the values of the neighbours. Measured from motionbuilder_tangent_auto_7700_ascii,
+// maya_extrapolate_cube_7700_binary, maya_game_sausage_7500_binary_combined; leans and clamps by ufbx.
+double automatic_slope(const Neighbours& n, uint32_t flags, double lean, double weight_before, double weight_behind) {
+    if (n.is_edge()) {
+        const bool is_flat = (n.before > 0 ? n.down : n.up) == 0;
+        if ((flags & kClampProgressive) || (is_flat && (flags & kClamp)) || !(n.before > 0 || n.behind > 0)) return 0;
+        const double slope = n.before > 0 ? n.slopes.left : n.slopes.right;
+        return flags & kTimeIndependent ? slope : slope + added_by_lean(lean, lean);
+    }
+    if ((flags & kClamp) && (n.down == 0 || n.up == 0)) return 0;
+    double slope = (n.down + n.up) / (n.before + n.behind);
+    if ((flags & kTimeIndependent) == 0) {
+        const double share = n.before / (n.before + n.behind), weight = std::abs(lean) / 100;
+        slope = 0.5 * (slope + n.slopes.left * (1 - share) + n.slopes.right * share);
+        if (weight > 1e-4) {
+            const double wanted = lean > 0 ? n.slopes.right : n.slopes.left, change = wanted - slope;
+            slope += weight * change + added_by_lean(lean, std::abs(change) > 1e-5 ? change : lean);
+        }
+    }
+    if ((flags & kClampProgressive) == 0) return slope;
+    const double sign = slope < 0 ? -1 : 1;
+    const auto limit = [&](double step, double reach) { return reach > 0 ? std::max(sign * step / reach, 0.0) : 0; };
+    return sign * std::min({std::abs(slope), limit(n.down, weight_before * n.before), limit(n.up, weight_behind * n.behind)});
+}
+
+Slopes slopes_of_key(const Curve& c, const std::vector<KeyAttributes>& keys, size_t i) {
+    const KeyAttributes& key = keys[i];
+    const KeyAttributes none, &last = i > 0 ? keys[i - 1] : none;
+    // A TCB key says nothing about the next one.
+    Slopes out = {last.is_cubic() && !last.is_tcb() ? last.data[1] : 0, key.data[0]};
+    const Neighbours n(c, i);
+    if (key.is_tcb()) out = tcb_slopes(n, key.data);
+    if (!key.is_automatic()) return out;
+    const auto slope = [&](double lean) { return automatic_slope(n, key.flags, lean, last.next_weight, key.weight); };
+    const double lean_right = out.right, lean_left = -out.left;
+    if (n.is_edge()) {
+        out.left = out.right = slope(n.before > 0 ? lean_left : lean_right);
+    } else {
+        out.right = slope(lean_right);
+        out.left = std::abs(lean_right - lean_left) <= 1e-4 ? out.right : slope(lean_left);
+    }
+    return out;
+}
+
+void add_handles(const std::vector<KeyAttributes>& keys, Curve& c) {
     const size_t count = c.times.size();
     bool has_cubic = false;
-    for (size_t i = 0; i < count; ++i) {
-        const uint32_t flags = tangents[i].flags;
-        c.spans.push_back(flags & kConstant ? (flags & kNextValue ? RT_SPAN_STEP_NEXT : RT_SPAN_STEP)
-                          : flags & kLinear ? RT_SPAN_LINEAR
-                                            : RT_SPAN_CUBIC);
-        has_cubic = has_cubic || c.spans.back() == RT_SPAN_CUBIC;
+    for (const KeyAttributes& key : keys) {
+        c.spans.push_back(key.flags & kConstant ? (key.flags & kNextValue ? RT_SPAN_STEP_NEXT : RT_SPAN_STEP)
+                          : key.is_cubic()      ? RT_SPAN_CUBIC
+                                                : RT_SPAN_LINEAR);
+        has_cubic = has_cubic || key.is_cubic();
     }
     if (!has_cubic) return;
     c.handles.assign(4 * count, 0);
-    for (size_t i = 0; i + 1 < count; ++i) {
-        const Tangents& t = tangents[i];
-        const Tangents& next = tangents[i + 1];
-        const double span = c.times[i + 1] - c.times[i];
-        double slope = t.slope, next_slope = t.next_slope;
-        if (t.flags & kAuto) slope = auto_slope(c, i, t.flags, i > 0 ? tangents[i - 1].next_weight : t.weight, t.weight);
-        if (next.flags & kAuto) next_slope = auto_slope(c, i + 1, next.flags, t.next_weight, next.weight);
-        c.handles[4 * i + 2] = t.weight * span;
-        c.handles[4 * i + 3] = t.weight * span * slope;
-        c.handles[4 * i + 4] = t.next_weight * span;
-        c.handles[4 * i + 5] = t.next_weight * span * next_slope;
+    for (size_t i = 0; i < count; ++i) {
+        const Slopes slopes = slopes_of_key(c, keys, i);
+        const double reach_left = i > 0 ? keys[i - 1].next_weight * (c.times[i] - c.times[i - 1]) : 0;
+        const double reach_right = i + 1 < count ? keys[i].weight * (c.times[i + 1] - c.times[i]) : 0;
+        c.handles[4 * i] = reach_left;
+        c.handles[4 * i + 1] = reach_left * slopes.left;
+        c.handles[4 * i + 2] = reach_right;
+        c.handles[4 * i + 3] = reach_right * slopes.right;
     }
 }
 
-// Weights are 1/9999 in 16 bits, the right one in the lower half. Source: FBX SDK help, "FbxAnimCurveDef"; measured from
-// maya_anim_interpolation_7700_ascii, which writes both as one whole number, where binary files have the bits of a float.
-uint32_t weight_bits(bool is_binary, double number) {
-    if (!is_binary) return number >= 0 && number < 4294967296.0 ? static_cast<uint32_t>(number) : 0;
-    const float as_float = static_cast<float>(number);
+// The floats of KeyAttrDataFloat. From version 7.2 on, ASCII files write the bits of each as a whole number. Measured from
+// maya_anim_interpolation_7700_ascii, and maya_auto_clamp_7100_ascii of ufbx. A number with a point is one.
+std::vector<float> attribute_floats(const Document& document, const Node& curve) {
+    const Node* node = document.child(&curve, "KeyAttrDataFloat");
+    if (!node || document.is_binary() || document.version() < 7200) return document.numbers<float>(node);
+    const Node* inner = document.child(node, "a");
+    std::vector<float> out;
+    Values values(document, inner ? *inner : *node);
+    for (Value v; values.next(v);) {
+        if (!v.is_number()) continue;
+        out.push_back(static_cast<float>(v.number));
+        const uint32_t bits = static_cast<uint32_t>(v.whole);
+        if (v.kind == Value::integer) std::memcpy(&out.back(), &bits, 4);
+    }
+    return out;
+}
+
+// One set of attributes: two or three numbers, and the weights, which are 1/9999 in 16 bits each, the right one in the lower
+// half of the third number. Source: FBX SDK help, "FbxAnimCurveDef"; measured from maya_anim_interpolation_7700_ascii.
+KeyAttributes attributes_of_set(uint32_t flags, const float* set) {
+    KeyAttributes key;
+    key.flags = flags;
+    if (!set) return key;
+    for (int k = 0; k < (key.is_tcb() ? 3 : 2); ++k) key.data[k] = set[k];
+    if (!key.is_cubic() || key.is_tcb()) return key;
     uint32_t bits;
-    std::memcpy(&bits, &as_float, 4);
-    return bits;
+    std::memcpy(&bits, set + 2, 4);
+    if (flags & kWeightedRight) key.weight = (bits & 0xFFFF) / 9999.0;
+    if (flags & kWeightedNextLeft) key.next_weight = (bits >> 16) / 9999.0;
+    return key;
 }
 
 // Type: C hold, R repeat, M mirror, K keep the slope, A repeat relative to the last value. Repetition -1: without end. Measured
@@ -93,8 +182,13 @@ void read_outside(const Document& document, const Node* node, rt_u32& mode, rt_u
            : letter == 'A' ? RT_OUTSIDE_REPEAT_RELATIVE
                            : RT_OUTSIDE_HOLD;
     const int64_t repeats = document.integer(document.child(node, "Repetition"), 0, -1);
-    if (repeats == 0) mode = RT_OUTSIDE_HOLD;
+    if (repeats == 0 && mode != RT_OUTSIDE_SLOPE) mode = RT_OUTSIDE_HOLD;
     count = repeats > 0 ? static_cast<rt_u32>(std::min<int64_t>(repeats, 0xFFFFFFFF)) : 0;
+}
+
+void read_outside(const Document& document, const Node& curve, Curve& c) {
+    read_outside(document, document.child(&curve, "Pre-Extrapolation"), c.before, c.before_count);
+    read_outside(document, document.child(&curve, "Post-Extrapolation"), c.after, c.after_count);
 }
 
 void check(const Document& document, const Node& node, const Curve& c) {
@@ -121,18 +215,18 @@ double frames_of_second(const Document& document, const Objects& objects) {
     return stated > 0 && stated < 1e6 ? stated : 0;
 }
 
-// 46186158000, or 141120000 if FBXHeaderVersion is 1004 or more and TCDefinition is there and not 127. Source: README of the
-// shared scenes; measured from synthetic_tcdefinition_127_7700_ascii.
+// 46186158000, or 141120000 from version 8 on. If FBXHeaderVersion is 1004 or more, TCDefinition says which: 127 is the first.
+// Source: README of the shared scenes; measured from synthetic_tcdefinition_127_7700_ascii.
 double ticks_of_second(const Document& document) {
     const Node* header = document.child(&document.root(), "FBXHeaderExtension");
     const Node* definition = document.child(document.child(header, "OtherFlags"), "TCDefinition");
-    const bool is_new = document.integer(document.child(header, "FBXHeaderVersion"), 0, 0) >= 1004 &&
-                        (definition ? document.integer(definition, 0, 127) != 127 : document.version() >= 8000);
+    const bool is_defined = definition && document.integer(document.child(header, "FBXHeaderVersion"), 0, 0) >= 1004;
+    const bool is_new = is_defined ? document.integer(definition, 0, 127) != 127 : document.version() >= 8000;
     return is_new ? 141120000.0 : 46186158000.0;
 }
 
-// KeyAttrRefCount says how many keys share each set of attributes. A set has flags and four floats: two slopes, the weights in
-// one float, and one that is not used. Measured from maya_anim_interpolation_7700_ascii and maya_extrapolate_cube_7700_binary.
+// KeyAttrRefCount says how many keys share each set of attributes. A set has flags and four floats. Measured from
+// maya_anim_interpolation_7700_ascii and maya_extrapolate_cube_7700_binary.
 Curve read_curve(const Document& document, const Node& node, double ticks) {
     Curve c;
     c.values = document.numbers<double>(&node, "KeyValueFloat");
@@ -142,75 +236,125 @@ Curve read_curve(const Document& document, const Node& node, double ticks) {
     for (size_t i = 0; i < count; ++i) c.times.push_back(static_cast<double>(times[i]) / ticks);
     const std::vector<int32_t> flags = document.numbers<int32_t>(&node, "KeyAttrFlags");
     const std::vector<int32_t> repeats = document.numbers<int32_t>(&node, "KeyAttrRefCount");
-    const std::vector<double> data = document.numbers<double>(&node, "KeyAttrDataFloat");
-    std::vector<Tangents> tangents;
-    for (size_t set = 0; set < flags.size() && tangents.size() < count; ++set) {
-        Tangents t;
-        t.flags = static_cast<uint32_t>(flags[set]);
-        if (4 * set + 3 < data.size()) {
-            const uint32_t bits = weight_bits(document.is_binary(), data[4 * set + 2]);
-            t.slope = data[4 * set];
-            t.next_slope = data[4 * set + 1];
-            if (t.flags & kWeightedRight) t.weight = (bits & 0xFFFF) / 9999.0;
-            if (t.flags & kWeightedNextLeft) t.next_weight = (bits >> 16) / 9999.0;
-        }
-        const size_t keys = set < repeats.size() && repeats[set] > 0 ? static_cast<size_t>(repeats[set]) : 1;
-        tangents.insert(tangents.end(), std::min(keys, count - tangents.size()), t);
+    const std::vector<float> data = attribute_floats(document, node);
+    std::vector<KeyAttributes> keys;
+    for (size_t set = 0; set < flags.size() && keys.size() < count; ++set) {
+        const float* floats = 4 * set + 3 < data.size() ? &data[4 * set] : nullptr;
+        const size_t sharing = set < repeats.size() && repeats[set] > 0 ? static_cast<size_t>(repeats[set]) : 1;
+        keys.insert(keys.end(), std::min(sharing, count - keys.size()),
+                    attributes_of_set(static_cast<uint32_t>(flags[set]), floats));
     }
-    tangents.resize(count, Tangents{kLinear});
-    add_handles(tangents, c);
-    read_outside(document, document.child(&node, "Pre-Extrapolation"), c.before, c.before_count);
-    read_outside(document, document.child(&node, "Post-Extrapolation"), c.after, c.after_count);
+    KeyAttributes linear;
+    linear.flags = kLinear;
+    keys.resize(count, linear);
+    add_handles(keys, c);
+    read_outside(document, node, c);
     check(document, node, c);
     return c;
 }
 
-// Before version 7: `Key: time, value, letter, ...`. C: constant, with s (this value) or n (the next one). L: linear. U, or any
-// other: cubic, with s or b, the slope behind and the slope before the next key; or with a: automatic, no slopes. A cubic key
-// then has a letter for the weights: n none, r the right one, l the next left one, a both. Measured from
+namespace {
+
+// How a cubic key of a take goes on behind its letter: numbers, and letters that say which weights follow.
+struct CubicForm {
+    char letter;
+    uint32_t flags;
+    int numbers;
+    int weights, weights_before_4005;  // before KeyVer 4005
+};
+constexpr CubicForm kCubicForms[] = {
+    {'s', kUser, 2, 1, 1},
+    {'b', kUser, 2, 1, 1},
+    {'a', kClampProgressive | kTimeIndependent, 0, 1, 0},
+    {'d', kClampProgressive | kTimeIndependent, 1, 1, 1},
+    {'p', kClampProgressive | kTimeIndependent, 2, 2, 1},
+    {'q', kClampProgressive | kTimeIndependent, 2, 2, 1},
+    {'t', kTcb, 3, 0, 0},
+};
+
+class TakeKeys {
+ public:
+    TakeKeys(const Document& document, const Node& channel, const Node& key)
+        : document_(document), key_(key), values_(document, key) {
+        const int64_t stated = document.integer(document.child(&channel, "KeyVer"), 0, 0);
+        const int version = document.version();
+        key_version_ = stated > 0 ? stated : version < 5000 ? 4003 : version < 6000 ? 4004 : 4005;
+    }
+    void read(double ticks, Curve& c, std::vector<KeyAttributes>& keys) {
+        for (Value v; values_.next(v);) {
+            if (!v.is_number()) fail(c, "has no time; expected a number");
+            c.times.push_back(v.number / ticks);
+            c.values.push_back(number());
+            keys.push_back(attributes(c));
+        }
+    }
+
+ private:
+    double number() { return values_.next(value_) ? value_.number : 0; }
+    // In binary files letters are whole numbers.
+    char letter() {
+        if (!values_.next(value_)) return '\0';
+        return value_.text.empty() ? static_cast<char>(value_.whole) : value_.text[0];
+    }
+    [[noreturn]] void fail(const Curve& c, const std::string& what) {
+        document_.fail(key_, "key " + std::to_string(c.times.size()) + " " + what);
+    }
+    KeyAttributes attributes(const Curve& c) {
+        KeyAttributes out;
+        const char kind = letter();
+        if (kind == 'C') {
+            out.flags = kConstant | (key_version_ >= 4004 && letter() == 'n' ? kNextValue : 0u);
+        } else if (kind == 'L') {
+            out.flags = kLinear;
+        } else if (kind == 'U') {
+            add_cubic(c, out);
+        } else {
+            fail(c, "is neither constant, linear nor cubic; expected C, L or U");
+        }
+        return out;
+    }
+    void add_cubic(const Curve& c, KeyAttributes& out) {
+        const char found = letter();
+        const auto* const form =
+            std::find_if(std::begin(kCubicForms), std::end(kCubicForms), [&](const CubicForm& f) { return f.letter == found; });
+        if (form == std::end(kCubicForms)) fail(c, "has tangents of an unknown kind; expected one of the letters sbadpqt");
+        out.flags = kCubic | form->flags;
+        for (int i = 0; i < form->numbers; ++i) {
+            const double x = number();
+            if (form->flags & (kUser | kTcb)) out.data[i] = x;
+        }
+        int weights = key_version_ >= 4005 ? form->weights : form->weights_before_4005;
+        if (form->flags == kUser && key_version_ == 4003) weights = 0;
+        for (; weights > 0; --weights) {
+            const char which = letter();
+            if (which == 'r' || which == 'a') out.weight = number();
+            if (which == 'l' || which == 'a') out.next_weight = number();
+        }
+    }
+    const Document& document_;
+    const Node& key_;
+    Values values_;
+    Value value_;
+    int64_t key_version_;
+};
+
+}  // namespace
+
+// Before version 7: `Key: time, value, letter, ...`. C: constant, with s (this value) or n (the next one). L: linear. U: cubic,
+// with one of kCubicForms. The weights' letters: n none, r the right one, l the next left one, a both. Measured from
 // max2009_cube_anim_5800_ascii, max_transformed_skin_6100_ascii, maya_game_sausage_6100_ascii_combined and
-// blender_279_sausage_6100_ascii.
+// blender_279_sausage_6100_ascii; p, q, d and what KeyVer changes: by ufbx, which takes them for automatic.
 Curve read_take_curve(const Document& document, const Node& channel, double ticks) {
     const Node* key = document.child(&channel, "Key");
     Curve c;
-    std::vector<Tangents> tangents;
-    if (key) {
-        Values values(document, *key);
-        Value v;
-        const auto number = [&] { return values.next(v) ? v.number : 0; };
-        // In binary files letters are whole numbers.
-        const auto letter = [&] { return !values.next(v) ? '\0' : v.text.empty() ? static_cast<char>(v.whole) : v.text[0]; };
-        while (values.next(v)) {
-            if (!v.is_number()) {
-                document.fail(*key, "key " + std::to_string(c.times.size()) + " has no time; expected a number");
-            }
-            c.times.push_back(v.number / ticks);
-            c.values.push_back(number());
-            Tangents t;
-            const char kind = letter();
-            if (kind == 'C') {
-                t.flags = kConstant | (letter() == 'n' ? kNextValue : 0u);
-            } else if (kind == 'L') {
-                t.flags = kLinear;
-            } else {
-                if (letter() == 'a') {
-                    t.flags = kAuto;
-                } else {
-                    t.slope = number();
-                    t.next_slope = number();
-                }
-                const char weights = letter();
-                if (weights == 'r' || weights == 'a') t.weight = number();
-                if (weights == 'l' || weights == 'a') t.next_weight = number();
-            }
-            tangents.push_back(t);
-        }
-    }
+    std::vector<KeyAttributes> keys;
+    if (key) TakeKeys(document, channel, *key).read(ticks, c, keys);
     if (c.times.empty()) {
         const Node* rest = document.child(&channel, "Default");
         return rest ? Curve::constant(document.number(rest, 0, 0)) : c;
     }
-    add_handles(tangents, c);
+    add_handles(keys, c);
+    read_outside(document, channel, c);
     check(document, channel, c);
     return c;
 }

@@ -1,5 +1,7 @@
 // deformers.cpp -- skins and morphs: what moves the vertices of a mesh.
 #include <algorithm>
+#include <optional>
+#include <unordered_map>
 
 #include "../common/keys.hpp"
 #include "../common/mesh_arrays.hpp"
@@ -8,14 +10,55 @@
 namespace fbx_import {
 namespace {
 
+// Where models stood when skins were bound: `Pose: "Pose::skin", "BindPose" { PoseNode: { Node: "Model::Bone"  Matrix: ... }
+// }`, with ids in place of names from version 7 on. Measured from maya_game_sausage_7500_binary_combined.
+class BindPoses {
+ public:
+    explicit BindPoses(const Context& context) : context_(context) {}
+    std::optional<Transform> of(uint32_t model) {
+        if (!is_read_) read();
+        const auto found = matrices_.find(key(*context_.objects[model].node));
+        if (found == matrices_.end()) return {};
+        return matrix(context_.document, *found->second, "Matrix");
+    }
+    // A child of 16 numbers, column by column.
+    static std::optional<Transform> matrix(const Document& document, const Node& node, std::string_view name) {
+        const std::vector<double> numbers = document.numbers<double>(&node, name);
+        if (numbers.size() < 16) return {};
+        return from_columns(numbers.data());
+    }
+
+ private:
+    std::string key(const Node& node) const {
+        const Value v = context_.document.value(node, 0);
+        return v.kind == Value::integer ? std::to_string(v.whole) : std::string(v.text);
+    }
+    void read() {
+        const Document& document = context_.document;
+        is_read_ = true;
+        for (const uint32_t pose : context_.objects.of_kind("Pose")) {
+            if (document.text(context_.objects[pose].node, "Type") == "RestPose") continue;
+            for (const Node& placed : document.children(*context_.objects[pose].node)) {
+                const Node* model = placed.name == "PoseNode" ? document.child(&placed, "Node") : nullptr;
+                if (model) matrices_.emplace(key(*model), &placed);
+            }
+        }
+    }
+    const Context& context_;
+    bool is_read_ = false;
+    std::unordered_map<std::string, const Node*> matrices_;
+};
+
 class Deformers {
  public:
-    Deformers(const Context& context, const std::vector<SceneNode>& nodes, const SceneMesh& mesh, Morphs& morphs)
+    Deformers(const Context& context, const std::vector<SceneNode>& nodes, const SceneMesh& mesh, BindPoses& poses,
+              Morphs& morphs)
         : context_(context),
           document_(context.document),
           nodes_(nodes),
           mesh_(mesh),
           copies_(mesh.points, mesh.copy_of),
+          poses_(poses),
           morphs_(morphs) {}
     void add();
 
@@ -23,6 +66,9 @@ class Deformers {
     void add_skin(uint32_t skin);
     void add_oldest_skin();
     void add_bone(const Node& cluster, uint32_t bone);
+    std::optional<Transform> bone_from_node(const Node& cluster, uint32_t bone) const;
+    void add_oldest_shapes();
+    double oldest_weight(const std::string& shape) const;
     void add_channel(uint32_t channel);
     void add_shape(const Node& shape, double weight, const std::vector<double>& percentages, importers::Morph& morph);
     void pass(importers::Morph& morph, uint32_t owner, const std::string& key);
@@ -32,8 +78,10 @@ class Deformers {
     const std::vector<SceneNode>& nodes_;
     const SceneMesh& mesh_;
     const importers::CopiesOfVertices copies_;
+    BindPoses& poses_;
     Morphs& morphs_;
     importers::Skin skin_;
+    size_t bones_left_out_ = 0;
 };
 
 void Deformers::add() {
@@ -55,14 +103,12 @@ void Deformers::add() {
     const Node* geometry = objects[mesh_.object].node;
     if (!has_skin && document_.child(geometry, "Link")) add_oldest_skin();
     if (!skin_.bones.empty()) skin_.pass(mesh_.id, context_.sink);
-    // Before version 7, shapes are blocks of the model (measured from maya_blend_shape_cube_6100_binary).
-    for (const Node& shape : document_.children(*geometry)) {
-        if (shape.name != "Shape") continue;
-        importers::Morph morph;
-        morph.name = document_.text(&shape, 0);
-        add_shape(shape, 1, {}, morph);
-        pass(morph, mesh_.object, morph.name);
+    if (bones_left_out_ > 0) {
+        const std::string many = bones_left_out_ == 1 ? "a bone" : std::to_string(bones_left_out_) + " bones";
+        context_.warn(many + " of the skin of '" + objects[mesh_.object].name +
+                      "' left out: the file has no such node, or does not say where it stood when it was bound");
     }
+    if (document_.version() < 7000) add_oldest_shapes();
 }
 
 // Clusters hang from the skin, and the model of a bone hangs from each cluster. Transform: from the mesh to the bone, when both
@@ -71,7 +117,7 @@ void Deformers::add_skin(uint32_t skin) {
     const Objects& objects = context_.objects;
     for (const uint32_t cluster : objects.below(skin, "Deformer", "Cluster")) {
         const std::vector<uint32_t> bones = objects.below(cluster, "Model");
-        if (!bones.empty()) add_bone(*objects[cluster].node, bones[0]);
+        add_bone(*objects[cluster].node, bones.empty() ? kNoObject : bones[0]);
     }
     const std::string_view type = document_.text(objects[skin].node, "SkinningType");
     if (type == "DualQuaternion") skin_.method = RT_SKIN_DUAL_QUATERNION;
@@ -90,18 +136,21 @@ void Deformers::add_skin(uint32_t skin) {
 // Up to version 5.8: `Link: "Bone" { Indexes, Weights, Transform }` in the model (measured from max7_skin_5000_binary).
 void Deformers::add_oldest_skin() {
     for (const Node& link : document_.children(*context_.objects[mesh_.object].node)) {
-        const uint32_t bone = link.name == "Link" ? context_.objects.find(document_.text(&link, 0)) : kNoObject;
-        if (bone != kNoObject) add_bone(link, bone);
+        if (link.name == "Link") add_bone(link, context_.objects.find(document_.text(&link, 0)));
     }
 }
 
 void Deformers::add_bone(const Node& cluster, uint32_t bone) {
     const std::vector<int32_t> indices = document_.numbers<int32_t>(&cluster, "Indexes");
     const std::vector<float> weights = document_.numbers<float>(&cluster, "Weights");
+    if (indices.empty()) return;
     const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const SceneNode& n) { return n.object == bone; });
-    const std::vector<double> to_bone = document_.numbers<double>(&cluster, "Transform");
-    if (indices.empty() || node == nodes_.end() || to_bone.size() < 16) return;
-    const Transform bind = multiply(from_columns(to_bone.data()), nodes_[mesh_.node].geometry);
+    const std::optional<Transform> to_bone = node == nodes_.end() ? std::nullopt : bone_from_node(cluster, bone);
+    if (!to_bone) {
+        ++bones_left_out_;
+        return;
+    }
+    const Transform bind = multiply(*to_bone, nodes_[mesh_.node].geometry);
     if (!is_finite(bind)) document_.fail(cluster, "the matrix of a bone is not finite");
     rt_bone out{};
     out.node = node->id;
@@ -111,6 +160,40 @@ void Deformers::add_bone(const Node& cluster, uint32_t bone) {
     for (size_t i = 0; i < std::min(indices.size(), weights.size()); ++i) {
         copies_.each(indices[i], [&](rt_u32 v) { skin_.weights.push_back({v, number, weights[i]}); });
     }
+}
+
+// Where a cluster has no Transform, the place of the bone at binding (TransformLink) and that of the mesh's node give it.
+std::optional<Transform> Deformers::bone_from_node(const Node& cluster, uint32_t bone) const {
+    if (const auto stated = BindPoses::matrix(document_, cluster, "Transform")) return stated;
+    std::optional<Transform> link = BindPoses::matrix(document_, cluster, "TransformLink");
+    if (!link) link = poses_.of(bone);
+    const std::optional<Transform> mesh = poses_.of(nodes_[mesh_.node].object);
+    Transform to_bone{};
+    if (!link || !mesh || !invert(*link, to_bone)) return {};
+    return multiply(to_bone, *mesh);
+}
+
+// Before version 7, shapes are blocks of the model, and the model has a property with the name of each, in percent (measured
+// from maya_blend_shape_cube_6100_binary).
+void Deformers::add_oldest_shapes() {
+    for (const Node& shape : document_.children(*context_.objects[mesh_.object].node)) {
+        if (shape.name != "Shape") continue;
+        importers::Morph morph;
+        morph.name = document_.text(&shape, 0);
+        morph.weight = oldest_weight(morph.name) / 100;
+        add_shape(shape, 1, {}, morph);
+        pass(morph, mesh_.object, morph.name);
+    }
+}
+
+// In percent. Up to version 5.8, the default of a channel of the model or of the current take, as of transforms (measured from
+// max7_blend_cube_5000_binary of ufbx).
+double Deformers::oldest_weight(const std::string& shape) const {
+    if (document_.version() >= 6000) return context_.properties(mesh_.object).number(shape, 0);
+    const Node* model = context_.objects[mesh_.object].node;
+    const Node* channel = document_.child(model, "Channel", shape + kShapeSuffix);
+    if (!channel) channel = document_.child(in_current_take(document_, *model), "Channel", shape + kShapeSuffix);
+    return document_.number(document_.child(channel, "Default"), 0, 0);
 }
 
 // FullWeights: at which percentage of DeformPercent each shape is reached. Source: FBX SDK help, "FbxBlendShapeChannel".
@@ -159,7 +242,8 @@ void Deformers::pass(importers::Morph& morph, uint32_t owner, const std::string&
 
 void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes,
                    Morphs& morphs) {
-    for (const SceneMesh& mesh : meshes) Deformers(context, nodes, mesh, morphs).add();
+    BindPoses poses(context);
+    for (const SceneMesh& mesh : meshes) Deformers(context, nodes, mesh, poses, morphs).add();
 }
 
 }  // namespace fbx_import

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../common/file_kind.hpp"
+#include "../common/text_lines.hpp"
 #include "binary.hpp"
 
 namespace fbx_import {
@@ -89,7 +90,11 @@ std::string_view Document::text(const Node* node, size_t i) const {
 }
 
 void Document::fail(const char* at, const std::string& what) const {
-    const auto number = binary_ ? at - bytes_.data() : 1 + std::count(bytes_.data(), at, '\n');
+    size_t number = binary_ ? static_cast<size_t>(at - bytes_.data()) : 1;
+    if (!binary_) {
+        importers::Lines lines(bytes_);
+        for (std::string_view line; lines.next(line) && lines.rest().data() <= at;) ++number;
+    }
     throw Broken((binary_ ? "byte " : "line ") + std::to_string(number) + ": " + what);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "../common/mapped_file.hpp"
+#include "../common/text_lines.hpp"
 #include "binary.hpp"
 #include "scene.hpp"
 
@@ -55,9 +56,9 @@ int32_t load_file(const rt_host* host, const char* given_path, const double*, co
 int32_t probe(const uint8_t* head, uint64_t bytes) {
     std::string_view text(reinterpret_cast<const char*>(head), bytes);
     if (text.substr(0, kMagic.size()) == kMagic) return 100;
-    if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
+    text = importers::without_mark(text);
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-    const std::string_view line = text.substr(0, text.find('\n'));
+    const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
     if (line.substr(0, 1) == ";" && line.find("FBX") != line.npos) return 95;
     return line.substr(0, 18) == "FBXHeaderExtension" ? 95 : 0;
 }

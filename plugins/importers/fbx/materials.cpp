@@ -36,6 +36,11 @@ bool is_transformed(const Properties& p) {
            p.whole("UVSwap", 0) != 0;
 }
 
+// 0 repeat, 1 clamp. Source: FBX SDK help, "FbxTexture::EWrapMode".
+rt_u32 wrap_mode(const Properties& p, const char* name) {
+    return p.whole(name, 0) == 1 ? RT_WRAP_CLAMP : RT_WRAP_REPEAT;
+}
+
 }  // namespace
 
 // UVSet: the `Name` of a layer. Source: FBX SDK help, "FbxTexture".
@@ -85,6 +90,8 @@ rt_u32 Materials::picture(uint32_t texture) {
     if (is_transformed(context_.properties(texture))) ++transformed_;
     rt_texture_desc out{};
     out.struct_bytes = sizeof out;
+    out.wrap_u = wrap_mode(context_.properties(texture), "WrapModeU");
+    out.wrap_v = wrap_mode(context_.properties(texture), "WrapModeV");
     std::string content, path;
     for (const uint32_t video : context_.objects.below(texture, "Video")) {
         const Node* found = document.child(context_.objects[video].node, "Content");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 
 #include "../common/mesh_arrays.hpp"
 #include "layers.hpp"
@@ -140,6 +141,22 @@ void show(const Context& context, const SceneNode& node, rt_u32 mesh) {
     rt::id(context.sink.instance(context.sink.ctx, &out));
 }
 
+// Warns about colours of vertices.
+void report_colors(const Context& context, const std::vector<Wanted>& wanted) {
+    std::set<uint32_t> colored;  // geometries, which may be wanted several times
+    const Wanted* first = nullptr;
+    for (const Wanted& w : wanted) {
+        const Node* layer = context.document.child(w.geometry, "LayerElementColor");
+        if (!context.document.child(layer, "Colors")) continue;
+        if (!first) first = &w;
+        colored.insert(w.object);
+    }
+    if (!first) return;
+    context.warn("LayerElementColor of '" + context.objects[first->object].name +
+                 "': colours of vertices are not read; they are left out" +
+                 (colored.size() > 1 ? ", in " + std::to_string(colored.size()) + " meshes" : ""));
+}
+
 // Numbers of geometry that are decoded at the same time, about: 12 MB.
 constexpr uint64_t kBatchNumbers = 3u << 20;
 
@@ -189,6 +206,7 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
         rt::progress(context.host, 0.1f + 0.8f * static_cast<float>(first) / static_cast<float>(wanted.size()));
     }
     materials.report();
+    report_colors(context, wanted);
     for (const auto& [node, mesh] : shown) show(context, nodes[node], meshes[mesh].id);
     return meshes;
 }

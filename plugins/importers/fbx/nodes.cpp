@@ -1,26 +1,37 @@
 #include <algorithm>
 #include <functional>
-#include <set>
 
 #include "scene.hpp"
 
 namespace fbx_import {
 namespace {
 
-// Levels of nodes, at most; and how many times as many nodes as models there may be, because models with several parents are
-// copied.
+// Levels of nodes, at most; and how many times as many nodes as models there may be, because models whose connections mean
+// others of the same name, too, are copied.
 constexpr uint32_t kMaxNodeDepth = 1000;
 constexpr size_t kMaxCopies = 16;
 
-// Models without a parent are shown too: MotionBuilder's own cameras have none (motionbuilder_cube_7700_binary).
-std::vector<uint32_t> top_models(const Objects& objects) {
-    std::vector<uint32_t> out = objects.below(kRoot, "Model");
-    const std::set<uint32_t> below_root(out.begin(), out.end());
+// The parent of each model: a model, the root, or kNoObject. A node has one. If the file connects it to several, the one that
+// stands last in the list of objects counts, as in ufbx (synthetic_node_dag_7700_ascii); the FBX SDK's help does not say.
+std::vector<uint32_t> parents_of_models(const Context& context) {
+    const Objects& objects = context.objects;
+    std::vector<uint32_t> out(objects.size(), kNoObject);
+    std::string first;
+    size_t count = 0;
     for (const uint32_t model : objects.of_kind("Model")) {
-        const std::vector<const Link*>& above = objects.above(model);
-        const auto is_parent = [&](const Link* link) { return link->property.empty() && objects[link->to].kind == "Model"; };
-        if (!below_root.count(model) && std::none_of(above.begin(), above.end(), is_parent)) out.push_back(model);
+        uint32_t& parent = out[model];
+        bool has_several = false;
+        for (const Link* link : objects.above(model)) {
+            const bool is_parent = link->to == kRoot || objects[link->to].kind == "Model";
+            if (!is_parent || !link->property.empty() || !link->from_property.empty()) continue;
+            has_several = has_several || (parent != kNoObject && parent != link->to);
+            parent = parent == kNoObject ? link->to : std::max(parent, link->to);
+        }
+        if (!has_several || objects[model].has_namesakes) continue;
+        const std::string name = parent == kRoot ? "the root" : "'" + objects[parent].name + "'";
+        if (count++ == 0) first = "the node '" + objects[model].name + "' hangs from several nodes; it is shown below " + name;
     }
+    if (count > 0) context.warn(first + " only" + (count > 1 ? ", and so are " + std::to_string(count - 1) + " others" : ""));
     return out;
 }
 
@@ -33,10 +44,7 @@ const Node* axis_of(const Document& document, const Node* owner, const char* let
 // Up to version 5.8, the values at rest are the defaults of the channels, of the model itself (measured from
 // max7_skin_5000_binary) or of the current take (measured from max2009_cube_anim_5800_ascii).
 Vec3 oldest_rest(const Document& document, const Object& model, const char* letter, Vec3 out) {
-    const Node* takes = document.child(&document.root(), "Takes");
-    const Node* take = document.child(takes, "Take", document.text(takes, "Current"));
-    if (!take) take = document.child(takes, "Take");
-    const Node* in_take = document.child(take, "Model", document.text(model.node, 0));
+    const Node* in_take = in_current_take(document, *model.node);
     for (size_t k = 0; k < 3; ++k) {
         const std::string_view axis = std::string_view("XYZ").substr(k, 1);
         const Node* found = axis_of(document, model.node, letter, axis);
@@ -103,11 +111,13 @@ SceneNode pass(const Context& context, uint32_t model, uint32_t parent, const st
 std::vector<SceneNode> read_nodes(const Context& context) {
     const Objects& objects = context.objects;
     const std::vector<uint32_t> models = objects.of_kind("Model");
+    const std::vector<uint32_t> parents = parents_of_models(context);
     std::vector<bool> is_open(objects.size()), is_done(objects.size());
     std::vector<SceneNode> nodes;
     const auto fail = [&](uint32_t model, const std::string& what) {
         context.document.fail(*objects[model].node, "the node '" + objects[model].name + "' " + what);
     };
+    std::function<void(uint32_t, uint32_t, uint32_t)> add_below;
     const std::function<void(uint32_t, uint32_t, uint32_t)> add = [&](uint32_t model, uint32_t parent, uint32_t depth) {
         if (is_open[model]) fail(model, "hangs from itself: the nodes form a circle; expected a tree");
         if (depth > kMaxNodeDepth) fail(model, "has more than 1000 nodes above it; expected at most that");
@@ -116,10 +126,21 @@ std::vector<SceneNode> read_nodes(const Context& context) {
         is_open[model] = is_done[model] = true;
         nodes.push_back(pass(context, model, parent, nodes));
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);
-        for (const uint32_t child : objects.below(model, "Model")) add(child, index, depth + 1);
+        add_below(model, index, depth + 1);
         is_open[model] = false;
     };
-    for (const uint32_t model : top_models(objects)) add(model, kNoObject, 0);
+    add_below = [&](uint32_t above, uint32_t parent, uint32_t depth) {
+        for (const uint32_t child : objects.below(above, "Model")) {
+            // Where names are ids, each connection may mean another model of the same name (see Objects::add).
+            const bool is_own = parents[child] == above && !is_done[child];
+            if (is_own || objects[child].has_namesakes) add(child, parent, depth);
+        }
+    };
+    add_below(kRoot, kNoObject, 0);
+    // Models without a parent are shown too: MotionBuilder's own cameras have none (motionbuilder_cube_7700_binary).
+    for (const uint32_t model : models) {
+        if (parents[model] == kNoObject) add(model, kNoObject, 0);
+    }
     for (const uint32_t model : models) {
         if (!is_done[model]) fail(model, "hangs from itself: the nodes form a circle; expected a tree");
     }

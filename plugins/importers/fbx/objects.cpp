@@ -80,7 +80,11 @@ void Objects::add(const Node& node) {
         by_id_.emplace(first.whole, index);
         return;
     }
-    if (!by_name_.emplace(name, index).second && object.kind == "Model") all_.back().kind = "Model again";
+    const auto [known, is_first] = by_name_.emplace(name, index);
+    if (!is_first && object.kind == "Model") {
+        all_[known->second].has_namesakes = true;
+        all_.back().kind = "Model again";
+    }
     // A model's camera, light or mesh is part of it, and has a second name (measured from maya_node_attribute_zoo_6100_binary).
     const std::string_view inner = document_.text(&node, "NodeAttributeName");
     if (!inner.empty()) by_name_.emplace(inner, index);

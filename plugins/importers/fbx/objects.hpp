@@ -15,6 +15,7 @@ struct Object {
     std::string_view kind;       // "Model", "Geometry", "Material"
     std::string_view type;       // "Mesh", "Camera", "Skin"
     std::string name;
+    bool has_namesakes = false;  // further models have the same name, which is their id
 };
 
 // `from` hangs from `to`, or from its property.

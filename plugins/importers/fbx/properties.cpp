@@ -4,11 +4,12 @@ namespace fbx_import {
 
 // Version 7: `Properties70`, each `P: "name", "type", "label", "flags", values`. Version 6: `Properties60`, each
 // `Property: "name", "type", "flags", values`. Before: children of the object by their names. Source: Blender developer blog;
-// measured from max_quote_6100_ascii and max2009_blob_5800_ascii.
+// measured from max_quote_6100_ascii and max2009_blob_5800_ascii. Of two of a name, the last one counts, as in ufbx
+// (synthetic_duplicate_prop_7500_ascii).
 Properties::Properties(const Document& document, const Node* object, const Node* defaults)
     : document_(document), object_(object) {
-    add(object);
     add(defaults);
+    add(object);
 }
 
 void Properties::add(const Node* owner) {
@@ -17,7 +18,7 @@ void Properties::add(const Node* owner) {
         if (!list) continue;
         for (const Node& node : document_.children(*list)) {
             const bool is_new = node.name == "P";
-            if (is_new || node.name == "Property") places_.emplace(document_.text(&node, 0), Place{&node, is_new ? 4u : 3u});
+            if (is_new || node.name == "Property") places_[document_.text(&node, 0)] = {&node, is_new ? 4u : 3u};
         }
     }
 }

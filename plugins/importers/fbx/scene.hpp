@@ -92,6 +92,11 @@ void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, 
                    Morphs& morphs);
 // Reads the geometry cache that a deformer names. Missing or damaged files give a warning.
 void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer);
+// Up to version 5.8, this stands behind a shape's name in that of its channel (measured from max7_blend_cube_5000_binary of
+// ufbx).
+inline constexpr char kShapeSuffix[] = " (Shape)";
+// The channels of a model in the file's current take, or its first one; nullptr: there are none. Before version 7.
+const Node* in_current_take(const Document& document, const Node& model);
 // Frames a second; 0: the file does not say.
 double frames_of_second(const Document& document, const Objects& objects);
 void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs);

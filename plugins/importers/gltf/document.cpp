@@ -1,5 +1,7 @@
 #include "document.hpp"
 
+#include <algorithm>
+
 #include "../common/file_kind.hpp"
 
 namespace gltf_import {
@@ -15,6 +17,46 @@ uint32_t read_u32(std::string_view bytes, size_t at) {
 
 [[noreturn]] void refuse(size_t byte, const std::string& found, const std::string& expected) {
     throw Error("byte " + std::to_string(byte) + ": found " + found + ", expected " + expected);
+}
+
+// "line 3, column 7 (byte 52)", for a character of the JSON text, which begins at `first_byte` of the file.
+std::string place(std::string_view text, size_t at, size_t first_byte) {
+    const std::string_view before = text.substr(0, at);
+    const auto line_first = before.begin() + static_cast<std::ptrdiff_t>(before.rfind('\n') + 1);  // npos + 1 is 0
+    const auto column = std::count_if(line_first, before.end(), [](char c) { return (c & 0xC0) != 0x80; });
+    return "line " + std::to_string(std::count(before.begin(), before.end(), '\n') + 1) + ", column " +
+           std::to_string(column + 1) + " (byte " + std::to_string(first_byte + at) + "): ";
+}
+
+// Values are compared, shown and destroyed by recursion. glTF needs about ten levels; `extras` may hold anything. nlohmann's
+// callback for the depth takes time that is quadratic in the length of arrays.
+void limit_depth(std::string_view text, size_t first_byte) {
+    constexpr size_t kMostLevels = 128;
+    size_t depth = 0;
+    for (size_t at = 0; (at = text.find_first_of("\"[]{}", at)) != text.npos; ++at) {
+        if (text[at] == '"') {
+            for (++at; at < text.size() && text[at] != '"'; ++at) at += text[at] == '\\';
+        } else if (text[at] == ']' || text[at] == '}') {
+            depth -= depth > 0;
+        } else if (++depth > kMostLevels) {
+            throw Error(place(text, at, first_byte) +
+                        "found another level, expected at most 128 arrays and objects in each other");
+        }
+    }
+}
+
+// What the parser says behind " - " or behind its own name: "unexpected '}'; expected string literal", "invalid string: missing
+// closing quote; last read: '"roo'".
+std::string in_our_words(const std::string& message) {
+    std::string out;
+    const size_t dash = message.find(" - "), name = message.find("] ");
+    for (const char c : message.substr(dash != message.npos ? dash + 3 : name != message.npos ? name + 2 : 0))
+        out += c >= ' ' && c <= '~' ? c : '?';
+    if (out.compare(0, 11, "unexpected ") == 0) out.erase(0, 11);
+    const size_t expected = out.rfind("; expected ");
+    const std::string rest = expected == out.npos ? ", expected JSON" : ", " + out.substr(expected + 2);
+    out.resize(std::min(expected, out.size()));
+    return "found " + (out.size() > 120 ? out.substr(0, 120) + "..." : out) + rest.substr(0, 120);
 }
 
 // The required extensions that this importer obeys. Those of materials and textures are not listed: without them only the
@@ -81,8 +123,19 @@ void Document::parse_chunks(std::string_view bytes) {
 
 void Document::parse_json(std::string_view text, size_t first_byte) {
     while (!text.empty() && text.back() == '\0') text.remove_suffix(1);  // some programs fill chunks up with zeros
-    check_json(text, first_byte);
-    json_ = nlohmann::json::parse(text.begin(), text.end());
+    limit_depth(text, first_byte);
+    try {
+        json_ = nlohmann::json::parse(text.begin(), text.end());
+    } catch (const nlohmann::json::parse_error& error) {
+        throw Error(place(text, std::min(error.byte - std::min<size_t>(error.byte, 1), text.size()), first_byte) +
+                    in_our_words(error.what()));
+    } catch (const nlohmann::json::out_of_range& error) {  // "number overflow parsing '1e999'"
+        const std::string message = error.what();
+        const size_t quote = message.find('\'') + 1;
+        const std::string number = message.substr(quote, message.rfind('\'') - quote);
+        throw Error(place(text, text.find(number), first_byte) + "found " + in_quotes(number) +
+                    ", expected a number that a computer can hold");
+    }
 }
 
 void Document::check_version() const {

@@ -9,6 +9,12 @@ const nlohmann::json kEmptyArray = nlohmann::json::array(), kEmptyObject = nlohm
 
 }  // namespace
 
+std::string in_quotes(std::string_view text) {
+    std::string out = "'";
+    for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' ? c : '?';
+    return out + (text.size() > 60 ? "...'" : "'");
+}
+
 std::string Value::found() const {
     if (json_->is_string()) return in_quotes(json_->get_ref<const std::string&>());
     if (json_->is_object()) return "an object";

@@ -4,11 +4,19 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
-
-#include "json_text.hpp"
+#include <string_view>
 
 namespace gltf_import {
+
+// The file is wrong. The text says where and why, without the file's name.
+struct Error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// Returns the text for a message: shortened, printable, in quotes.
+std::string in_quotes(std::string_view text);
 
 // Refers to the document; copies are cheap. All functions throw Error if the file has something else than they expect, for
 // example "accessors[3].bufferView: found 17, expected the index of one of 4 bufferViews".

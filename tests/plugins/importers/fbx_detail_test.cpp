@@ -60,6 +60,27 @@ TEST_P(FbxDetailForm, WarnsThatTransformsOfTexturesAreLeftOut) {
     EXPECT_FALSE(warns_of(scene_with({property("Scaling", {1, 1, 1})}), "transforms"));
 }
 
+TEST_P(FbxDetailForm, TakesWrapModesOfTextures) {
+    folder_.write("dot.ppm", "P6 1 1 255\nabc");
+    const auto wraps_of = [&](const std::vector<FbxNode>& properties) {
+        FbxNode with_picture = texture(5, properties);
+        with_picture.children.push_back(node("FileName", {text("dot.ppm")}));
+        const Scene scene = import({geometry(1, {uv_set(0, "plain", 0)}), model(2, "A"), material(3), with_picture},
+                                   {link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor")});
+        EXPECT_EQ(scene.textures.size(), 1u);
+        return scene.textures.empty() ? std::pair<rt_u32, rt_u32>(9, 9)
+                                      : std::pair<rt_u32, rt_u32>(scene.textures[0].wrap % RT_WRAP_ALONG_V,
+                                                                  scene.textures[0].wrap / RT_WRAP_ALONG_V);
+    };
+    const auto mode = [](const std::string& name, int64_t value) {
+        return node("P", {text(name), text("enum"), text(""), text(""), whole(value)});
+    };
+    using Modes = std::pair<rt_u32, rt_u32>;
+    EXPECT_EQ(wraps_of({}), Modes(RT_WRAP_REPEAT, RT_WRAP_REPEAT));
+    EXPECT_EQ(wraps_of({mode("WrapModeU", 0), mode("WrapModeV", 1)}), Modes(RT_WRAP_REPEAT, RT_WRAP_CLAMP));
+    EXPECT_EQ(wraps_of({mode("WrapModeU", 1), mode("WrapModeV", 0)}), Modes(RT_WRAP_CLAMP, RT_WRAP_REPEAT));
+}
+
 // Two triangles that meet at a right angle along the edge from vertex 0 to vertex 1.
 FbxNode roof(const std::string& mapping, const Indices& smoothing) {
     return node("Geometry", {whole(1), text("Geometry::Roof"), text("Mesh")},

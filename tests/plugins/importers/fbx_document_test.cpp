@@ -191,5 +191,79 @@ TEST(FbxDocument, ReadsTextAsProgramsWriteIt) {
     EXPECT_EQ(document.version(), 6100);
 }
 
+std::string with_ends(const std::string& text, const std::string& end) {
+    std::string out;
+    for (const char c : text) out += c == '\n' ? end : std::string(1, c);
+    return out;
+}
+
+// Each of these lists means 1, 2, 3, -4, with each end of line, behind a byte order mark and not.
+TEST(FbxDocument, BreaksListsWhereProgramsDo) {
+    for (const char* const list :
+         {"1,2,3,-4", "1,2,\n3,-4", "1,2\n3,-4", "1,2\n,3,-4", "1\n2\n3\n-4", "1,2\n\n\n,\n3,-4", "\n1,2,3,-4",
+          "1,2, ; the first two\n3,-4", "1,2 ; a: 5, {\n\t3,-4", "1,2\n; a line: of { its own\n3,-4",
+          "; first\n1,2,3,-4 ; last", "1 , 2 , 3 , -4", "1 2 3 -4", "1,2,3,-4,", "+1,2e0,\t3.0,-4.", "1,2,3\n\t-4\n\t"}) {
+        const std::string text = "; FBX 7.4.0 project file\nObjects:  {\n\tVertices: *4 {\n\t\ta: " + std::string(list) +
+                                 "\n\t} \n\tEdges: *1\n\t{ a: 7 }\n\tPolygons: " + list + "\n\tLast: 5\n}\n";
+        for (const char* const end : {"\n", "\r\n", "\r"}) {
+            for (const char* const mark : {"", "\xEF\xBB\xBF"}) {
+                SCOPED_TRACE(list + std::string(mark) + std::to_string(end[0]) + std::to_string(end[1]));
+                const std::string bytes = mark + with_ends(text, end);
+                const Document document(bytes);
+                const Node* objects = document.child(&document.root(), "Objects");
+                EXPECT_EQ(document.numbers<int32_t>(objects, "Vertices"), (std::vector<int32_t>{1, 2, 3, -4}));
+                EXPECT_EQ(document.numbers<double>(objects, "Edges"), std::vector<double>{7});
+                EXPECT_EQ(document.numbers<float>(objects, "Polygons"), (std::vector<float>{1, 2, 3, -4}));
+                EXPECT_EQ(document.integer(document.child(objects, "Last"), 0, 0), 5);
+            }
+        }
+    }
+}
+
+TEST(FbxDocument, TakesWordsOfTheFormatInNamesAndComments) {
+    const std::string bytes =
+        "; FBX: *4 {\nHead: 1\nModel: 3, \"Model::a; b { } , Model: 5 # *2\", \"x\" { ; { \n\tInner: ; 1\n\t}\n"
+        "Shading: T ; Culling: 7\nPath: C:\\a\\b.png, D:x\nTime: 12:30:05\nVersion: 2 Next: 3\n\tLast: \"a\nb\"";
+    const Document document(bytes + std::string(3, '\0'));
+    const auto value = [&](const char* name, size_t i) { return document.text(document.child(&document.root(), name), i); };
+    EXPECT_EQ(value("Model", 1), "Model::a; b { } , Model: 5 # *2");
+    EXPECT_TRUE(document.child(document.child(&document.root(), "Model"), "Inner"));
+    EXPECT_EQ(value("Shading", 0), "T");
+    EXPECT_FALSE(document.child(&document.root(), "Culling"));
+    EXPECT_EQ(value("Path", 0), "C:\\a\\b.png");
+    EXPECT_EQ(value("Path", 1), "D:x");
+    EXPECT_EQ(value("Time", 0), "12:30:05");
+    EXPECT_EQ(document.integer(document.child(&document.root(), "Version"), 0, 0), 2);
+    EXPECT_EQ(document.integer(document.child(&document.root(), "Next"), 0, 0), 3);
+    EXPECT_EQ(value("Last", 0), "a\nb");
+}
+
+// Base64 may be cut anywhere, also within the digits of one byte.
+TEST(FbxDocument, JoinsContentInPieces) {
+    for (const char* const pieces : {"\"QUJDRA==\"", ",\n\t\"QUJD\",\n\t\"RA==\"", "\"QUJ\"\n\"DRA==\"",
+                                     "\"Q\",\"UJDR\",\"A==\"", "\"QUJDRA=\",\"=\"", "\"QUJD\nRA==\"", "\"QQ==\", \"QkNE\""}) {
+        const std::string bytes = "; FBX 7.4.0 project file\nContent: " + std::string(pieces) + "\nLast: 1\n";
+        const Document document(bytes);
+        EXPECT_EQ(document.content(*document.child(&document.root(), "Content")), "ABCD") << pieces;
+    }
+}
+
+// In time that is linear in their length, or this test takes hours.
+TEST(FbxDocument, PassesManyOfOneCharacter) {
+    for (const char* const part :
+         {":", ": ", "a:", " :a", ",", "\n", "\n,", ";", "-", "1 ", "\"\"", "; \r", "{}", "*", "a\n:"}) {
+        std::string bytes = "; FBX 7.4.0 project file\nA: 1";
+        while (bytes.size() < 1u << 20) bytes += part;
+        trouble(bytes);
+    }
+}
+
+TEST(FbxDocument, CountsLinesOfEachKindInMessages) {
+    for (const char* const end : {"\n", "\r\n", "\r"}) {
+        const std::string why = trouble(with_ends("; FBX 7.4.0 project file\n\nVertices: *2 {\n\ta: 1,x\n}\n", end));
+        EXPECT_NE(why.find("line 4: found 'x'"), std::string::npos) << why;
+    }
+}
+
 }  // namespace
 }  // namespace clarity::test

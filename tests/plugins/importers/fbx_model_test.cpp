@@ -14,14 +14,47 @@ namespace {
 class FbxModelForm : public FbxForms {};
 INSTANTIATE_TEST_SUITE_P(Forms, FbxModelForm, kFbxForms, fbx_form_name);
 
-TEST_P(FbxModelForm, ShowsAMeshBelowEachOfItsParents) {
-    const Scene scene = import({geometry(1), model(2, "Shown"), model(3, "Left", {property("Lcl Translation", {-5, 0, 0})}),
+TEST_P(FbxModelForm, ShowsAMeshBelowEachModelThatHasIt) {
+    const Scene scene = import({geometry(1), model(3, "Left", {property("Lcl Translation", {-5, 0, 0})}),
                                 model(4, "Right", {property("Lcl Translation", {5, 0, 0})})},
-                               {link(3, 0), link(4, 0), link(2, 3), link(2, 4), link(1, 2)});
+                               {link(3, 0), link(4, 0), link(1, 3), link(1, 4)});
     EXPECT_EQ(scene.meshes.size(), 1u);
     ASSERT_EQ(scene.instances.size(), 2u);
     EXPECT_EQ(scene.bounds().min[0], -5);
     EXPECT_EQ(scene.bounds().max[0], 6);
+}
+
+// A node has one parent: the last one in the list of objects, in whichever order the connections come.
+TEST_P(FbxModelForm, ShowsANodeOfSeveralParentsOnce) {
+    const std::vector<FbxNode> objects = {geometry(1), model(2, "Shown"),
+                                          model(3, "Left", {property("Lcl Translation", {-5, 0, 0})}),
+                                          model(4, "Right", {property("Lcl Translation", {5, 0, 0})})};
+    const auto expect_right = [&](const std::vector<FbxNode>& links) {
+        const Scene scene = import(objects, links);
+        ASSERT_EQ(scene.instances.size(), 1u);
+        EXPECT_EQ(scene.bounds().min[0], 5);
+        ASSERT_EQ(scene.warnings.size(), 1u);
+        EXPECT_NE(scene.warnings[0].find("the node 'Shown' hangs from several nodes; it is shown below 'Right' only"),
+                  std::string::npos)
+            << scene.warnings[0];
+    };
+    expect_right({link(3, 0), link(4, 0), link(2, 3), link(2, 4), link(1, 2)});
+    expect_right({link(3, 0), link(4, 0), link(2, 4), link(2, 3), link(1, 2)});
+    expect_right({link(2, 0), link(3, 0), link(4, 0), link(2, 4), link(1, 2)});
+    // The same connection twice is no second parent.
+    EXPECT_TRUE(import(objects, {link(3, 0), link(4, 0), link(2, 3), link(2, 3), link(1, 2)}).warnings.empty());
+}
+
+TEST_P(FbxModelForm, NamesColoursOfVerticesThatAreLeftOut) {
+    const auto colors = [](const std::vector<FbxNode>& children) { return node("LayerElementColor", {whole(0)}, children); };
+    const FbxNode red = colors({node("MappingInformationType", {text("AllSame")}), node("Colors", {Numbers{1, 0, 0, 1}})});
+    Scene scene = import({geometry(1, {red}), model(2, "A")}, {link(2, 0), link(1, 2)});
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("LayerElementColor of 'Square': colours of vertices are not read; they are left out"),
+              std::string::npos)
+        << scene.warnings[0];
+    scene = import({geometry(1, {colors({node("Name", {text("")})})}), model(2, "A")}, {link(2, 0), link(1, 2)});
+    EXPECT_TRUE(scene.warnings.empty()) << "an empty layer has no colours";
 }
 
 TEST_P(FbxModelForm, TurnsAboutPivotsAndInheritsScaleAsItSays) {
@@ -124,20 +157,21 @@ TEST(FbxOldModel, TakesNamesAndBlocksForIds) {
     EXPECT_EQ(scene.unit_scale, 0.01);
 }
 
+// Two nodes of each level have one name, so that a connection may mean either.
 TEST(FbxOldModel, RefusesNodesThatMultiplyWithoutEnd) {
     const TemporaryFolder folder;
     std::string objects, links;
-    for (int i = 1; i <= 40; ++i) {  // each of 40 levels hangs twice from the level above: 2^40 copies
-        for (const int half : {0, 1}) {
-            const std::string id = std::to_string(2 * i + half), above = std::to_string(2 * i - 2);
-            objects += "Model: " + id + ", \"Model::N\", \"Null\" {\nVersion: 232\n}\n";
-            links += "C: \"OO\"," + id + "," + (i == 1 ? "0" : above) + "\nC: \"OO\"," + id + "," +
-                     (i == 1 ? "0" : above + "\nC: \"OO\"," + id + "," + std::to_string(2 * i - 1)) + "\n";
+    for (int i = 1; i <= 40; ++i) {  // each level hangs twice from the level above: 2^40 copies
+        const std::string name = "\"Model::N" + std::to_string(i) + "\"";
+        const std::string above = i == 1 ? "\"Model::Scene\"" : "\"Model::N" + std::to_string(i - 1) + "\"";
+        for (int half = 0; half < 2; ++half) {
+            objects += "Model: " + name + ", \"Null\" {\nVersion: 232\n}\n";
+            links += "Connect: \"OO\", " + name + ", " + above + "\n";
         }
     }
     try {
         import_file(folder.write("many.fbx",
-                                 "; FBX 7.4.0 project file\nObjects: {\n" + objects + "}\nConnections: {\n" + links + "}\n"));
+                                 "; FBX 6.1.0 project file\nObjects: {\n" + objects + "}\nConnections: {\n" + links + "}\n"));
         FAIL() << "was imported";
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("too many copies"), std::string::npos) << error.what();

@@ -163,14 +163,20 @@ TEST_F(Gltf, ReadsChunksAndFilesBesideTheScene) {
 }
 
 TEST_F(Gltf, NamesTheLineOfBrokenJson) {
+    // The place is where the parser stops: behind the word that it did not expect.
     expect_refused("{\n \"asset\": {\"version\": \"2.0\"}\n \"nodes\": []\n}",
-                   "line 3, column 2 (byte 32): found '\"nodes\"', expected ',' or '}'");
-    expect_refused("{\n \"asset\": {\"version\": \"2.0\"},\n}", "line 3, column 1");
-    expect_refused("{\"asset\": {\"version\": 2.}}", "found '}', expected a digit");
-    expect_refused("{\"asset\": {\"version\": \"2.0", "a string with its second");
-    expect_refused("{\"asset\": \"\xC3\x28\"}", "text in UTF-8");
-    expect_refused("{\"asset\": [1e999]}", "found '1e999'");
-    expect_refused("{\"a\":" + std::string(100000, '['), "at most 128 arrays and objects");
+                   "line 3, column 8 (byte 38): found string literal, expected '}'");
+    expect_refused("{\n \"asset\": {\"version\": \"2.0\"},\n}",
+                   "line 3, column 1 (byte 32): found '}', expected string literal");
+    expect_refused("{\"asset\": {\"version\": 2.}}", "found invalid number, expected digit after '.'; last read: '2.}'");
+    expect_refused("{\"asset\": {\"version\": \"2.0", "found invalid string: missing closing quote; last read: '\"2.0'");
+    expect_refused("{\"asset\": {\"version\": \"" + std::string(100000, 'x'), "...");
+    expect_refused("{\"asset\": \"\xC3\x28\"}", "ill-formed UTF-8");
+    expect_refused("{\"asset\":\n[1e999]}", "line 2, column 2 (byte 11): found '1e999', expected a number");
+    expect_refused("{\"a\":\n" + std::string(100000, '['),
+                   "line 2, column 128 (byte 133): found another level, expected at most 128");
+    expect_refused("{\"a\": \"\\\"[[\", \"b\": " + std::string(127, '[') + std::string(127, ']') + "}", "asset");
+    expect_refused("", "the file is empty");
     expect_refused("[]", "the top level: found an array");
 }
 

@@ -254,6 +254,41 @@ TEST(FbxModel, GivesEachNodeItsOwnMaterials) {
     EXPECT_FLOAT_EQ(material_named(scene, "Blue").values.refract, 0.75f);
 }
 
+// assimp gives the wrap modes that Maya writes, and does not read those of the standard.
+TEST(ColladaModel, TakesWrapModesThatAssimpGives) {
+    NEEDS_IMPORTER("a.dae");
+    std::ifstream file(data("box.dae"));
+    const std::string plain((std::istreambuf_iterator<char>(file)), {});
+    const TemporaryFolder folder;
+    folder.write("dot.ppm", "P6 1 1 255\nabc");
+    const auto import = [&](const std::string& maya, const std::string& wrap_s) {
+        std::string text = plain;
+        const auto replace = [&](const std::string& what, const std::string& by) {
+            const size_t at = text.find(what);
+            ASSERT_NE(at, text.npos) << what;
+            text.replace(at, what.size(), by);
+        };
+        replace("<color>0.8 0.1 0.1 1</color>",
+                "<texture texture=\"sampler\" texcoord=\"UV\"><extra><technique profile=\"MAYA\">" + maya +
+                    "</technique></extra></texture>");
+        replace("<library_effects>",
+                "<library_images><image id=\"dot\"><init_from>dot.ppm</init_from></image></library_images><library_effects>");
+        replace("<profile_COMMON>",
+                "<profile_COMMON><newparam sid=\"surface\"><surface type=\"2D\"><init_from>dot</init_from></surface></newparam>"
+                "<newparam sid=\"sampler\"><sampler2D><source>surface</source>" +
+                    wrap_s + "</sampler2D></newparam>");
+        return import_file(folder.write("wraps.dae", text));
+    };
+    const auto wrap_of = [](const Scene& scene) { return scene.textures.empty() ? 99u : scene.textures[0].wrap; };
+    EXPECT_EQ(wrap_of(import("", "")), RT_WRAP_REPEAT);
+    EXPECT_EQ(wrap_of(import("<wrapU>0</wrapU><wrapV>1</wrapV><mirrorV>1</mirrorV>", "")),
+              RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_MIRROR);
+    EXPECT_TRUE(import("", "<wrap_s> WRAP</wrap_s>").warnings.empty());
+    const Scene scene = import("", "<wrap_s>CLAMP</wrap_s>");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("<wrap_s> and <wrap_t> of its samplers are not read"), std::string::npos);
+}
+
 TEST(FbxModel, PlacesLampAndCamera) {
     const Scene scene = import_file(data("nodes.fbx"));
     ASSERT_EQ(scene.lights.size(), 1u);
