@@ -40,7 +40,7 @@ TEST(Scale, PicturesAreAlikeFrom1em9To1e9) {
     settings.width = settings.height = 96;
     Configuration{"bvh2", 4, 4, 4}.apply(settings);
     const auto picture = [&](double scale) {
-        const ScenePtr scene = load_scene(scratch.write("ball.obj", ball(scale)));
+        const ScenePtr scene = load_scene(scratch.write("ball_" + std::to_string(scale * 1e9) + ".obj", ball(scale)));
         char camera[96];
         std::snprintf(camera, sizeof camera, "%.9g,%.9g,%.9g,0,0,0,45", scale, 1.5 * scale, 3 * scale);
         return Workbench::get().display(scene, settings, make_view(*scene, 1, camera));
