@@ -208,11 +208,13 @@ std::vector<Pair> steep_pairs(Surface& surface, const std::vector<Spot>& spots, 
 enum class End { closed, elsewhere, lost };
 std::vector<End> follow(Surface& surface, const std::vector<Spot>& starts, int c, double way) {
     constexpr double kGrowth = 0.02;  // of the coordinate, each step
-    constexpr int kMost = 90;
+    constexpr int kMost = 400;
+    constexpr double kLeastStep = 1.0 / 128;  // of a step: below it, what is not found is lost
     std::vector<End> ends(starts.size(), End::lost);
     std::vector<double> lengths(starts.size(), 0), passed(starts.size(), 0);
+    std::vector<double> step(starts.size(), 1);  // shorter where the surface is sharply bent
     std::vector<Spot> at = starts;
-    for (int k = 0; k < kMost; ++k) {
+    for (int k = 0; k < kMost && std::any_of(at.begin(), at.end(), [](const Spot& s) { return s.found; }); ++k) {
         const std::vector<Surface::Slope> slopes = surface.slopes(at);
         std::vector<Vec> by(at.size());
         for (size_t i = 0; i < at.size(); ++i) {
@@ -220,19 +222,22 @@ std::vector<End> follow(Surface& surface, const std::vector<Spot>& starts, int c
             const double determinant = s[c][0] * s[1 - c][1] - s[c][1] * s[1 - c][0];
             at[i].found = at[i].found && slopes[i].found && determinant != 0;
             if (!at[i].found) continue;
-            const double grow = way * kGrowth, correct = wrapped(starts[i].uv[1 - c] - at[i].uv[1 - c]);
+            const double grow = way * kGrowth * step[i], correct = wrapped(starts[i].uv[1 - c] - at[i].uv[1 - c]);
             const double x = (grow * s[1 - c][1] - correct * s[c][1]) / determinant;
             const double y = (correct * s[c][0] - grow * s[1 - c][0]) / determinant;
             by[i] = x * slopes[i].x + y * slopes[i].y;
-            const double most = surface.size() / 12;
+            const double most = step[i] * surface.size() / 12;
             if (length(by[i]) > most) by[i] = (most / length(by[i])) * by[i];
         }
         const std::vector<Spot> next = surface.find(at, by, surface.size() / 24);
         for (size_t i = 0; i < at.size(); ++i) {
-            if (!at[i].found || !next[i].found) {
-                at[i].found = false;
+            if (!at[i].found) continue;
+            if (!next[i].found) {
+                step[i] /= 2;
+                at[i].found = step[i] >= kLeastStep;
                 continue;
             }
+            step[i] = std::min(1.0, 2 * step[i]);
             lengths[i] += length(next[i].at - at[i].at);
             passed[i] += way * wrapped(next[i].uv[c] - at[i].uv[c]);
             at[i] = next[i];
