@@ -97,17 +97,6 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
     sink.warn(sink.ctx, text.c_str());
 }
 
-// assimp reads wrap modes that Maya's extension of COLLADA has (`wrapU`, `mirrorU`), but not those of the standard.
-bool has_wrap_modes_left_out(std::string_view collada) {
-    for (const std::string_view tag : {"<wrap_s>", "<wrap_t>"}) {
-        for (size_t at = 0; (at = collada.find(tag, at)) != collada.npos;) {
-            at = std::min(collada.find_first_not_of(" \t\r\n", at + tag.size()), collada.size());
-            if (collada.substr(at, 4) != "WRAP") return true;
-        }
-    }
-    return false;
-}
-
 // Adds one instance for each node with polygons.
 void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host, const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
@@ -155,6 +144,8 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
         warn(sink,
              "faces left out because of vertices that are missing or not finite: " + std::to_string(meshes.broken_faces()));
     }
+    if (meshes.colored() > 0)
+        warn(sink, "colours of vertices are not read; they are left out, in " + std::to_string(meshes.colored()) + " meshes");
     if (meshes.faces() > 0) {
         if (meshes.points_and_lines()) warn(sink, "points and lines skipped: " + std::to_string(meshes.points_and_lines()));
         report_motion(scene, sink);
@@ -197,11 +188,9 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
 
     const Units units = units_of(*scene, extension, file.bytes());
     const NodeTree tree(*scene);
-    MaterialTable materials(*scene, path, *sink);
+    MaterialTable materials(*scene, path, extension == "dae" ? collada_wraps(bytes) : ColladaWraps(), *sink);
     MeshTable meshes(*scene, materials, *sink);
     add_instances(tree, meshes, host, *sink);
-    if (extension == "dae" && has_wrap_modes_left_out(bytes))
-        warn(*sink, "the <wrap_s> and <wrap_t> of its samplers are not read; textures repeat outside of their pictures");
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
     add_cameras(*scene, tree, *sink);

@@ -6,29 +6,17 @@
 #include <vector>
 
 #include "content_checks.hpp"
+#include "xml_tags.hpp"
 
 namespace assimp_import {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
-
 size_t words_in(std::string_view text) {
     size_t count = 0;
-    for (size_t at = 0; (at = text.find_first_not_of(kBlanks, at)) != text.npos; ++count) {
-        at = std::min(text.find_first_of(kBlanks, at), text.size());
+    for (size_t at = 0; (at = text.find_first_not_of(kXmlBlanks, at)) != text.npos; ++count) {
+        at = std::min(text.find_first_of(kXmlBlanks, at), text.size());
     }
     return count;
-}
-
-// The value of an attribute of a tag; empty if it has none.
-std::string_view attribute(std::string_view tag, std::string_view name) {
-    for (size_t at = 0; (at = tag.find(name, at)) != tag.npos; ++at) {
-        const size_t equals = tag.find_first_not_of(kBlanks, at + name.size());
-        if (at == 0 || kBlanks.find(tag[at - 1]) == kBlanks.npos || equals == tag.npos || tag[equals] != '=') continue;
-        const size_t quote = tag.find_first_of("\"'", equals);
-        return quote == tag.npos ? tag.substr(tag.size()) : tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
-    }
-    return {};
 }
 
 int64_t whole(std::string_view text, int64_t otherwise) {
@@ -41,13 +29,9 @@ class Scan {
     explicit Scan(std::string_view text) : text_(text) {}
 
     std::string run() {
-        for (size_t first = 0, at; why_.empty() && (at = text_.find('<', first)) != text_.npos;) {
-            if (open_array_) open_array_->found += static_cast<int64_t>(words_in(text_.substr(first, at - first)));
-            first = text_.substr(at, 4) == "<!--"        ? behind("-->", at)
-                    : text_.substr(at, 9) == "<![CDATA[" ? behind("]]>", at)
-                    : text_.substr(at, 2) == "<?"        ? behind("?>", at)
-                                                         : end_of_tag(at);
-            if (text_[at + 1] != '!' && text_[at + 1] != '?') tag(text_.substr(at, first - at));
+        for (XmlTags tags(text_); why_.empty() && tags.next();) {
+            if (open_array_) open_array_->found += static_cast<int64_t>(words_in(tags.before));
+            if (tags.is_tag) tag(tags);
         }
         for (const Accessor& accessor : accessors_) check(accessor);
         return why_;
@@ -62,44 +46,29 @@ class Scan {
         int64_t parameters = 0;
     };
 
-    size_t behind(std::string_view end, size_t at) const {
-        const size_t found = text_.find(end, at);
-        return found == text_.npos ? text_.size() : found + end.size();
-    }
-    // A '>' in quotes does not end a tag.
-    size_t end_of_tag(size_t at) const {
-        while ((at = text_.find_first_of(">\"'", at)) != text_.npos && text_[at] != '>') {
-            at = text_.find(text_[at], at + 1);
-            if (at == text_.npos) break;
-            ++at;
-        }
-        return at == text_.npos ? text_.size() : at + 1;
-    }
-
-    void tag(std::string_view tag) {
-        const bool ends = tag.substr(0, 2) == "</", is_empty = tag.size() > 1 && tag[tag.size() - 2] == '/';
-        const std::string_view name = tag.substr(ends ? 2 : 1, tag.find_first_of(" \t\r\n/>", 2) - (ends ? 2 : 1));
+    void tag(const XmlTags& found) {
+        const std::string_view tag = found.tag, name = found.name;
         open_array_ = nullptr;
-        if (ends) {
+        if (found.ends) {
             depth_ -= depth_ > 0;
             in_accessor_ = in_accessor_ && name != "accessor";
             return;
         }
-        if (!is_empty && ++depth_ > kMostLevels) fail(tag, "another level", "at most 1000 elements inside each other");
+        if (!found.is_empty && ++depth_ > kMostLevels) fail(tag, "another level", "at most 1000 elements inside each other");
         if (name == "accessor") accessors_.push_back({tag, 0});
         if (name == "param" && in_accessor_) ++accessors_.back().parameters;
-        if (name == "accessor") in_accessor_ = !is_empty;
+        if (name == "accessor") in_accessor_ = !found.is_empty;
         if (name.size() < 7 || name.substr(name.size() - 6) != "_array") return;
-        const std::string_view count = attribute(tag, "count");
+        const std::string_view count = xml_attribute(tag, "count");
         if (count.empty()) fail(tag, "<" + std::string(name) + "> without 'count'", "that attribute");
-        open_array_ = &(arrays_[attribute(tag, "id")] = {whole(count, 0), 0});
+        open_array_ = &(arrays_[xml_attribute(tag, "id")] = {whole(count, 0), 0});
     }
 
     void check(const Accessor& accessor) {
-        const std::string_view source = attribute(accessor.tag, "source");
+        const std::string_view source = xml_attribute(accessor.tag, "source");
         const auto array = arrays_.find(source.substr(std::min<size_t>(1, source.size())));
         const auto number = [&](const char* name, int64_t otherwise) {
-            return whole(attribute(accessor.tag, name), otherwise);
+            return whole(xml_attribute(accessor.tag, name), otherwise);
         };
         const int64_t count = number("count", 0), stride = number("stride", 1), offset = number("offset", 0);
         if (array == arrays_.end() || count <= 0) return;

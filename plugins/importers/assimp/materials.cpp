@@ -37,8 +37,16 @@ void apply_phong(const aiMaterial& m, rt_material_desc& out) {
 
 }  // namespace
 
-MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, const rt_scene_sink& sink)
-    : scene_(scene), place_(file), sink_(sink), ids_(scene.mNumMaterials, RT_NONE), done_(scene.mNumMaterials, false) {}
+MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, ColladaWraps wraps, const rt_scene_sink& sink)
+    : scene_(scene),
+      place_(file),
+      wraps_(std::move(wraps)),
+      sink_(sink),
+      ids_(scene.mNumMaterials, RT_NONE),
+      done_(scene.mNumMaterials, false) {
+    if (!wraps_.differs.empty())
+        rt::warn(sink_, "samplers wrap '" + wraps_.differs + "' in several ways; the first one counts");
+}
 
 rt_u32 MaterialTable::id(unsigned material) {
     if (material >= scene_.mNumMaterials || !scene_.mMaterials[material]) return RT_NONE;
@@ -98,6 +106,8 @@ rt_u32 MaterialTable::texture(const aiMaterial& material) {
         aiString path;
         if (material.GetTextureCount(type) == 0 || material.GetTexture(type, 0, &path) != aiReturn_SUCCESS) continue;
         if (path.length == 0) continue;
+        const auto stated = wraps_.of_picture.find(file_name(path.C_Str()));
+        if (stated != wraps_.of_picture.end()) return add_texture(path.C_Str(), stated->second.first, stated->second.second);
         return add_texture(path.C_Str(), wrap_mode(material, AI_MATKEY_MAPPINGMODE_U(type, 0)),
                            wrap_mode(material, AI_MATKEY_MAPPINGMODE_V(type, 0)));
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../common/texture_path.hpp"
+#include "collada_wraps.hpp"
 #include "rt_plugin.h"
 
 namespace assimp_import {
@@ -22,7 +23,7 @@ struct TextureMapping {
 // Converts materials and passes each to the sink when it is first used.
 class MaterialTable {
  public:
-    MaterialTable(const aiScene& scene, const std::string& file, const rt_scene_sink& sink);
+    MaterialTable(const aiScene& scene, const std::string& file, ColladaWraps wraps, const rt_scene_sink& sink);
     rt_u32 id(unsigned material);  // RT_NONE: the default material
     TextureMapping mapping(unsigned material) const;
 
@@ -34,6 +35,7 @@ class MaterialTable {
 
     const aiScene& scene_;
     const importers::FilePlace place_;
+    const ColladaWraps wraps_;
     const rt_scene_sink& sink_;
     std::vector<rt_u32> ids_;
     std::vector<bool> done_;

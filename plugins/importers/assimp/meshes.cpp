@@ -148,6 +148,7 @@ rt_u32 MeshTable::add(const std::vector<Part>& parts, const char* name) {
         if (is_used) {
             has_normals = has_normals || mesh.mNormals;
             has_uvs = has_uvs || corners.has_uvs();
+            colored_ += mesh.mColors[0] != nullptr;
         }
     }
     if (sizes.empty()) return RT_NONE;

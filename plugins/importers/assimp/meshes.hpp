@@ -25,6 +25,7 @@ class MeshTable {
     uint64_t points_and_lines() const { return points_and_lines_; }
     uint64_t broken_faces() const { return broken_faces_; }
     uint64_t faces() const { return faces_; }
+    uint64_t colored() const { return colored_; }  // parts of meshes whose vertices have colours
 
  private:
     // Index of a mesh of the scene, and of its material.
@@ -35,7 +36,7 @@ class MeshTable {
     MaterialTable& materials_;
     const rt_scene_sink& sink_;
     std::map<std::vector<Part>, rt_u32> ids_;
-    uint64_t points_and_lines_ = 0, broken_faces_ = 0, faces_ = 0;
+    uint64_t points_and_lines_ = 0, broken_faces_ = 0, faces_ = 0, colored_ = 0;
 };
 
 }  // namespace assimp_import

@@ -108,7 +108,7 @@ void Deformers::add() {
         context_.warn(many + " of the skin of '" + objects[mesh_.object].name +
                       "' left out: the file has no such node, or does not say where it stood when it was bound");
     }
-    if (document_.version() < 7000) add_oldest_shapes();
+    add_oldest_shapes();
 }
 
 // Clusters hang from the skin, and the model of a bone hangs from each cluster. Transform: from the mesh to the bone, when both
@@ -173,8 +173,8 @@ std::optional<Transform> Deformers::bone_from_node(const Node& cluster, uint32_t
     return multiply(to_bone, *mesh);
 }
 
-// Before version 7, shapes are blocks of the model, and the model has a property with the name of each, in percent (measured
-// from maya_blend_shape_cube_6100_binary).
+// Up to version 7.1, shapes are blocks of the model or geometry, which has a property with the name of each, in percent
+// (measured from maya_blend_shape_cube_6100_binary, and maya_blend_shape_cube_7100_ascii of ufbx).
 void Deformers::add_oldest_shapes() {
     for (const Node& shape : document_.children(*context_.objects[mesh_.object].node)) {
         if (shape.name != "Shape") continue;
@@ -191,9 +191,13 @@ void Deformers::add_oldest_shapes() {
 double Deformers::oldest_weight(const std::string& shape) const {
     if (document_.version() >= 6000) return context_.properties(mesh_.object).number(shape, 0);
     const Node* model = context_.objects[mesh_.object].node;
-    const Node* channel = document_.child(model, "Channel", shape + kShapeSuffix);
-    if (!channel) channel = document_.child(in_current_take(document_, *model), "Channel", shape + kShapeSuffix);
-    return document_.number(document_.child(channel, "Default"), 0, 0);
+    for (const Node* owner : {model, in_current_take(document_, *model)}) {
+        for (const std::string& name : {shape + kShapeSuffix, shape}) {
+            const Node* rest = document_.child(document_.child(owner, "Channel", name), "Default");
+            if (rest) return document_.number(rest, 0, 0);
+        }
+    }
+    return 0;
 }
 
 // FullWeights: at which percentage of DeformPercent each shape is reached. Source: FBX SDK help, "FbxBlendShapeChannel".

@@ -29,11 +29,11 @@ void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
 }
 
 // Whether a texture's picture is placed by more than texture coordinates. Source of the names: FBX SDK help, "FbxTexture" and
-// "FbxFileTexture".
+// "FbxFileTexture"; those with "Model" are blocks of the texture (measured from max2009_blob_6100_binary).
 bool is_transformed(const Properties& p) {
     const Vec3 zero{}, one{1, 1, 1};
     return p.vector("Translation", zero) != zero || p.vector("Rotation", zero) != zero || p.vector("Scaling", one) != one ||
-           p.whole("UVSwap", 0) != 0;
+           p.vector("ModelUVTranslation", zero) != zero || p.vector("ModelUVScaling", one) != one || p.whole("UVSwap", 0) != 0;
 }
 
 // 0 repeat, 1 clamp. Source: FBX SDK help, "FbxTexture::EWrapMode".

@@ -58,6 +58,15 @@ TEST_P(FbxDetailForm, WarnsThatTransformsOfTexturesAreLeftOut) {
     };
     EXPECT_TRUE(warns_of(scene_with({property("Scaling", {2, 2, 1})}), "the transforms of 1 textures are left out"));
     EXPECT_FALSE(warns_of(scene_with({property("Scaling", {1, 1, 1})}), "transforms"));
+    const auto scene_with_blocks = [&](double scale) {
+        FbxNode moved = texture(5, {});
+        moved.children.push_back(node("ModelUVTranslation", {0.0, 0.0}));
+        moved.children.push_back(node("ModelUVScaling", {scale, 1.0}));
+        return import({geometry(1), model(2, "A"), material(3), moved},
+                      {link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor")});
+    };
+    EXPECT_TRUE(warns_of(scene_with_blocks(2), "the transforms of 1 textures are left out"));
+    EXPECT_FALSE(warns_of(scene_with_blocks(1), "transforms"));
 }
 
 TEST_P(FbxDetailForm, TakesWrapModesOfTextures) {

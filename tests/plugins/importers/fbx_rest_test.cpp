@@ -184,10 +184,31 @@ TEST(FbxOldRest, ActsAsVersion5Says) {
     };
     expect_box(five(weight, ""), {-2, 10, 0}, {-1, 11, 0});
     expect_box(five("", take(weight)), {-2, 10, 0}, {-1, 11, 0});
+    expect_box(five("Channel: \"Lift\" {\nDefault: 50\n}\n", ""), {-2, 10, 0}, {-1, 11, 0});  // without 3ds Max's ending
     const Scene moving =
         five("", take("Channel: \"Lift (Shape)\" {\nDefault: 50\nKeyVer: 4002\nKey: 0,100,U,s,0,0,n,46186158000,100,L\n}\n"));
     expect_box(moving, {-2, 10, 0}, {-1, 11, 0});
     expect_box(posed(moving, evaluate(moving, "Go", 0.5)), {-3, 10, 0}, {-2, 11, 0});
+}
+
+// Version 7.1 has ids and connections, and still shapes within the geometry, whose properties have their weights.
+TEST(FbxOldRest, ActsAsVersion71Says) {
+    const TemporaryFolder folder;
+    const std::string path =
+        folder.write("seven.fbx",
+                     "; FBX 7.1.0 project file\nObjects: {\nGeometry: 1, \"Geometry::\", \"Mesh\" {\nProperties70: {\n"
+                     "P: \"Lift\", \"Number\", \"\", \"A+\",50\n}\nVertices: *9 {\na: 0,0,0,1,0,0,0,1,0\n}\n"
+                     "PolygonVertexIndex: *3 {\na: 0,1,-3\n}\nShape: \"Lift\" {\nIndexes: *3 {\na: 0,1,2\n}\nVertices: *9 {\n"
+                     "a: 0,2,0,0,2,0,0,2,0\n}\n}\n}\nModel: 2, \"Model::A\", \"Mesh\" {\nVersion: 232\n}\n"
+                     "AnimationStack: 3, \"AnimStack::Go\", \"\" {\n}\nAnimationLayer: 4, \"AnimLayer::B\", \"\" {\n}\n"
+                     "AnimationCurveNode: 5, \"AnimCurveNode::Lift\", \"\" {\n}\nAnimationCurve: 6, \"AnimCurve::\", \"\" {\n"
+                     "KeyTime: *1 {\na: 0\n}\nKeyValueFloat: *1 {\na: 100\n}\n}\n}\n"
+                     "Connections: {\nC: \"OO\",2,0\nC: \"OO\",1,2\nC: \"OO\",4,3\nC: \"OO\",5,4\nC: \"OP\",5,1,\"Lift\"\n"
+                     "C: \"OP\",6,5,\"d|Lift\"\n}\n");
+    const Scene scene = import_file(path);
+    expect_box(scene, {0, 1, 0}, {1, 2, 0});
+    expect_box(posed(scene, evaluate(scene, "Go", 0.5)), {0, 2, 0}, {1, 3, 0});
+    expect_box(import_file(path, true), {0, 0, 0}, {1, 1, 0});
 }
 
 }  // namespace

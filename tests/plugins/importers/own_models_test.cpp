@@ -254,39 +254,87 @@ TEST(FbxModel, GivesEachNodeItsOwnMaterials) {
     EXPECT_FLOAT_EQ(material_named(scene, "Blue").values.refract, 0.75f);
 }
 
+// box.dae with a texture, some text in its element and in its sampler, and further effects.
+Scene textured_box(const TemporaryFolder& folder, const std::string& maya, const std::string& sampler,
+                   const std::string& effects = "", const std::string& picture = "dot.ppm") {
+    std::ifstream file(data("box.dae"));
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    folder.write("dot.ppm", "P6 1 1 255\nabc");
+    folder.write("my dot.ppm", "P6 1 1 255\nabc");
+    const auto replace = [&](const std::string& what, const std::string& by) {
+        const size_t at = text.find(what);
+        ASSERT_NE(at, text.npos) << what;
+        text.replace(at, what.size(), by);
+    };
+    replace("<color>0.8 0.1 0.1 1</color>", "<texture texture=\"sampler\" texcoord=\"UV\"><extra><technique profile=\"MAYA\">" +
+                                                maya + "</technique></extra></texture>");
+    replace("<profile_COMMON>",
+            "<profile_COMMON><newparam sid=\"surface\"><surface type=\"2D\"><init_from>dot</init_from></surface></newparam>"
+            "<newparam sid=\"sampler\"><sampler2D><source>surface</source>" +
+                sampler + "</sampler2D></newparam>");
+    replace("<library_effects>", "<library_images><image id=\"dot\"><init_from>" + picture +
+                                     "</init_from></image></library_images><library_effects>" + effects);
+    return import_file(folder.write("wraps.dae", text));
+}
+
 // assimp gives the wrap modes that Maya writes, and does not read those of the standard.
-TEST(ColladaModel, TakesWrapModesThatAssimpGives) {
+TEST(ColladaModel, TakesWrapModesOfSamplersAndOfMaya) {
+    NEEDS_IMPORTER("a.dae");
+    const TemporaryFolder folder;
+    const auto wrap_of = [&](const std::string& maya, const std::string& sampler, const std::string& picture = "dot.ppm") {
+        const Scene scene = textured_box(folder, maya, sampler, "", picture);
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+        return scene.textures.empty() ? 99u : scene.textures[0].wrap;
+    };
+    const rt_u32 both = RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_MIRROR;
+    EXPECT_EQ(wrap_of("", ""), RT_WRAP_REPEAT);
+    EXPECT_EQ(wrap_of("<wrapU>0</wrapU><wrapV>1</wrapV><mirrorV>1</mirrorV>", ""), both);
+    EXPECT_EQ(wrap_of("", "<wrap_s> WRAP</wrap_s>"), RT_WRAP_REPEAT);
+    EXPECT_EQ(wrap_of("", "<wrap_s>CLAMP</wrap_s>"), RT_WRAP_CLAMP);
+    EXPECT_EQ(wrap_of("", "<wrap_s>CLAMP</wrap_s><!-- <wrap_t>CLAMP</wrap_t> --><wrap_t>\nMIRROR\n</wrap_t>"), both);
+    EXPECT_EQ(wrap_of("", "<wrap_s>BORDER</wrap_s><wrap_t>NONE</wrap_t>"), RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_CLAMP);
+    EXPECT_EQ(wrap_of("", "<wrap_s>CLAMP</wrap_s>", "./my%20dot.ppm"), RT_WRAP_CLAMP);
+}
+
+TEST(ColladaModel, SaysThatSamplersOfOnePictureDiffer) {
+    NEEDS_IMPORTER("a.dae");
+    const TemporaryFolder folder;
+    const auto effect = [](const std::string& wrap) {
+        return "<effect id=\"other\"><profile_COMMON><newparam sid=\"s\"><surface "
+               "type=\"2D\"><init_from>dot</init_from></surface>"
+               "</newparam><newparam sid=\"t\"><sampler2D><source>s</source>" +
+               wrap +
+               "</sampler2D></newparam><technique sid=\"c\"><lambert><diffuse><texture texture=\"t\" "
+               "texcoord=\"UV\"/></diffuse>"
+               "</lambert></technique></profile_COMMON></effect>";
+    };
+    const Scene scene = textured_box(folder, "", "<wrap_s>CLAMP</wrap_s>", effect("<wrap_s>MIRROR</wrap_s>"));
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("samplers wrap 'dot.ppm' in several ways; the first one counts"), std::string::npos);
+    EXPECT_EQ(scene.textures[0].wrap, RT_WRAP_MIRROR);
+    EXPECT_TRUE(textured_box(folder, "", "<wrap_s>CLAMP</wrap_s>", effect("<wrap_s>CLAMP</wrap_s>")).warnings.empty());
+}
+
+TEST(ColladaModel, NamesColoursOfVerticesThatAreLeftOut) {
     NEEDS_IMPORTER("a.dae");
     std::ifstream file(data("box.dae"));
-    const std::string plain((std::istreambuf_iterator<char>(file)), {});
+    std::string text((std::istreambuf_iterator<char>(file)), {});
     const TemporaryFolder folder;
-    folder.write("dot.ppm", "P6 1 1 255\nabc");
-    const auto import = [&](const std::string& maya, const std::string& wrap_s) {
-        std::string text = plain;
-        const auto replace = [&](const std::string& what, const std::string& by) {
-            const size_t at = text.find(what);
-            ASSERT_NE(at, text.npos) << what;
-            text.replace(at, what.size(), by);
-        };
-        replace("<color>0.8 0.1 0.1 1</color>",
-                "<texture texture=\"sampler\" texcoord=\"UV\"><extra><technique profile=\"MAYA\">" + maya +
-                    "</technique></extra></texture>");
-        replace("<library_effects>",
-                "<library_images><image id=\"dot\"><init_from>dot.ppm</init_from></image></library_images><library_effects>");
-        replace("<profile_COMMON>",
-                "<profile_COMMON><newparam sid=\"surface\"><surface type=\"2D\"><init_from>dot</init_from></surface></newparam>"
-                "<newparam sid=\"sampler\"><sampler2D><source>surface</source>" +
-                    wrap_s + "</sampler2D></newparam>");
-        return import_file(folder.write("wraps.dae", text));
-    };
-    const auto wrap_of = [](const Scene& scene) { return scene.textures.empty() ? 99u : scene.textures[0].wrap; };
-    EXPECT_EQ(wrap_of(import("", "")), RT_WRAP_REPEAT);
-    EXPECT_EQ(wrap_of(import("<wrapU>0</wrapU><wrapV>1</wrapV><mirrorV>1</mirrorV>", "")),
-              RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_MIRROR);
-    EXPECT_TRUE(import("", "<wrap_s> WRAP</wrap_s>").warnings.empty());
-    const Scene scene = import("", "<wrap_s>CLAMP</wrap_s>");
+    EXPECT_TRUE(import_file(folder.write("plain.dae", text)).warnings.empty());
+    const std::string input = "<input semantic=\"VERTEX\"";
+    ASSERT_NE(text.find(input), text.npos);
+    text.insert(text.find(input), "<input semantic=\"COLOR\" source=\"#paint-source\" offset=\"0\"/>");
+    std::string numbers;
+    for (int i = 0; i < 6; ++i) numbers += "1 0 0 ";
+    text.insert(
+        text.find("<vertices"),
+        "<source id=\"paint-source\"><float_array id=\"paint-array\" count=\"18\">" + numbers +
+            "</float_array><technique_common><accessor source=\"#paint-array\" count=\"6\" stride=\"3\"><param name=\"R\" "
+            "type=\"float\"/><param name=\"G\" type=\"float\"/><param name=\"B\" "
+            "type=\"float\"/></accessor></technique_common></source>");
+    const Scene scene = import_file(folder.write("painted.dae", text));
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("<wrap_s> and <wrap_t> of its samplers are not read"), std::string::npos);
+    EXPECT_NE(scene.warnings[0].find("colours of vertices are not read; they are left out, in 1 meshes"), std::string::npos);
 }
 
 TEST(FbxModel, PlacesLampAndCamera) {
