@@ -1,6 +1,7 @@
 // mesh_arrays.hpp -- the arrays of a mesh, and vertices that are copied where their corners differ. For importers.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -10,10 +11,48 @@
 
 namespace importers {
 
+// Around points, three numbers each. Those that are not finite do not count.
+struct Box {
+    template <class T>
+    explicit Box(const std::vector<T>& points) {
+        for (size_t i = 0; i + 2 < points.size(); i += 3) {
+            const T* const p = &points[i];
+            if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
+            for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], double(p[k])), hi[k] = std::max(hi[k], double(p[k]));
+        }
+    }
+    double size() const { return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
+    double farthest() const {
+        double most = 0;
+        for (int k = 0; k < 3; ++k) most = std::max({most, std::fabs(lo[k]), std::fabs(hi[k])});
+        return most;
+    }
+    bool is_far() const {
+        constexpr double kFar = 16;  // how many times as far from 0 as it is large
+        return std::isfinite(farthest()) && farthest() >= kFar * size();
+    }
+    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+};
+
 struct MeshArrays {
     std::vector<float> positions, normals, uvs;  // 3, 3 and 2 for each vertex; normals and uvs may be empty
     double origin[3] = {0, 0, 0};                // what was subtracted from positions
     std::vector<rt_u32> sizes;                   // corners of each face; empty: all faces are triangles
+
+    // Whether the positions lie so far from 0, as seen by their own size, that floats lose details of them which the file has.
+    bool is_far() const { return Box(positions).is_far(); }
+    // Sets positions from doubles. If they are far from 0, an origin is subtracted before they are rounded.
+    void set_positions(const std::vector<double>& exact) {
+        const Box box(exact);
+        const double size = box.size();
+        if (box.is_far() && size > 0) {
+            // A multiple of a power of two as large as the mesh, or so large that floats, as instances have, hold the origin.
+            const double grid = std::ldexp(1.0, std::max(std::ilogb(size), std::ilogb(box.farthest()) - 22));
+            for (size_t k = 0; k < 3; ++k) origin[k] = std::round((box.lo[k] + box.hi[k]) / 2 / grid) * grid;
+        }
+        positions.resize(exact.size());
+        for (size_t i = 0; i < exact.size(); ++i) positions[i] = static_cast<float>(exact[i] - origin[i % 3]);
+    }
 
     // Passes the mesh and returns the host's id. corners: their vertices. materials: of each face, or one for all.
     rt_u32 pass(const std::string& name, const rt_u32* corners, size_t corner_count, const std::vector<rt_u32>& materials,

@@ -14,9 +14,10 @@ void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer)
     const std::string name = importers::with_slashes(std::string(cache.text("CacheFileName")));
     const double fps = context.fps > 0 ? context.fps : 30;
     try {
-        const importers::CacheFrames frames =
-            importers::read_geometry_cache(context.place.folder + name, channel, mesh.points, fps);
+        importers::CacheFrames frames = importers::read_geometry_cache(context.place.folder + name, channel, mesh.points, fps);
         if (frames.positions.empty()) throw importers::BrokenCache("it has no channel " + quoted(channel));
+        for (size_t i = 0; i < frames.positions.size(); ++i)
+            frames.positions[i] = static_cast<float>(frames.positions[i] - mesh.origin[i % 3]);
         frames.pass(mesh.id, mesh.copy_of, context.sink);
     } catch (const std::runtime_error& why) {
         context.warn("the geometry cache " + quoted(name) + " is left out: " + why.what());

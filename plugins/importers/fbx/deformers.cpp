@@ -1,5 +1,6 @@
 // deformers.cpp -- skins and morphs: what moves the vertices of a mesh.
 #include <algorithm>
+#include <cstdio>
 #include <optional>
 #include <unordered_map>
 
@@ -48,6 +49,12 @@ class BindPoses {
     bool is_read_ = false;
     std::unordered_map<std::string, const Node*> matrices_;
 };
+
+std::string short_text(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", x);
+    return text;
+}
 
 class Deformers {
  public:
@@ -103,6 +110,12 @@ void Deformers::add() {
     const Node* geometry = objects[mesh_.object].node;
     if (!has_skin && document_.child(geometry, "Link")) add_oldest_skin();
     if (!skin_.bones.empty()) skin_.pass(mesh_.id, context_.sink);
+    if (!skin_.bones.empty() && mesh_.origin != Vec3{}) {
+        context_.warn(
+            "'" + objects[mesh_.object].name + "' lies far from the origin (near " + short_text(mesh_.origin[0]) + ", " +
+            short_text(mesh_.origin[1]) + ", " + short_text(mesh_.origin[2]) +
+            "), where its bones move it in floats: fine details are lost; move the file's objects to the origin before");
+    }
     if (bones_left_out_ > 0) {
         const std::string many = bones_left_out_ == 1 ? "a bone" : std::to_string(bones_left_out_) + " bones";
         context_.warn(many + " of the skin of '" + objects[mesh_.object].name +
@@ -150,7 +163,7 @@ void Deformers::add_bone(const Node& cluster, uint32_t bone) {
         ++bones_left_out_;
         return;
     }
-    const Transform bind = multiply(*to_bone, nodes_[mesh_.node].geometry);
+    const Transform bind = multiply(multiply(*to_bone, nodes_[mesh_.node].geometry), translation(mesh_.origin));
     if (!is_finite(bind)) document_.fail(cluster, "the matrix of a bone is not finite");
     rt_bone out{};
     out.node = node->id;

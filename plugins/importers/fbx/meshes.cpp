@@ -82,7 +82,10 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     // Most of the time is spent on the arrays, which can be inflated at the same time.
     rt::parallel_for(context.host, static_cast<rt_u32>(3 + uvs.size()), [&](rt_u32 i) {
         if (i == 0) mesh.indices = document.numbers<int32_t>(&geometry, "PolygonVertexIndex");
-        if (i == 1) mesh.positions = document.numbers<float>(&geometry, "Vertices");
+        if (i == 1) {
+            mesh.positions = document.numbers<float>(&geometry, "Vertices");
+            if (mesh.is_far()) mesh.set_positions(document.numbers<double>(&geometry, "Vertices"));
+        }
         if (i == 2) normals = read_normals(document, geometry);
         if (i > 2) uvs[i - 3] = read_uvs(document, geometry, layers[i - 3]);
     });
@@ -119,7 +122,8 @@ SceneMesh pass(const Context& context, const Wanted& wanted, MeshData& mesh, con
     if (mesh.slots.empty() && !ids.empty()) materials.push_back(ids[0]);
     const auto* const corners = reinterpret_cast<const rt_u32*>(mesh.indices.data());
     const rt_u32 id = mesh.pass(name, corners, mesh.indices.size(), materials, context.sink);
-    return {id, wanted.object, wanted.node, static_cast<uint32_t>(mesh.points), std::move(mesh.copy_of)};
+    const Vec3 origin = {mesh.origin[0], mesh.origin[1], mesh.origin[2]};
+    return {id, wanted.object, wanted.node, static_cast<uint32_t>(mesh.points), std::move(mesh.copy_of), origin};
 }
 
 // The meshes that a node shows. From version 7 on they hang from the model; before, they are part of it.
@@ -137,6 +141,8 @@ void show(const Context& context, const SceneNode& node, rt_u32 mesh) {
     rt_instance_desc out = rt::instance(mesh, context.objects[node.object].name.c_str());
     std::transform(node.geometry.begin(), node.geometry.end(), out.world_from_object,
                    [](double x) { return static_cast<float>(x); });
+    const double exact[3] = {node.geometry[3], node.geometry[7], node.geometry[11]};
+    out.translation = exact;
     out.node = node.id;
     rt::id(context.sink.instance(context.sink.ctx, &out));
 }

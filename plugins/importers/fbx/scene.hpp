@@ -43,6 +43,7 @@ struct SceneMesh {
     uint32_t node = kNoObject;      // number of the first node that shows it
     uint32_t points = 0;            // vertices of the file; the host's vertex i is the file's for i < points
     std::vector<uint32_t> copy_of;  // of each further vertex of the host: the file's vertex
+    Vec3 origin{};                  // what was subtracted from the file's vertices
 };
 std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<SceneNode>& nodes);
 

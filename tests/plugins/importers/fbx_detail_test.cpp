@@ -14,13 +14,6 @@ constexpr int64_t kSecond = 46186158000;
 class FbxDetailForm : public FbxForms {};
 INSTANTIATE_TEST_SUITE_P(Forms, FbxDetailForm, kFbxForms, fbx_form_name);
 
-bool warns_of(const Scene& scene, const std::string& text) {
-    for (const std::string& warning : scene.warnings) {
-        if (warning.find(text) != warning.npos) return true;
-    }
-    return false;
-}
-
 FbxNode uv_set(int64_t number, const std::string& name, double first) {
     Numbers uvs;
     for (int i = 0; i < 6; ++i) uvs.insert(uvs.end(), {first + i, 0});

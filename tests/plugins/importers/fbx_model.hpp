@@ -42,6 +42,13 @@ inline FbxNode link(int64_t from, int64_t to, const std::string& property = "") 
     return out;
 }
 
+inline bool warns_of(const Scene& scene, const std::string& text) {
+    for (const std::string& warning : scene.warnings) {
+        if (warning.find(text) != warning.npos) return true;
+    }
+    return false;
+}
+
 class FbxForms : public testing::TestWithParam<FbxForm> {
  protected:
     Scene import(const std::vector<FbxNode>& objects, const std::vector<FbxNode>& links) {
