@@ -87,15 +87,11 @@ RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
 /* How far the far planes of boxes count as moved outwards: an absolute length in the space of the ray, 9.1e-13. */
 #define RT_FAR_SLACK 9.0949470e-13f /* 2^-40 */
 
-/* 1 / direction, one component. d: the component; o: that of the origin; greatest: the greatest component of the direction.
- *
- * A component counts as at least 2^-80 of the greatest, so that its reciprocal is finite, and as at least 2^-120 of the origin,
- * so that origin / direction is. Its sign stays: -0 is negative. The ray seems to move by less than RT_FAR_SLACK by that, over
- * 2^40 units of its way. Products of a reciprocal and a plane may be infinite; then the plane is far away on that side. */
-RT_INLINE vfloat rt_slab_reciprocal(vfloat d, vfloat o, vfloat greatest)
+/* 1 / direction, one component. A component counts as at least 2^-80, so that its reciprocal is finite; its sign stays: -0 is negative.
+ * The ray seems to move by less than RT_FAR_SLACK by that, over 2^40 units of its way. */
+RT_INLINE vfloat rt_slab_reciprocal(vfloat d)
 {
-    const vfloat least = fma(greatest, rt_vfloat(8.2718061e-25f), rt_max(fabs(o) * rt_vfloat(7.5231638e-37f), rt_vfloat(1e-37f)));
-    return rt_vfloat(1.0f) / copysign(rt_max(fabs(d), least), d);
+    return rt_vfloat(1.0f) / copysign(rt_max(fabs(d), rt_vfloat(8.2718061e-25f)), d);
 }
 
 /* Fills in what boxes need of origin and direction. */
@@ -106,10 +102,9 @@ RT_INLINE void rt_prepare_for_boxes(rt_rays *r)
      * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. At coordinate 0 that is nothing. So
      * far planes lie RT_FAR_SLACK farther out: a ray that runs within a face of a box, with a direction of 0 or nearly 0 across
      * it, does not seem to leave through that face. */
-    const vfloat greatest = rt_max(fabs(r->dx), rt_max(fabs(r->dy), rt_max(fabs(r->dz), rt_vfloat(0.0f)))); /* not NaN */
-    r->ix = rt_slab_reciprocal(r->dx, r->ox, greatest);
-    r->iy = rt_slab_reciprocal(r->dy, r->oy, greatest);
-    r->iz = rt_slab_reciprocal(r->dz, r->oz, greatest);
+    r->ix = rt_slab_reciprocal(r->dx);
+    r->iy = rt_slab_reciprocal(r->dy);
+    r->iz = rt_slab_reciprocal(r->dz);
     const vfloat slack = rt_vfloat(8.0f * RT_EPS), out = rt_vfloat(RT_FAR_SLACK);
     const vfloat nx = -r->ox * r->ix, ny = -r->oy * r->iy, nz = -r->oz * r->iz;
     r->near_x = fma(fabs(nx), -slack, nx);
