@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/parallel_for.hpp"
 
 namespace clarity {
@@ -13,7 +14,6 @@ using Plane = std::vector<float>;
 using Planes = std::array<Plane, 3>;
 using Color = std::array<double, 3>;
 
-constexpr double kPi = 3.14159265358979323846;
 // From linear sRGB to XYZ (IEC 61966-2-1), and its white, D65.
 constexpr double kXyzFromRgb[3][3] = {
     {.4124564, .3575761, .1804375}, {.2126729, .7151522, .0721750}, {.0193339, .1191920, .9503041}};
