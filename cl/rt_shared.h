@@ -45,7 +45,28 @@ typedef struct rt_packed_prim {
 /* Kinds of lights, in rt_light_desc and in the kernels' rt_light. */
 #define RT_LIGHT_POINT 0u
 #define RT_LIGHT_DIRECTIONAL 1u
+#define RT_LIGHT_SPOT 2u /* a point with a cone */
+#define RT_LIGHT_SUN 3u  /* a disc on the sky; color: irradiance of a surface that faces it */
+#define RT_LIGHT_RECT 4u /* color of a rect, a disc and a sphere: radiance */
+#define RT_LIGHT_DISC 5u
+#define RT_LIGHT_SPHERE 6u
+#define RT_LIGHT_KINDS 7u
+
+/* Flags of lights. Without RT_LIGHT_FALLOFF a point or spot light lights all distances alike, and it and a directional light
+ * mean an irradiance of pi times color, as Whitted's model has them. With it, color is an intensity (per steradian) or an
+ * irradiance. */
+#define RT_LIGHT_FALLOFF 1u
+#define RT_LIGHT_TWO_SIDED 2u /* rect, disc: both sides emit */
+
+/* What the path tracer takes a surface for. */
+#define RT_MODEL_WHITTED 0u
+#define RT_MODEL_LAMBERT 1u
+#define RT_MODEL_CONDUCTOR 2u  /* GGX, with what is scattered several times between its facets */
+#define RT_MODEL_DIELECTRIC 3u /* smooth, or rough as GGX */
+#define RT_MODEL_KINDS 4u
 
 /* Flags of materials, in rt_material_desc and in the kernels' rt_material. */
-#define RT_MATERIAL_CHECKER 1u /* a unit checkerboard of color and a third of it, in world x and z; for planes */
+#define RT_MATERIAL_CHECKER 1u        /* a unit checkerboard of color and a third of it, in world x and z; for planes */
+#define RT_MATERIAL_ONE_SIDED 2u      /* only the side that its normal points to emits light */
+#define RT_MATERIAL_SINGLE_SCATTER 4u /* conductor, dielectric: what is scattered several times between facets is lost */
 #endif

@@ -1,8 +1,8 @@
 /* rt_types.h -- structs shared by host and kernels. Plugins see only those of rt_shared.h, so these may change at any time.
  *
  * C99 subset, scalars and arrays only: no vector types (float3 is 16 bytes wide and aligned on a device), no bool, no
- * size_t, no pointers, no integer stored as a float. Sizes are checked on the host (static_assert) and on every device (a line of
- * the kernels that the host generates). */
+ * size_t, no pointers, no integer stored as a float. Sizes are checked on the host (static_assert) and on every device (a line
+ * of the kernels that the host generates). */
 #ifndef RT_TYPES_H
 #define RT_TYPES_H
 #ifndef __OPENCL_VERSION__
@@ -35,30 +35,40 @@ typedef struct rt_instance {
     rt_u32 hidden;     /* not 0: no ray hits it */
 } rt_instance;
 
-/* Whitted material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. 64 B. */
+/* A surface. Colours are linear RGB. Whitted's share 1 - reflect - refract is diffuse. 80 B. */
 typedef struct rt_material {
-    rt_f32 color[3];    /* diffuse reflectance; also tints refracted light */
-    rt_f32 reflect;     /* 0..1, mirror share */
-    rt_f32 emission[3]; /* light added at each hit */
-    rt_f32 refract;     /* 0..1, share that Fresnel's equations split into reflected and refracted light */
-    rt_f32 specular[3]; /* colour of the Blinn-Phong highlight */
-    rt_f32 shininess;   /* exponent of the highlight */
-    rt_f32 ior;         /* index of refraction of the inside, 1.5 for glass */
-    rt_u32 texture;     /* index of the texture that multiplies color; RT_NONE: none */
-    rt_u32 flags;       /* RT_MATERIAL_* */
-    rt_u32 pad;
+    rt_f32 color[3];      /* diffuse reflectance; also tints refracted light. Of a conductor: reflectance at normal incidence */
+    rt_f32 reflect;       /* 0..1, mirror share */
+    rt_f32 emission[3];   /* light added at each hit; for `path` a radiance */
+    rt_f32 refract;       /* 0..1, share that Fresnel's equations split into reflected and refracted light */
+    rt_f32 specular[3];   /* colour of the Blinn-Phong highlight */
+    rt_f32 shininess;     /* exponent of the highlight */
+    rt_f32 ior;           /* index of refraction of the inside, 1.5 for glass */
+    rt_u32 texture;       /* index of the texture that multiplies color; RT_NONE: none */
+    rt_u32 flags;         /* RT_MATERIAL_* */
+    rt_u32 model;         /* RT_MODEL_*: what `path` takes the surface for. Whitted's tracers read the members above */
+    rt_f32 absorption[3]; /* inside of a dielectric, per unit of length: light falls by exp(-absorption length) */
+    rt_f32 roughness;     /* 0..1; GGX with alpha = roughness^2; 0: smooth */
 } rt_material;
 
-/* A light without falloff, as in the thesis. 32 B. */
+/* A light. What `color` is depends on the kind: see RT_LIGHT_* in rt_shared.h. 96 B. */
 typedef struct rt_light {
-    rt_f32 position[3]; /* point: position, world. directional: unit vector towards the light */
-    rt_u32 kind;
-    rt_f32 color[3]; /* linear RGB, intensity included */
-    rt_u32 pad;
+    rt_f32 position[3]; /* world; of an area light its middle. directional, sun: unit vector towards the light */
+    rt_u32 kind;        /* RT_LIGHT_* */
+    rt_f32 color[3];    /* linear RGB, intensity included */
+    rt_u32 flags;       /* RT_LIGHT_FALLOFF, ... */
+    rt_f32 u[3];        /* rect: from the middle to the middle of an edge */
+    rt_f32 radius;      /* disc, sphere */
+    rt_f32 v[3];        /* rect: as u, of an edge beside it */
+    rt_f32 area;        /* rect, disc, sphere: of the side, or of both sides, that emits */
+    rt_f32 normal[3];   /* unit: side that a rect (u x v) or a disc emits from; axis of a spot, into which it shines */
+    rt_f32 cos_inner;   /* spot: cosine of the half angle within which it has its full intensity */
+    rt_f32 cos_outer;   /* spot: beyond this half angle it has none. sun: cosine of the half of its angle */
+    rt_u32 pad[3];
 } rt_light;
 
-/* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may show
- * one picture. 16 B. */
+/* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may
+ * show one picture. 16 B. */
 typedef struct rt_texture {
     rt_u32 first, width, height;
     rt_u32 wrap; /* outside of the picture: RT_WRAP_... of rt_plugin.h along u, plus RT_WRAP_ALONG_V times that along v */
@@ -68,7 +78,7 @@ typedef struct rt_texture {
 /* Values that may change from frame to frame while program and scene stay the same. 176 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
-    rt_f32 pixel_x; /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
+    rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
     rt_f32 right[3]; /* unit vector to the right * tan(fov / 2) * width / height */
     rt_f32 pixel_y;  /* 1 / height */
     rt_f32 up[3];    /* unit vector upwards * tan(fov / 2) */
@@ -83,11 +93,11 @@ typedef struct rt_frame {
     rt_u32 sample; /* number of this sample */
     rt_u32 adds;   /* 0: the sample replaces what is in the film; else it is added */
     rt_u32 layers; /* samples of the launch, this one first, each into a film of its own; so many rt_frame follow each other */
-    rt_u32 packet_w, packet_h; /* pixels of one work-item */
-    rt_f32 min_weight; /* rays of a smaller weight are not spawned */
-    rt_u32 shadows;    /* 0: no shadow rays */
-    rt_u32 aov;        /* what aov.cl writes: RT_AOV_T, ... */
-    rt_u32 root; /* root of group 0's tree */
+    rt_u32 packet_w, packet_h;    /* pixels of one work-item */
+    rt_f32 min_weight;            /* rays of a smaller weight are not spawned */
+    rt_u32 shadows;               /* 0: no shadow rays */
+    rt_u32 aov;                   /* what aov.cl writes: RT_AOV_T, ... */
+    rt_u32 root;                  /* root of group 0's tree */
     rt_u32 block_w, block_w_log2; /* width of a block in pixels; a block has RT_LANES pixels, traced together */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
     rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
@@ -95,15 +105,15 @@ typedef struct rt_frame {
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
 } rt_frame;
 
-/* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of RT_LANES
- * of them, field by field: cl/tracers/rays/ray_blocks.h. */
+/* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of
+ * RT_LANES of them, field by field: cl/tracers/rays/ray_blocks.h. */
 typedef struct rt_ray {
     rt_f32 origin[3], t_min, direction[3], t_max;
 } rt_ray;
 typedef struct rt_hit {
-    rt_f32 t, u, v;     /* t = INFINITY: no hit. Any-hit queries: t = 0 where occluded */
-    rt_i32 prim;        /* -1: no hit */
-    rt_i32 instance;    /* -1: not instanced */
+    rt_f32 t, u, v;  /* t = INFINITY: no hit. Any-hit queries: t = 0 where occluded */
+    rt_i32 prim;     /* -1: no hit */
+    rt_i32 instance; /* -1: not instanced */
     /* Counted on request. Each ray of a block of RT_LANES has the sums over the block. */
     rt_u32 steps;      /* nodes visited */
     rt_u32 leaf_tests; /* primitives tested, without planes */
@@ -120,11 +130,11 @@ typedef struct rt_hit {
 typedef struct rt_ray_record {
     rt_f32 origin[3], t; /* +inf: no hit; shadow rays: distance of the light */
     rt_f32 direction[3];
-    rt_u32 kind;         /* RT_RAY_* */
+    rt_u32 kind; /* RT_RAY_* */
     rt_f32 weight[3];
-    rt_u32 fate;         /* RT_FATE_* */
-    rt_f32 light[3];     /* light that the ray adds to the pixel */
-    rt_u32 generation;   /* 1: camera rays */
+    rt_u32 fate;                                          /* RT_FATE_* */
+    rt_f32 light[3];                                      /* light that the ray adds to the pixel */
+    rt_u32 generation;                                    /* 1: camera rays */
     rt_i32 parent, prim, instance, material, light_index; /* -1: none */
     rt_u32 occluded, steps, leaf_tests;
 } rt_ray_record;

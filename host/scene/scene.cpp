@@ -189,4 +189,12 @@ rt_material default_material() {
     return m;
 }
 
+rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color) {
+    rt_light light{};
+    light.kind = kind;
+    std::copy(position.begin(), position.end(), light.position);
+    std::copy(color.begin(), color.end(), light.color);
+    return light;
+}
+
 }  // namespace clarity

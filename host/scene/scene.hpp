@@ -177,6 +177,8 @@ Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
 rt_material default_material();
+// A light without falloff. kind: RT_LIGHT_POINT at a position, or RT_LIGHT_DIRECTIONAL from a unit vector towards it.
+rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color);
 
 // Returns an empty text if the scene is sound, otherwise what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's
 // size.

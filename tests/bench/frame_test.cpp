@@ -64,7 +64,7 @@ Both render(const ScenePtr& scene, const View& view, const Settings& settings, c
 
 View view_of(const Scene& scene) {
     View view = view_from({0.5f, 4, 5}, {0, 0, 0}, 45);
-    view.lights = {rt_light{{3, 5, 2}, RT_LIGHT_POINT, {0.9f, 0.8f, 0.7f}, 0}};
+    view.lights = {whitted_light(RT_LIGHT_POINT, {3, 5, 2}, {0.9f, 0.8f, 0.7f})};
     view.background = scene.background;
     view.ambient = scene.ambient;
     return view;

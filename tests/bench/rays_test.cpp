@@ -266,7 +266,7 @@ TEST(Baselines, GiveTheSameHitsAsOurs) {
     const RaySet primary = camera_rays(view.camera, 96, 96);
     const auto hits = Workbench::get().rays(scene, Settings(), primary.rays, false);
     const auto sets =
-        secondary_rays(*scene, view.lights.empty() ? rt_light{{3, 5, 2}, RT_LIGHT_POINT, {1, 1, 1}, 0} : view.lights[0],
+        secondary_rays(*scene, view.lights.empty() ? whitted_light(RT_LIGHT_POINT, {3, 5, 2}, {1, 1, 1}) : view.lights[0],
                        primary, hits, 96, 96);
     std::vector<const RaySet*> all = {&primary};
     for (const RaySet& set : sets) all.push_back(&set);

@@ -222,7 +222,7 @@ TEST(WatertightPolygons, EdgesAreNotInShadow) {
     for (const float z : {0.95f, 0.7f, 0.3f}) {
         View view = view_from({0, 0, z}, {0, 0, -1}, 75);
         view.ambient = {0.1f, 0.1f, 0.1f};
-        view.lights = {{{0.1f, 0.65f, 0.1f}, RT_LIGHT_POINT, {1, 1, 1}, 0}};
+        view.lights = {whitted_light(RT_LIGHT_POINT, {0.1f, 0.65f, 0.1f}, {1, 1, 1})};
         const FloatImage image =
             Workbench::get().values(scene, make_settings({{"accel", "bvh8"}, {"size", "600x600"}, {"depth", "1"}}), view);
         for (unsigned y = 0; y < image.height; ++y)

@@ -12,13 +12,7 @@ using namespace clarity::test;
 namespace {
 
 rt_light light_of(rt_u32 kind, const Point& position, float intensity) {
-    rt_light light{};
-    light.kind = kind;
-    for (int k = 0; k < 3; ++k) {
-        light.position[k] = position[k];
-        light.color[k] = intensity;
-    }
-    return light;
+    return whitted_light(kind, position, {intensity, intensity, intensity});
 }
 
 // The same axis-aligned rectangle, which faces +z, as two triangles, as a polygon or as the mesh of an instance.

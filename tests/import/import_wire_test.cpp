@@ -45,7 +45,7 @@ Scene sample() {
     s.materials[1].values.ior = 1.33f;
     s.textures = {{0, 1, 2, 0}};
     s.texels = {0xff112233u, 0xff445566u};
-    s.lights = {{"sun", {{0, 1, 0}, RT_LIGHT_DIRECTIONAL, {1, 2, 3}, 0}}};
+    s.lights = {{"sun", whitted_light(RT_LIGHT_DIRECTIONAL, {0, 1, 0}, {1, 2, 3})}};
     s.cameras = {{"front", {0, 0, 5}, {0, 0, 1}, {0, 1, 0}, 0.7f}};
     s.background = {0.1f, 0.2f, 0.3f};
     s.ambient = {0.4f, 0.5f, 0.6f};

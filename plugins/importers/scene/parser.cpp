@@ -63,12 +63,15 @@ Names defined_names(const Things& things, const char* kind, Diagnostics& diagnos
 void check_use(const Name& use, const Names& names, const char* kind, Diagnostics& diagnostics) {
     if (use.text.empty() || diagnostics.full() || names.count(use.text) != 0) return;
     std::vector<std::string_view> known;
-    for (const auto& [name, position] : names) known.push_back(name);
-    const std::string nearest = suggestion(use.text, known);
+    std::string all;  // in quotes, since a name of a file may be any text
     constexpr size_t most_listed = 20;
-    const bool is_cut = known.size() > most_listed;
-    if (is_cut) known.resize(most_listed);
-    const std::string all = known.empty() ? "none" : listed(known) + (is_cut ? ", ..." : "");
+    for (const auto& [name, position] : names) {
+        if (known.size() <= most_listed)
+            all += (known.empty() ? "" : ", ") + (known.size() < most_listed ? in_quotes(name) : "...");
+        known.push_back(name);
+    }
+    if (known.empty()) all = "none";
+    const std::string nearest = suggestion(use.text, known);
     diagnostics.error({use.position, "unknown " + std::string(kind) + " " + in_quotes(use.text) + nearest +
                                          " (defined in this file: " + all + ")"});
 }

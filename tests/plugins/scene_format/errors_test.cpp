@@ -35,7 +35,7 @@ const Case kCases[] = {
     {"sphere radius 1 radius 2", "1:17: key `radius` for the second time; the first is in column 8"},
     {"sphere center 0 0 0 material", "1:29: the line ends here; expected a material's name"},
     {"sphere material gless\nmaterial glass",
-     "1:17: unknown material `gless`; did you mean `glass`? (defined in this file: glass)"},
+     "1:17: unknown material `gless`; did you mean `glass`? (defined in this file: `glass`)"},
     {"sphere material 3", "1:17: number `3`; expected a material's name (in quotes, if it looks like a number)"},
     {"sphere material radius", "1:17: key `radius`; expected a material's name (in quotes, if that is what it is)"},
     {"plane normal 0 0 0", "1:14: the zero vector has no direction; expected another for `normal` (x y z)"},

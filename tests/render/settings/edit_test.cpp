@@ -44,7 +44,7 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
     view.background = {0.1f, 0.2f, 1.0f / 3.0f};
     view.ambient = {0, 0, 0};
     view.lights[0].position[1] = 7.7f;
-    view.lights.push_back({{0, 0.6f, 0.8f}, RT_LIGHT_DIRECTIONAL, {1, 2, 3}, 0});
+    view.lights.push_back(whitted_light(RT_LIGHT_DIRECTIONAL, {0, 0.6f, 0.8f}, {1, 2, 3}));
     edited.lights_on = {true, false, true};
     for (const Material& material : scene.materials) view.materials.push_back(material.values);
     view.materials[1].ior = 1.33f;

@@ -120,7 +120,7 @@ Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& k
     scene.shape_kinds = kinds;
     add_shapes(scene, shapes);
     Light light;
-    light.values = {{4, 6, 5}, RT_LIGHT_POINT, {40, 40, 40}, 0};
+    light.values = whitted_light(RT_LIGHT_POINT, {4, 6, 5}, {40, 40, 40});
     scene.lights.push_back(light);
     Camera camera;
     camera.eye = {0, 1, 6};
