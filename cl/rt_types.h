@@ -75,7 +75,7 @@ typedef struct rt_texture {
 } rt_texture;
 #define RT_WRAP_ALONG_V 4u
 
-/* Values that may change from frame to frame while program and scene stay the same. 176 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 200 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
     rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
@@ -103,7 +103,14 @@ typedef struct rt_frame {
     rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
     rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
+    rt_u32 samples;    /* `path`: of this launch, this one first; they are added to the film in their order */
+    rt_u32 seed;       /* `path`: pictures of two seeds have independent noise */
+    rt_u32 path_flags; /* RT_PATH_* */
 } rt_frame;
+#define RT_PATH_SOBOL 1u          /* samples are Sobol's points, scrambled; else independent */
+#define RT_PATH_DRAWS_LIGHTS 2u   /* points of lights that have a size are drawn: strategies nee and mis */
+#define RT_PATH_FINDS_LIGHTS 4u   /* rays of rough surfaces count lights that they find: strategies bsdf and mis */
+#define RT_PATH_POWER_WEIGHTS 8u  /* of both: weights of squared densities */
 
 /* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of
  * RT_LANES of them, field by field: cl/tracers/rays/ray_blocks.h. */

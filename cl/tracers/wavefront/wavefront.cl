@@ -18,7 +18,7 @@
 /* control: RT_CONTROL uints for each level: the number of rays, which may exceed `room`, and the tickets claimed. Zero at the
  * start. */
 #define RT_CONTROL 2u
-#define RT_CONTROLS (17u * RT_CONTROL) /* 16 generations, and one that is never traced */
+#define RT_CONTROLS (129u * RT_CONTROL) /* 128 generations, and one that is never traced */
 
 /* The light of deferred paths, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
 #define RT_SHARE 6u

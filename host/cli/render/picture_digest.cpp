@@ -30,6 +30,7 @@ void add_settings_to(Digest& digest, const Settings& settings, bool display) {
     if (!aov.tracer) digest.add(picture_of_tracer(settings.tracer));
     for (const Setting& row : settings_table()) {
         if ((!cost && chooses_a_way(row.key)) || (!display && chooses_colors(row.key))) continue;
+        if (!row.picture.empty() && (aov.tracer || row.picture != picture_of_tracer(settings.tracer))) continue;
         digest.add(row.key);
         digest.add(row.get(settings));
     }

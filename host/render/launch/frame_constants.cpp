@@ -61,6 +61,12 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     const double x = 0.5 + sample * 0.7548776662466927, y = 0.5 + sample * 0.5698402909980532;
     frame.within_x = static_cast<float>(x - std::floor(x));
     frame.within_y = static_cast<float>(y - std::floor(y));
+    frame.samples = 1;
+    frame.seed = static_cast<rt_u32>(settings.seed);
+    if (settings.sampler == "sobol") frame.path_flags |= RT_PATH_SOBOL;
+    if (settings.strategy != "bsdf") frame.path_flags |= RT_PATH_DRAWS_LIGHTS;
+    if (settings.strategy != "nee") frame.path_flags |= RT_PATH_FINDS_LIGHTS;
+    if (settings.mis == "power") frame.path_flags |= RT_PATH_POWER_WEIGHTS;
     frame.min_weight = static_cast<float>(settings.min_weight);
     frame.shadows = settings.shadows;
     frame.aov = number_of(find_aov(settings.aov));

@@ -102,6 +102,12 @@ Setting size(const std::string& key, std::string label, std::string help, int mi
     return s;
 }
 
+// A setting of the tracer `path`.
+Setting of_paths(Setting s) {
+    s.picture = kPathPicture;
+    return s;
+}
+
 Setting lanes_setting() {
     Setting s =
         choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
@@ -143,7 +149,10 @@ const std::vector<Setting>& settings_table() {
                "samples of a blurred picture are refitted, unless this is build",
                {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
         choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer),
-        integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
+        integer("depth", "Depth",
+                "generations of rays, 1: camera rays only; of `path` the most events of scattering, each lit by lamps, and a last "
+                "ray that may only find light",
+                1, kMostDepth, Effect::frame, &Settings::depth),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,
              Effect::recompile, &Settings::packet_w, &Settings::packet_h),
@@ -151,7 +160,7 @@ const std::vector<Setting>& settings_table() {
         integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
                 Effect::recompile, &Settings::ray_slots),
         size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height),
-        integer("spp", "Samples", "samples a pixel", 1, 65536, Effect::frame, &Settings::spp),
+        integer("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::frame, &Settings::spp),
         real("shutter", "Shutter",
              "motion blur: share of a frame's time that the shutter is open; 0: none. The samples of a pixel are spread over "
              "this time, half of it before the frame's time and half after; each shows the scene at a time of its own. So it "
@@ -159,6 +168,18 @@ const std::vector<Setting>& settings_table() {
              "not blurred",
              0, 1, Effect::frame, &Settings::shutter),
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
+        of_paths(choice("strategy", "Strategy",
+                        "how `path` finds light. nee: each event draws a point of a lamp; bsdf: rays that surfaces scatter find "
+                        "lamps and sky; mis: both, with weights. Lamps without a size are always drawn",
+                        {"nee", "bsdf", "mis"}, Effect::frame, &Settings::strategy)),
+        of_paths(choice("mis", "Weights", "of the strategy mis: by densities (balance) or by their squares (power)",
+                        {"balance", "power"}, Effect::frame, &Settings::mis)),
+        of_paths(choice("sampler", "Sampler",
+                        "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers "
+                        "that are spread evenly over the samples of a pixel, with less noise",
+                        {"independent", "sobol"}, Effect::frame, &Settings::sampler)),
+        of_paths(integer("seed", "Seed", "pictures of two seeds have independent noise", 0, 1 << 30, Effect::frame,
+                         &Settings::seed)),
         real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
              &Settings::min_weight),
         choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov),

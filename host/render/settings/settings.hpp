@@ -9,6 +9,9 @@ namespace clarity {
 // What the host must redo after a change of this setting.
 enum class Effect { frame, recompile, rebuild };
 
+// The greatest `depth`.
+constexpr int kMostDepth = 128;
+
 // The values of all settings.
 struct Settings {
     // The structure.
@@ -17,7 +20,7 @@ struct Settings {
     std::string poses = "auto";        // how the structure follows a scene that plays: auto|refit|build
     // How rays are traced.
     std::string tracer = "auto";
-    int depth = 5;  // generations of rays, 1 = camera rays only
+    int depth = 5;  // generations of rays, 1 = camera rays only; of `path` events of scattering
     // Pixels of one work-item. 0: automatic, 1x1 on a GPU; lanes x lanes on a CPU, but at least 4x4.
     int packet_w = 0, packet_h = 0;
     int lanes = 0;               // 1, 4, 8 or 16; 0: automatic
@@ -31,6 +34,11 @@ struct Settings {
     int spp = 1;         // samples per pixel
     double shutter = 0;  // share of a frame's time that the shutter is open; 0: no motion blur
     bool shadows = true;
+    // Of the tracer `path`.
+    std::string strategy = "mis";  // nee|bsdf|mis
+    std::string mis = "power";     // balance|power
+    std::string sampler = "sobol"; // independent|sobol
+    int seed = 0;
     double min_weight = 1.0 / 512.0;  // rays that would add a smaller share are not followed
     std::string aov = "color";        // a name of aov_table()
     // The display.
@@ -55,6 +63,8 @@ struct Setting {
         set;  // throws Error(usage), which says what was read and what is allowed
     std::function<bool(const Settings&, const Settings&)> equal;  // whether both have the same value
     std::function<void(Settings& to, const Settings& from)> copy;
+    // TracerChoice::picture of the tracers that it is for; empty: for all.
+    std::string picture = {};
 };
 
 // All settings but accel and its parameters, which come from the plugins (see parameters.hpp).

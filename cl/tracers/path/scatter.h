@@ -1,0 +1,159 @@
+/* scatter.h -- one segment of each path: what its ray finds, light by next-event estimation, and the next direction.
+ *
+ * Kajiya 1986, The Rendering Equation; weights of two strategies by Veach, Guibas 1995, Optimally Combining Sampling Techniques
+ * for Monte Carlo Rendering. */
+#ifndef RT_PATH_SCATTER_H
+#define RT_PATH_SCATTER_H
+
+/* Numbers of a work-item's rays: shadow rays, rays after the camera's, samples that were not finite, and full traversal stacks. */
+typedef struct rt_tally {
+    uint shadow, secondary, dropped, overflow;
+} rt_tally;
+
+/* Paths of fewer events than this end by roulette nowhere. */
+#define RT_ROULETTE_EVENT 3
+
+/* The weight of what a strategy has found whose density is `mine`, where the other one had `other`. */
+RT_INLINE vfloat rt_mis_weight(const constant rt_frame *frame, vfloat mine, vfloat other)
+{
+    vfloat ratio = other / mine;
+    if (frame->path_flags & RT_PATH_POWER_WEIGHTS) ratio *= ratio;
+    return rt_vfloat(1.0f) / (rt_vfloat(1.0f) + ratio);
+}
+
+/* The weight of light that a drawn point of a light sends. surface_pdf: with which the surface would have drawn that direction. */
+RT_INLINE vfloat rt_drawn_weight(const constant rt_frame *frame, const rt_light_sample *s, vfloat surface_pdf)
+{
+    vfloat weight = rt_vfloat(frame->path_flags & RT_PATH_DRAWS_LIGHTS ? 1.0f : 0.0f);
+    if ((frame->path_flags & RT_PATH_DRAWS_LIGHTS) && (frame->path_flags & RT_PATH_FINDS_LIGHTS))
+        weight = rt_mis_weight(frame, s->pdf, surface_pdf);
+    return rt_select(s->delta, rt_vfloat(1.0f), weight);
+}
+
+/* The weight of light that a path's ray finds. light_pdf: with which a light would have been drawn there; 0: it could not. */
+RT_INLINE vfloat rt_found_weight(const constant rt_frame *frame, const rt_path *p, vfloat light_pdf)
+{
+    vfloat weight = rt_vfloat(frame->path_flags & RT_PATH_FINDS_LIGHTS ? 1.0f : 0.0f);
+    if ((frame->path_flags & RT_PATH_DRAWS_LIGHTS) && (frame->path_flags & RT_PATH_FINDS_LIGHTS))
+        weight = rt_mis_weight(frame, p->pdf, light_pdf);
+    return rt_select(p->sharp | RT_MASK(light_pdf == rt_vfloat(0.0f)), rt_vfloat(1.0f), weight);
+}
+
+/* Adds the light that arrives at the points directly, by one shadow ray each. wo, basis: of the points. */
+RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_point *point,
+                             const rt_basis *basis, const rt_bsdf *bsdf, rt_vec wo, const rt_sampler *sampler, rt_tally *tally)
+{
+    const vfloat zero = rt_vfloat(0.0f);
+    const rt_numbers n = rt_draw_set(sampler, RT_LIGHT_SET(p->event));
+    const rt_vec outside = rt_along(point->outward, point->geometric, point->at);
+    const rt_light_sample s = rt_light_draw(ctx, frame, outside, n.a, n.b, n.c, lanes);
+    const rt_vec wi = rt_to_local(basis, s.towards);
+    vfloat surface_pdf;
+    rt_vec light = rt_bsdf_eval(bsdf, wo, wi, lanes, &surface_pdf);
+    light = rt_scale(rt_drawn_weight(frame, &s, surface_pdf), rt_mul(light, s.radiance_over_pdf));
+    /* Shading normal and surface must agree on the side: else light would leak through, or come from behind. */
+    const vmask above = RT_MASK(rt_dot(point->geometric, s.towards) > zero), agree = ~(above ^ RT_MASK(wi.z > zero));
+    const vmask asked = lanes & s.valid & agree & RT_MASK(rt_largest(light) > zero);
+    const uint bits = rt_bits(asked);
+    if (bits == 0u) return;
+    const rt_vec from = rt_along(rt_select(above, point->outward, point->inward), point->geometric, point->at);
+    rt_rays ray;
+    rt_hits hit;
+    ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
+    ray.dx = s.towards.x, ray.dy = s.towards.y, ray.dz = s.towards.z;
+    ray.t_min = zero;
+    rt_clear_hits(&hit, asked);
+    hit.t = rt_select(asked, s.distance, rt_vfloat(-1.0f));
+    if (frame->shadows != 0u) {
+        rt_prepare(&ray, bits);
+#ifdef RT_SPLITS_INCOHERENT
+        ray.incoherent = rt_incoherent(&ray, point->area, bits);
+#endif
+        rt_trace_any(ctx, frame, &ray, &hit);
+        tally->shadow += popcount(bits);
+        RT_TALLY_OVERFLOW(tally, &hit)
+    }
+    const vmask lit = asked & RT_MASK(hit.t >= zero);
+    p->light = rt_choose(lit, rt_add(p->light, rt_mul(p->weight, light)), p->light);
+}
+
+/* Draws the next directions. Returns the lanes that go on. */
+RT_INLINE vmask rt_next_direction(const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_point *point, const rt_basis *basis,
+                                  const rt_bsdf *bsdf, rt_vec wo, const rt_sampler *sampler)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const rt_numbers n = rt_draw_set(sampler, RT_SURFACE_SET(p->event));
+    const rt_bsdf_sample s = rt_bsdf_draw(bsdf, wo, n.a, n.b, n.c, lanes);
+    const rt_vec direction = rt_normalize(rt_to_world(basis, s.wi));
+    const vmask above = RT_MASK(rt_dot(point->geometric, direction) > zero), agree = above ^ s.transmitted;
+    rt_vec weight = rt_mul(p->weight, s.weight);
+    vmask on = lanes & s.valid & agree & RT_MASK(rt_largest(weight) > zero);
+    /* Roulette: a path of small weight ends by chance, and those that go on stand for it. */
+    const vfloat chance = rt_select(RT_MASK(p->event + rt_vint(1) < rt_vint(RT_ROULETTE_EVENT)), one, rt_max(rt_min(rt_largest(weight), one), rt_vfloat(0.05f)));
+    on &= RT_MASK(n.d < chance);
+    weight = rt_scale(one / chance, weight);
+
+    const rt_vec from = rt_along(rt_select(above, point->outward, point->inward), point->geometric, point->at);
+    p->origin = rt_choose(on, from, p->origin);
+    p->direction = rt_choose(on, direction, p->direction);
+    p->weight = rt_choose(on, weight, p->weight);
+    p->pdf = rt_select(on, s.pdf, p->pdf);
+    p->sharp = rt_select(on, s.delta, p->sharp);
+    p->event += rt_vint(1);
+#ifdef RT_SPLITS_INCOHERENT
+    p->area = rt_select(on, point->area, p->area);
+#endif
+    return on;
+}
+
+/* Traces the rays of the paths that are alive. Returns the lanes whose paths go on. distances: of the packet's camera rays. */
+RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, global float *distances, rt_tally *tally)
+{
+    const uint bits = rt_bits(p->alive);
+    rt_rays ray;
+    rt_hits hit;
+    ray.ox = p->origin.x, ray.oy = p->origin.y, ray.oz = p->origin.z;
+    ray.dx = p->direction.x, ray.dy = p->direction.y, ray.dz = p->direction.z;
+    ray.t_min = rt_vfloat(0.0f);
+    rt_prepare(&ray, bits);
+#ifdef RT_SPLITS_INCOHERENT
+    ray.incoherent = rt_incoherent(&ray, p->area, bits);
+#endif
+    rt_clear_hits(&hit, p->alive);
+    rt_trace_closest(ctx, frame, &ray, &hit);
+    RT_TALLY_OVERFLOW(tally, &hit)
+    if (frame->sample == 0u) {
+        const uint first = bits & rt_bits(RT_MASK(p->event == rt_vint(0)) & RT_MASK(p->sample == rt_vint(0)));
+        if (first != 0u) RT_FOR_LANES_STORE(distances, p->slot, hit.t, first)
+    }
+
+    const vmask hits = p->alive & RT_MASK(hit.prim >= rt_vint(0)), missed = p->alive & ~hits;
+    if (rt_any(missed)) {
+        vfloat pdf;
+        const rt_vec found = rt_sky(ctx, frame, p->direction, missed, &pdf);
+        const vfloat weight = rt_found_weight(frame, p, pdf);
+        p->light = rt_choose(missed, rt_add(p->light, rt_scale(weight, rt_mul(p->weight, found))), p->light);
+    }
+    const uint hit_bits = rt_bits(hits);
+    if (hit_bits == 0u) return hits;
+    const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
+    const rt_point point = rt_point_of(&ray, &surface, hits);
+    vfloat pdf;
+    const rt_vec found = rt_emission_of_hit(ctx, &surface, hit_bits, point.at, &pdf);
+    const vfloat found_weight = rt_found_weight(frame, p, pdf);
+    p->light = rt_choose(hits, rt_add(p->light, rt_scale(found_weight, rt_mul(p->weight, found))), p->light);
+
+    const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
+    const uint scattered_bits = rt_bits(scattered);
+    if (scattered_bits == 0u) return scattered;
+    const rt_sampler sampler = rt_sampler_of(frame, p);
+    const rt_basis basis = rt_basis_of(point.normal);
+    const rt_vec wo = rt_to_local(&basis, rt_scale(rt_vfloat(-1.0f), point.incoming));
+    const rt_bsdf bsdf = rt_bsdf_of(ctx, &surface, ~point.leaving, scattered_bits, point.at);
+    if (frame->light_count != 0u) rt_next_event(ctx, frame, p, scattered, &point, &basis, &bsdf, wo, &sampler, tally);
+    const vmask on = rt_next_direction(frame, p, scattered, &point, &basis, &bsdf, wo, &sampler);
+    tally->secondary += popcount(rt_bits(on));
+    return on;
+}
+
+#endif

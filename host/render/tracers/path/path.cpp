@@ -1,0 +1,39 @@
+// path.cpp -- the tracer `path`: a path of light at a time in each lane; a lane whose path has ended takes the next pixel.
+#include "render/tracers/tracer.hpp"
+
+namespace clarity {
+namespace {
+
+const KernelRow& kernel(const Settings&, const Layout&) {
+    static const KernelRow row = [] {
+        KernelRow r;
+        r.tracer = "path";
+        r.what = "tracer path";
+        r.file = "tracers/path/path.cl";
+        r.entry = "trace_path";
+        r.headers = {"shading/material.h","sampling/hash.h",
+                     "sampling/sobol.h",       "sampling/dimensions.h",     "tracers/path/sum.h",
+                     "tracers/path/basis.h",   "tracers/path/camera_rays.h", "tracers/path/state.h",
+                     "tracers/path/first_surfaces.h", "tracers/path/first_lights.h",
+                     "tracers/path/scatter.h"};
+        r.traits = kFrame | kCountsRays | kSumsSamples;
+        return r;
+    }();
+    return row;
+}
+
+}  // namespace
+
+const Tracer& path_tracer() {
+    static const Tracer tracer = [] {
+        Tracer t;
+        t.id = "path";
+        t.help = "paths of light: lamps with a size, light from surface to surface; depth counts events of scattering";
+        t.picture = kPathPicture;
+        t.kernel = kernel;
+        return t;
+    }();
+    return tracer;
+}
+
+}  // namespace clarity
