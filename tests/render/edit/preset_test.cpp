@@ -1,5 +1,5 @@
 // Presets as JSON and as command lines.
-#include "render/settings/preset.hpp"
+#include "render/edit/preset.hpp"
 
 #include <gtest/gtest.h>
 

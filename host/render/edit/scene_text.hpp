@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 
 namespace clarity {
 

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "render/settings/camera_path.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/camera_path.hpp"
+#include "render/view/view.hpp"
 #include "scene/instance_edit.hpp"
 #include "scene/scene.hpp"
 

@@ -1,12 +1,12 @@
 // camera_path_test.cpp -- cameras that move from key to key: as text, and as the text scene that is made of them.
-#include "render/settings/camera_path.hpp"
+#include "render/view/camera_path.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/error.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "scene/motion/pose.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"

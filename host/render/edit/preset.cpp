@@ -1,4 +1,4 @@
-#include "render/settings/preset.hpp"
+#include "render/edit/preset.hpp"
 
 #include <nlohmann/json.hpp>
 

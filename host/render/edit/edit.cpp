@@ -1,4 +1,4 @@
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
-#include "render/settings/camera_text.hpp"
 #include "render/settings/settings.hpp"
+#include "render/view/camera_text.hpp"
 
 namespace clarity {
 namespace {

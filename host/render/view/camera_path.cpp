@@ -1,11 +1,11 @@
-#include "render/settings/camera_path.hpp"
+#include "render/view/camera_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/numbers.hpp"
-#include "render/settings/camera_text.hpp"
 #include "render/settings/settings.hpp"
+#include "render/view/camera_text.hpp"
 #include "scene/camera.hpp"
 #include "scene/motion/matrix.hpp"
 

@@ -1,5 +1,5 @@
 // Scenes that are saved with their edits: loading the saved file gives the same picture.
-#include "render/settings/scene_text.hpp"
+#include "render/edit/scene_text.hpp"
 
 #include <gtest/gtest.h>
 

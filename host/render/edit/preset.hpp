@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "plugin/registry.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/motion/pose_time.hpp"
 

@@ -1,4 +1,4 @@
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/numbers.hpp"
-#include "render/settings/camera_text.hpp"
+#include "render/view/camera_text.hpp"
 #include "scene/camera.hpp"
 
 namespace clarity {

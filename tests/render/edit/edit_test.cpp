@@ -1,5 +1,5 @@
 // Edits of a view as text: each is restored exactly, and wrong ones are refused with what is allowed.
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "render/settings/scene_text.hpp"
+#include "render/edit/scene_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
-#include "render/settings/camera_text.hpp"
+#include "render/view/camera_text.hpp"
 
 namespace clarity {
 namespace {

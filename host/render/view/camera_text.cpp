@@ -1,4 +1,4 @@
-#include "render/settings/camera_text.hpp"
+#include "render/view/camera_text.hpp"
 
 #include <algorithm>
 
