@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "render/settings/tracer_choice.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -19,6 +20,7 @@ struct Group {
 const std::vector<Group>& groups() {
     static const std::vector<Group> all = {
         {"TRACING", {"tracer", "depth", "packet", "lanes", "ray_slots", "shadows", "min_weight", "poses"}, false},
+        {"PATHS", {"strategy", "mis", "sampler", "seed", "filter"}, false},
         {"PICTURE", {"size", "spp", "shutter", "aov", "scale_max", "exposure", "tone"}, true},
     };
     return all;
@@ -168,13 +170,20 @@ bool in_a_group(const std::string& key) {
     return false;
 }
 
+// Whether the setting changes pictures of the tracer that is chosen.
+bool is_used(const Setting* row, const Settings& settings) {
+    return row && (row->picture.empty() || row->picture == picture_of_tracer(settings.tracer));
+}
+
 void group_rows(const Group& group, Session& session, const UiState& state) {
     const bool compared = session.desired.other.has_value();
-    if (!folding_section(group.title)) return;
+    Settings& settings = group.shared ? session.desired.main.settings : session.edited().settings;
+    const auto used = [&](const char* key) { return is_used(find_setting(key), settings); };
+    if (std::none_of(group.keys.begin(), group.keys.end(), used) || !folding_section(group.title)) return;
     if (compared && group.shared) dim_text("of both sides");
     for (const char* key : group.keys)
-        if (const Setting* row = find_setting(key)) {
-            setting_row(*row, group.shared ? session.desired.main.settings : session.edited().settings);
+        if (const Setting* row = find_setting(key); is_used(row, settings)) {
+            setting_row(*row, settings);
             if (row->key == "size") size_rows(session, state);
         }
 }
@@ -194,7 +203,7 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
     for (const Group& group : groups()) group_rows(group, session, state);
     if (folding_section("MORE", false))
         for (const Setting& row : settings_table())
-            if (!in_a_group(row.key)) setting_row(row, session.edited().settings);
+            if (!in_a_group(row.key) && is_used(&row, session.edited().settings)) setting_row(row, session.edited().settings);
     ImGui::PopID();
     draw_output_rows(session, state);
 }

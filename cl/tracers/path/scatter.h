@@ -39,6 +39,30 @@ RT_INLINE vfloat rt_found_weight(const constant rt_frame *frame, const rt_path *
     return rt_select(p->sharp | RT_MASK(light_pdf == rt_vfloat(0.0f)), rt_vfloat(1.0f), weight);
 }
 
+/* How the first event of a path scatters, by whether its ray goes through the surface. */
+RT_INLINE vint rt_first_kind(const rt_path *p, const rt_bsdf *bsdf, vmask sharp, vmask through)
+{
+    const vint kind = rt_select(through, rt_vint(RT_FIRST_TRANSMISSION),
+                                rt_select(sharp | rt_is_glossy(bsdf), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
+    return rt_select(RT_MASK(p->event == rt_vint(0)), kind, p->first);
+}
+
+/* Counts light that paths have found, if it is of the kinds that are asked for. bounce: events between it and the camera. by:
+ * RT_BY_*. */
+RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lanes, rt_vec light, vint bounce, uint by, vint first, vint number)
+{
+    if (frame->only_bounce != RT_NONE) lanes &= RT_MASK(bounce == rt_vint((int)frame->only_bounce));
+    if (frame->only_by != RT_NONE && frame->only_by != by) return;
+    if (frame->only_first != RT_NONE) lanes &= RT_MASK(first == rt_vint((int)frame->only_first));
+    if (frame->only_light != RT_NONE) lanes &= RT_MASK(number == rt_vint((int)frame->only_light));
+    light = rt_mul(p->weight, light);
+#ifdef RT_SHOW_MIS
+    const vfloat all = RT_LUMINANCE(light);
+    light = rt_vec_of(by == RT_BY_NEE ? all : rt_vfloat(0.0f), all, rt_vfloat(0.0f));
+#endif
+    p->light = rt_choose(lanes, rt_add(p->light, light), p->light);
+}
+
 /* Adds the light that arrives at the points directly, by one shadow ray each. wo, basis: of the points. */
 RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_point *point,
                              const rt_basis *basis, const rt_bsdf *bsdf, rt_vec wo, const rt_sampler *sampler, rt_tally *tally)
@@ -74,7 +98,8 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
         RT_TALLY_OVERFLOW(tally, &hit)
     }
     const vmask lit = asked & RT_MASK(hit.t >= zero);
-    p->light = rt_choose(lit, rt_add(p->light, rt_mul(p->weight, light)), p->light);
+    const vint first = rt_first_kind(p, bsdf, rt_vint(0), ~above);
+    rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
 
 /* Draws the next directions. Returns the lanes that go on. */
@@ -99,6 +124,7 @@ RT_INLINE vmask rt_next_direction(const constant rt_frame *frame, rt_path *p, vm
     p->weight = rt_choose(on, weight, p->weight);
     p->pdf = rt_select(on, s.pdf, p->pdf);
     p->sharp = rt_select(on, s.delta, p->sharp);
+    p->first = rt_first_kind(p, bsdf, s.delta, s.transmitted);
     p->event += rt_vint(1);
 #ifdef RT_SPLITS_INCOHERENT
     p->area = rt_select(on, point->area, p->area);
@@ -131,8 +157,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     if (rt_any(missed)) {
         vfloat pdf;
         const rt_vec found = rt_sky(ctx, frame, p->direction, missed, &pdf);
-        const vfloat weight = rt_found_weight(frame, p, pdf);
-        p->light = rt_choose(missed, rt_add(p->light, rt_scale(weight, rt_mul(p->weight, found))), p->light);
+        rt_collect(frame, p, missed, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(-1));
     }
     const uint hit_bits = rt_bits(hits);
     if (hit_bits == 0u) return hits;
@@ -140,8 +165,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     const rt_point point = rt_point_of(&ray, &surface, hits);
     vfloat pdf;
     const rt_vec found = rt_emission_of_hit(ctx, &surface, hit_bits, point.at, &pdf);
-    const vfloat found_weight = rt_found_weight(frame, p, pdf);
-    p->light = rt_choose(hits, rt_add(p->light, rt_scale(found_weight, rt_mul(p->weight, found))), p->light);
+    rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(-1));
 
     const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
     const uint scattered_bits = rt_bits(scattered);

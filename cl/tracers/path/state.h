@@ -10,6 +10,7 @@ typedef struct rt_path {
     vint pixel;        /* in the picture */
     vint sample;       /* of the pixel */
     vint event;        /* number of scattering events behind it */
+    vint first;        /* RT_FIRST_*, of the first of them; -1: none */
     rt_vec origin, direction;
     rt_vec weight, light;
     vfloat pdf;        /* density per solid angle with which the surface has drawn `direction` */
@@ -97,6 +98,7 @@ RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *
     p->weight = rt_choose(begun, rt_splat(1.0f, 1.0f, 1.0f), p->weight);
     p->light = rt_choose(begun, rt_splat(0.0f, 0.0f, 0.0f), p->light);
     p->event = rt_select(begun, rt_vint(0), p->event);
+    p->first = rt_select(begun, rt_vint(-1), p->first);
     p->pdf = rt_select(begun, rt_vfloat(0.0f), p->pdf);
     p->sharp |= begun;
 #ifdef RT_SPLITS_INCOHERENT
@@ -111,6 +113,7 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
     rt_path p;
     p.alive = p.sharp = rt_vint(0);
     p.slot = p.pixel = p.event = rt_vint(0);
+    p.first = rt_vint(-1);
     p.sample = rt_vint((int)(frame->sample + frame->samples));
     p.origin = p.weight = p.light = rt_splat(0.0f, 0.0f, 0.0f);
     p.direction = rt_splat(0.0f, 0.0f, 1.0f);

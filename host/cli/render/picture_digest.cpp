@@ -27,10 +27,11 @@ bool chooses_colors(const std::string& key) {
 void add_settings_to(Digest& digest, const Settings& settings, bool display) {
     const Aov& aov = find_aov(settings.aov);
     const bool cost = aov.about == Aov::About::cost;
-    if (!aov.tracer) digest.add(picture_of_tracer(settings.tracer));
+    const std::string shows = picture_of_tracer(aov.tracer ? aov.tracer : settings.tracer);
+    if (!aov.tracer) digest.add(shows);
     for (const Setting& row : settings_table()) {
         if ((!cost && chooses_a_way(row.key)) || (!display && chooses_colors(row.key))) continue;
-        if (!row.picture.empty() && (aov.tracer || row.picture != picture_of_tracer(settings.tracer))) continue;
+        if (!row.picture.empty() && row.picture != shows) continue;
         digest.add(row.key);
         digest.add(row.get(settings));
     }

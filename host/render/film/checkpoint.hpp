@@ -1,7 +1,8 @@
 // checkpoint.hpp -- a file from which a picture goes on after its process was killed.
 //
 // Layout, all numbers little endian: 8 bytes "ClCheck1"; 8 bytes: length of the head; the head, JSON; the film, 4 floats a
-// pixel, top row first: sums of r, g and b, and the number of samples; more planes of the film, if the head says so; 32 digits: digest (base/digest.hpp) of all before them.
+// pixel, top row first: sums of r, g and b, and the number of samples; more planes of the film, if the head says so; 32 digits:
+// digest (base/digest.hpp) of all before them.
 #pragma once
 #include <memory>
 #include <string>

@@ -195,6 +195,16 @@ struct FrameRenderer::Impl {
 
     unsigned planes() const { return film_planes(program->row); }
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
+    void read_statistics(FloatImage& image) {
+        const size_t plane = size_t(width) * height * 4;
+        scratch.resize(plane * planes());
+        for (unsigned p = 0; p < planes(); ++p)
+            read_bands(device->queue(), film.get(), in_plane(p, group_rows().bands()), film_bytes(width), scratch.data());
+        finish(*device, device->queue(), "reading the film");
+        for (const Band& band : group_rows().bands())
+            for (size_t i = band.first * size_t(width), end = i + band.count * size_t(width); i < end; ++i)
+                image.pixels[i] = aov->statistic(&scratch[4 * i], &scratch[plane + 4 * i]);
+    }
     // Rows of a plane, counted from the film's first row on.
     std::vector<Band> in_plane(unsigned plane, std::vector<Band> bands) const {
         for (Band& band : bands) band.first += plane * height;
@@ -251,8 +261,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
             const bool in_layers = at_once > 1 && !im.sums_samples;
             const cl::Buffer& film = im.film.get();
             const cl::Buffer& into =
-                !in_layers ? film
-                             : im.layers.fit(im.device->context(), im.film_bytes(size_t(im.width) * im.height * at_once));
+                !in_layers ? film : im.layers.fit(im.device->context(), im.film_bytes(size_t(im.width) * im.height * at_once));
             const bool first = sample == samples.first, last = sample + at_once == end;
             uint8_t* const display = shared && last ? shared->display : nullptr;
             cl::Event added;
@@ -308,6 +317,7 @@ FloatImage FrameRenderer::read_values() {
 void FrameRenderer::read_values(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
+        if (im.aov->film == Aov::Film::statistics) return im.read_statistics(image);
         const bool color = im.aov->is_color();
         const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats in a row of pixels
         if (color) im.scratch.resize(stored * im.height);
@@ -352,8 +362,9 @@ void FrameRenderer::write_sums(const Prepared& prepared, const Settings& setting
         const std::vector<Band> bands = GroupRows{im.width, im.height, im.layout.row_height(), rows}.bands();
         for (unsigned plane = 0; plane < im.planes(); ++plane)
             for (const Band& band : im.in_plane(plane, bands))
-                im.device->queue().enqueueWriteBuffer(im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
-                                                  reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
+                im.device->queue().enqueueWriteBuffer(
+                    im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
+                    reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
         finish(*im.device, im.device->queue(), "reading the film");
     });
 }

@@ -102,10 +102,12 @@ Setting size(const std::string& key, std::string label, std::string help, int mi
     return s;
 }
 
-// A setting of the tracer `path`.
-Setting of_paths(Setting s) {
-    s.picture = kPathPicture;
+Setting only_of(const char* picture, Setting s) {
+    s.picture = picture;
     return s;
+}
+Setting of_paths(Setting s) {
+    return only_of(kPathPicture, std::move(s));
 }
 
 Setting lanes_setting() {
@@ -129,7 +131,7 @@ Setting lanes_setting() {
 }  // namespace
 
 bool blurs(const Settings& settings) {
-    return settings.shutter > 0 && settings.spp > 1 && settings.aov == "color";
+    return settings.shutter > 0 && settings.spp > 1 && find_aov(settings.aov).adds_samples();
 }
 
 void refuse_value(const std::string& key, const std::string& value, const std::string& expected) {
@@ -149,16 +151,18 @@ const std::vector<Setting>& settings_table() {
                "samples of a blurred picture are refitted, unless this is build",
                {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
         choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer),
-        integer("depth", "Depth",
-                "generations of rays, 1: camera rays only; of `path` the most events of scattering, each lit by lamps, and a last "
-                "ray that may only find light",
-                1, kMostDepth, Effect::frame, &Settings::depth),
+        integer(
+            "depth", "Depth",
+            "generations of rays, 1: camera rays only; of `path` the most events of scattering, each lit by lamps, and a last "
+            "ray that may only find light",
+            1, kMostDepth, Effect::frame, &Settings::depth),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,
              Effect::recompile, &Settings::packet_w, &Settings::packet_h),
         lanes_setting(),
-        integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
-                Effect::recompile, &Settings::ray_slots),
+        only_of(kWhittedPicture,
+                integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted",
+                        1, 64, Effect::recompile, &Settings::ray_slots)),
         size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height),
         integer("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::frame, &Settings::spp),
         real("shutter", "Shutter",
@@ -168,20 +172,38 @@ const std::vector<Setting>& settings_table() {
              "not blurred",
              0, 1, Effect::frame, &Settings::shutter),
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
-        of_paths(choice("strategy", "Strategy",
-                        "how `path` finds light. nee: each event draws a point of a lamp; bsdf: rays that surfaces scatter find "
-                        "lamps and sky; mis: both, with weights. Lamps without a size are always drawn",
-                        {"nee", "bsdf", "mis"}, Effect::frame, &Settings::strategy)),
+        of_paths(
+            choice("strategy", "Strategy",
+                   "how `path` finds light. nee: each event draws a point of a lamp; bsdf: rays that surfaces scatter find "
+                   "lamps and sky; mis: both, with weights. Lamps without a size are always drawn",
+                   {"nee", "bsdf", "mis"}, Effect::frame, &Settings::strategy)),
         of_paths(choice("mis", "Weights", "of the strategy mis: by densities (balance) or by their squares (power)",
                         {"balance", "power"}, Effect::frame, &Settings::mis)),
-        of_paths(choice("sampler", "Sampler",
-                        "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers "
-                        "that are spread evenly over the samples of a pixel, with less noise",
-                        {"independent", "sobol"}, Effect::frame, &Settings::sampler)),
+        of_paths(
+            choice("sampler", "Sampler",
+                   "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers "
+                   "that are spread evenly over the samples of a pixel, with less noise",
+                   {"independent", "sobol"}, Effect::frame, &Settings::sampler)),
         of_paths(integer("seed", "Seed", "pictures of two seeds have independent noise", 0, 1 << 30, Effect::frame,
                          &Settings::seed)),
-        real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
-             &Settings::min_weight),
+        of_paths(choice("filter", "Pixel filter",
+                        "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and "
+                        "those of its neighbours too (deviation half a pixel, cut at one and a half)",
+                        {"box", "gaussian"}, Effect::frame, &Settings::filter)),
+        of_paths(integer("only_bounce", "Only bounce",
+                         "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all",
+                         -1, kMostDepth, Effect::frame, &Settings::only_bounce)),
+        of_paths(choice("only_by", "Only by",
+                        "of `path`: light of points that were drawn on lamps (nee), or that rays found (bsdf)",
+                        {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by)),
+        of_paths(choice("only_first", "Only first",
+                        "of `path`: light whose last event before the camera was of this kind; mirrors are glossy",
+                        {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first)),
+        of_paths(integer("only_light", "Only light",
+                         "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1, 1 << 20,
+                         Effect::frame, &Settings::only_light)),
+        only_of(kWhittedPicture, real("min_weight", "Least weight", "rays that would add less than this share are not followed",
+                                      0, 1, Effect::frame, &Settings::min_weight)),
         choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov),
         real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
              Effect::frame, &Settings::scale_max),

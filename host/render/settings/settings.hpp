@@ -35,10 +35,16 @@ struct Settings {
     double shutter = 0;  // share of a frame's time that the shutter is open; 0: no motion blur
     bool shadows = true;
     // Of the tracer `path`.
-    std::string strategy = "mis";  // nee|bsdf|mis
-    std::string mis = "power";     // balance|power
-    std::string sampler = "sobol"; // independent|sobol
+    std::string strategy = "mis";   // nee|bsdf|mis
+    std::string mis = "power";      // balance|power
+    std::string sampler = "sobol";  // independent|sobol
     int seed = 0;
+    std::string filter = "box";  // box|gaussian
+    // The paths that count: those of so many events, -1: any; found by nee|bsdf|any; whose first event is
+    // diffuse|glossy|transmission|any; from the light of that number, -1: any.
+    int only_bounce = -1;
+    std::string only_by = "any", only_first = "any";
+    int only_light = -1;
     double min_weight = 1.0 / 512.0;  // rays that would add a smaller share are not followed
     std::string aov = "color";        // a name of aov_table()
     // The display.

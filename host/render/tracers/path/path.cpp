@@ -4,22 +4,32 @@
 namespace clarity {
 namespace {
 
-const KernelRow& kernel(const Settings&, const Layout&) {
-    static const KernelRow row = [] {
-        KernelRow r;
-        r.tracer = "path";
-        r.what = "tracer path";
-        r.file = "tracers/path/path.cl";
-        r.entry = "trace_path";
-        r.headers = {"shading/material.h","sampling/hash.h",
-                     "sampling/sobol.h",       "sampling/dimensions.h",     "tracers/path/sum.h",
-                     "tracers/path/basis.h",   "tracers/path/camera_rays.h", "tracers/path/state.h",
-                     "tracers/path/first_surfaces.h", "tracers/path/first_lights.h",
-                     "tracers/path/scatter.h"};
-        r.traits = kFrame | kCountsRays | kSumsSamples;
-        return r;
-    }();
-    return row;
+KernelRow row_of(const std::vector<std::string>& defines) {
+    KernelRow r;
+    r.tracer = "path";
+    r.what = "tracer path";
+    r.file = "tracers/path/path.cl";
+    r.entry = "trace_path";
+    r.headers = {"shading/material.h",
+                 "sampling/hash.h",
+                 "sampling/sobol.h",
+                 "sampling/dimensions.h",
+                 "tracers/path/sum.h",
+                 "tracers/path/basis.h",
+                 "tracers/path/first_warps.h",
+                 "tracers/path/camera_rays.h",
+                 "tracers/path/state.h",
+                 "tracers/path/first_surfaces.h",
+                 "tracers/path/first_lights.h",
+                 "tracers/path/scatter.h"};
+    r.defines = defines;
+    r.traits = kFrame | kCountsRays | kSumsSamples;
+    return r;
+}
+
+const KernelRow& kernel(const Settings& settings, const Layout&) {
+    static const KernelRow light = row_of({}), shares = row_of({"RT_SHOW_MIS"});
+    return settings.aov == "mis" ? shares : light;
 }
 
 }  // namespace
