@@ -22,7 +22,7 @@ RT_INLINE void rt_path_camera_rays(const constant rt_frame *frame, vint x, vint 
     rt_camera_rays_through(frame, rt_to_float(x) + px, rt_to_float(y) + py, r);
     if (frame->lens_y == 0.0f) return;
     vfloat across, up;
-    rt_disc_point(n->c, n->d, &across, &up);
+    rt_warp_disc(n->c, n->d, &across, &up);
     const rt_vec forward = rt_spread_constant(frame->forward), direction = rt_vec_of(r->dx, r->dy, r->dz);
     const rt_vec sharp = rt_scale(rt_vfloat(frame->focus) / rt_dot(direction, forward), direction); /* from the lens' middle */
     const rt_vec shift = rt_along(across * frame->lens_x, rt_spread_constant(frame->right), rt_scale(up * frame->lens_y, rt_spread_constant(frame->up)));

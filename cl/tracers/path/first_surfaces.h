@@ -31,7 +31,7 @@ RT_INLINE vmask rt_is_glossy(const rt_bsdf *b) { return rt_vint(0); }
 RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe, vfloat u1, vfloat u2, vmask lanes)
 {
     rt_bsdf_sample s;
-    rt_disc_point(u1, u2, &s.wi.x, &s.wi.y);
+    rt_warp_disc(u1, u2, &s.wi.x, &s.wi.y);
     s.wi.z = sqrt(rt_max(rt_vfloat(1.0f) - fma(s.wi.x, s.wi.x, s.wi.y * s.wi.y), rt_vfloat(0.0f)));
     s.pdf = s.wi.z * rt_vfloat(0.31830989f);
     s.weight = b->color;

@@ -10,6 +10,14 @@ typedef struct rt_tally {
     uint shadow, secondary, dropped, overflow;
 } rt_tally;
 
+/* Where a path meets a surface, and how the surface scatters there. */
+typedef struct rt_meeting {
+    rt_point point;
+    rt_vec s, t;  /* with point.normal, z, the frame of the surface's directions */
+    rt_vec wo;    /* towards where the path comes from, in that frame */
+    rt_bsdf bsdf;
+} rt_meeting;
+
 /* Paths of fewer events than this end by roulette nowhere. */
 #define RT_ROULETTE_EVENT 3
 
@@ -63,17 +71,18 @@ RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lane
     p->light = rt_choose(lanes, rt_add(p->light, light), p->light);
 }
 
-/* Adds the light that arrives at the points directly, by one shadow ray each. wo, basis: of the points. */
-RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_point *point,
-                             const rt_basis *basis, const rt_bsdf *bsdf, rt_vec wo, const rt_sampler *sampler, rt_tally *tally)
+/* Adds the light that arrives directly, by one shadow ray for each lane. */
+RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_meeting *m,
+                             const rt_sampler *sampler, rt_tally *tally)
 {
+    const rt_point *point = &m->point;
     const vfloat zero = rt_vfloat(0.0f);
     const rt_numbers n = rt_draw_set(sampler, RT_LIGHT_SET(p->event));
     const rt_vec outside = rt_along(point->outward, point->geometric, point->at);
     const rt_light_sample s = rt_light_draw(ctx, frame, outside, n.a, n.b, n.c, lanes);
-    const rt_vec wi = rt_to_local(basis, s.towards);
+    const rt_vec wi = rt_to_local(m->s, m->t, point->normal, s.towards);
     vfloat surface_pdf;
-    rt_vec light = rt_bsdf_eval(bsdf, wo, wi, lanes, &surface_pdf);
+    rt_vec light = rt_bsdf_eval(&m->bsdf, m->wo, wi, lanes, &surface_pdf);
     light = rt_scale(rt_drawn_weight(frame, &s, surface_pdf), rt_mul(light, s.radiance_over_pdf));
     /* Shading normal and surface must agree on the side: else light would leak through, or come from behind. */
     const vmask above = RT_MASK(rt_dot(point->geometric, s.towards) > zero), agree = ~(above ^ RT_MASK(wi.z > zero));
@@ -98,18 +107,18 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
         RT_TALLY_OVERFLOW(tally, &hit)
     }
     const vmask lit = asked & RT_MASK(hit.t >= zero);
-    const vint first = rt_first_kind(p, bsdf, rt_vint(0), ~above);
+    const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
 
 /* Draws the next directions. Returns the lanes that go on. */
-RT_INLINE vmask rt_next_direction(const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_point *point, const rt_basis *basis,
-                                  const rt_bsdf *bsdf, rt_vec wo, const rt_sampler *sampler)
+RT_INLINE vmask rt_next_direction(rt_path *p, vmask lanes, const rt_meeting *m, const rt_sampler *sampler)
 {
+    const rt_point *point = &m->point;
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const rt_numbers n = rt_draw_set(sampler, RT_SURFACE_SET(p->event));
-    const rt_bsdf_sample s = rt_bsdf_draw(bsdf, wo, n.a, n.b, n.c, lanes);
-    const rt_vec direction = rt_normalize(rt_to_world(basis, s.wi));
+    const rt_bsdf_sample s = rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes);
+    const rt_vec direction = rt_normalize(rt_to_world(m->s, m->t, point->normal, s.wi));
     const vmask above = RT_MASK(rt_dot(point->geometric, direction) > zero), agree = above ^ s.transmitted;
     rt_vec weight = rt_mul(p->weight, s.weight);
     vmask on = lanes & s.valid & agree & RT_MASK(rt_largest(weight) > zero);
@@ -124,7 +133,7 @@ RT_INLINE vmask rt_next_direction(const constant rt_frame *frame, rt_path *p, vm
     p->weight = rt_choose(on, weight, p->weight);
     p->pdf = rt_select(on, s.pdf, p->pdf);
     p->sharp = rt_select(on, s.delta, p->sharp);
-    p->first = rt_first_kind(p, bsdf, s.delta, s.transmitted);
+    p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
     p->event += rt_vint(1);
 #ifdef RT_SPLITS_INCOHERENT
     p->area = rt_select(on, point->area, p->area);
@@ -162,20 +171,21 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     const uint hit_bits = rt_bits(hits);
     if (hit_bits == 0u) return hits;
     const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
-    const rt_point point = rt_point_of(&ray, &surface, hits);
+    rt_meeting m;
+    m.point = rt_point_of(&ray, &surface, hits);
     vfloat pdf;
-    const rt_vec found = rt_emission_of_hit(ctx, &surface, hit_bits, point.at, &pdf);
+    const rt_vec found = rt_emission_of_hit(ctx, &surface, hit_bits, m.point.at, &pdf);
     rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(-1));
 
     const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
     const uint scattered_bits = rt_bits(scattered);
     if (scattered_bits == 0u) return scattered;
     const rt_sampler sampler = rt_sampler_of(frame, p);
-    const rt_basis basis = rt_basis_of(point.normal);
-    const rt_vec wo = rt_to_local(&basis, rt_scale(rt_vfloat(-1.0f), point.incoming));
-    const rt_bsdf bsdf = rt_bsdf_of(ctx, &surface, ~point.leaving, scattered_bits, point.at);
-    if (frame->light_count != 0u) rt_next_event(ctx, frame, p, scattered, &point, &basis, &bsdf, wo, &sampler, tally);
-    const vmask on = rt_next_direction(frame, p, scattered, &point, &basis, &bsdf, wo, &sampler);
+    rt_basis(m.point.normal, &m.s, &m.t);
+    m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
+    m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, scattered_bits, m.point.at);
+    if (frame->light_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
+    const vmask on = rt_next_direction(p, scattered, &m, &sampler);
     tally->secondary += popcount(rt_bits(on));
     return on;
 }

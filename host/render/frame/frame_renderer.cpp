@@ -64,6 +64,7 @@ void divide_sums(const float* sums, float* colors, size_t pixels) {
 // a launch cannot be cancelled, and each of its samples takes a layer of memory.
 constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
 constexpr double kAtOnceMs = 50;
+constexpr unsigned kMostSummed = 1024;  // of a tracer that adds samples by itself, without layers
 
 }  // namespace
 
@@ -147,7 +148,7 @@ struct FrameRenderer::Impl {
     // How many of the `left` samples the next launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
         if (sums_samples) {
-            const double most = std::min(double(kMostAtOnce), kAtOnceMs * in_launch / launcher.expected_ms(groups()));
+            const double most = std::min(double(kMostSummed), kAtOnceMs * in_launch / launcher.expected_ms(groups()));
             return std::min(left, static_cast<unsigned>(std::max(1.0, most)));
         }
         if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || begun > 0 ||
