@@ -51,7 +51,7 @@ RT_INLINE vfloat rt_found_weight(const constant rt_frame *frame, const rt_path *
 RT_INLINE vint rt_first_kind(const rt_path *p, const rt_bsdf *bsdf, vmask sharp, vmask through)
 {
     const vint kind = rt_select(through, rt_vint(RT_FIRST_TRANSMISSION),
-                                rt_select(sharp | rt_is_glossy(bsdf), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
+                                rt_select(sharp | RT_MASK(bsdf->diffuse <= rt_vfloat(0.0f)), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
     return rt_select(RT_MASK(p->event == rt_vint(0)), kind, p->first);
 }
 
@@ -69,6 +69,28 @@ RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lane
     light = rt_vec_of(by == RT_BY_NEE ? all : rt_vfloat(0.0f), all, rt_vfloat(0.0f));
 #endif
     p->light = rt_choose(lanes, rt_add(p->light, light), p->light);
+}
+
+/* What is left of light after a way through the medium that a path is in (Beer-Lambert). */
+RT_INLINE rt_vec rt_passed(const rt_path *p, vfloat distance)
+{
+    const vfloat way = -rt_min(distance, rt_vfloat(1e30f));
+    return rt_vec_of(rt_exp(way * p->absorption.x), rt_exp(way * p->absorption.y), rt_exp(way * p->absorption.z));
+}
+RT_INLINE vmask rt_in_medium(const rt_path *p) { return RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)); }
+
+/* The medium of paths that go through a surface: that of the material inside, nothing outside. */
+RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, uint bits)
+{
+    int material[RT_LANES];
+    rt_store(surface->material, material);
+    for (uint left = bits; left != 0u;) {
+        const int id = material[rt_lowest(left)];
+        const vmask mine = rt_mask_of_bits(bits) & RT_MASK(surface->material == rt_vint(id));
+        left &= ~rt_bits(mine);
+        const rt_vec inside = rt_choose(entering, rt_spread(ctx->materials[id].absorption), rt_splat(0.0f, 0.0f, 0.0f));
+        p->absorption = rt_choose(mine, inside, p->absorption);
+    }
 }
 
 /* Adds the light that arrives directly, by one shadow ray for each lane. */
@@ -107,12 +129,14 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
         RT_TALLY_OVERFLOW(tally, &hit)
     }
     const vmask lit = asked & RT_MASK(hit.t >= zero);
+    if (rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
     const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
 
 /* Draws the next directions. Returns the lanes that go on. */
-RT_INLINE vmask rt_next_direction(rt_path *p, vmask lanes, const rt_meeting *m, const rt_sampler *sampler)
+RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, const rt_surface *surface, const rt_meeting *m,
+                                  const rt_sampler *sampler)
 {
     const rt_point *point = &m->point;
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
@@ -122,8 +146,10 @@ RT_INLINE vmask rt_next_direction(rt_path *p, vmask lanes, const rt_meeting *m, 
     const vmask above = RT_MASK(rt_dot(point->geometric, direction) > zero), agree = above ^ s.transmitted;
     rt_vec weight = rt_mul(p->weight, s.weight);
     vmask on = lanes & s.valid & agree & RT_MASK(rt_largest(weight) > zero);
-    /* Roulette: a path of small weight ends by chance, and those that go on stand for it. */
-    const vfloat chance = rt_select(RT_MASK(p->event + rt_vint(1) < rt_vint(RT_ROULETTE_EVENT)), one, rt_max(rt_min(rt_largest(weight), one), rt_vfloat(0.05f)));
+    /* Roulette: a path of small weight ends by chance, and those that go on stand for it. What radiance loses by entering glass
+     * it gains again by leaving. */
+    const vfloat scale = rt_select(s.transmitted, p->scale * m->bsdf.eta * m->bsdf.eta, p->scale);
+    const vfloat chance = rt_select(RT_MASK(p->event + rt_vint(1) < rt_vint(RT_ROULETTE_EVENT)), one, rt_max(rt_min(scale * rt_largest(weight), one), rt_vfloat(0.05f)));
     on &= RT_MASK(n.d < chance);
     weight = rt_scale(one / chance, weight);
 
@@ -133,6 +159,9 @@ RT_INLINE vmask rt_next_direction(rt_path *p, vmask lanes, const rt_meeting *m, 
     p->weight = rt_choose(on, weight, p->weight);
     p->pdf = rt_select(on, s.pdf, p->pdf);
     p->sharp = rt_select(on, s.delta, p->sharp);
+    p->scale = rt_select(on, scale, p->scale);
+    const uint through = rt_bits(on & s.transmitted);
+    if (through != 0u) rt_change_medium(ctx, p, surface, ~point->leaving, through);
     p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
     p->event += rt_vint(1);
 #ifdef RT_SPLITS_INCOHERENT
@@ -163,6 +192,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     }
 
     const vmask hits = p->alive & RT_MASK(hit.prim >= rt_vint(0)), missed = p->alive & ~hits;
+    if (rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, hit.t), p->weight), p->weight);
     if (rt_any(missed)) {
         vfloat pdf;
         const rt_vec found = rt_sky(ctx, frame, p->direction, missed, &pdf);
@@ -185,7 +215,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
     m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, scattered_bits, m.point.at);
     if (frame->light_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
-    const vmask on = rt_next_direction(p, scattered, &m, &sampler);
+    const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);
     tally->secondary += popcount(rt_bits(on));
     return on;
 }

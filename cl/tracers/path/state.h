@@ -14,6 +14,8 @@ typedef struct rt_path {
     rt_vec origin, direction;
     rt_vec weight, light;
     vfloat pdf;        /* density per solid angle with which the surface has drawn `direction` */
+    vfloat scale;      /* by which entered glass makes the weight small */
+    rt_vec absorption; /* of the medium around the ray, per unit of length */
     vmask sharp;       /* there was no choice: the direction is the camera's, or that of a smooth mirror or glass */
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;       /* rt_surface.area where the ray starts */
@@ -100,6 +102,8 @@ RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *
     p->event = rt_select(begun, rt_vint(0), p->event);
     p->first = rt_select(begun, rt_vint(-1), p->first);
     p->pdf = rt_select(begun, rt_vfloat(0.0f), p->pdf);
+    p->scale = rt_select(begun, rt_vfloat(1.0f), p->scale);
+    p->absorption = rt_choose(begun, rt_splat(0.0f, 0.0f, 0.0f), p->absorption);
     p->sharp |= begun;
 #ifdef RT_SPLITS_INCOHERENT
     p->area = rt_select(begun, RT_INFINITY, p->area);
@@ -115,9 +119,10 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
     p.slot = p.pixel = p.event = rt_vint(0);
     p.first = rt_vint(-1);
     p.sample = rt_vint((int)(frame->sample + frame->samples));
-    p.origin = p.weight = p.light = rt_splat(0.0f, 0.0f, 0.0f);
+    p.origin = p.weight = p.light = p.absorption = rt_splat(0.0f, 0.0f, 0.0f);
     p.direction = rt_splat(0.0f, 0.0f, 1.0f);
     p.pdf = rt_vfloat(0.0f);
+    p.scale = rt_vfloat(1.0f);
 #ifdef RT_SPLITS_INCOHERENT
     p.area = RT_INFINITY;
 #endif
