@@ -13,7 +13,7 @@ typedef struct rt_hashes {
     vuint a, b, c, d;
 } rt_hashes;
 
-RT_INLINE void rt_mix(rt_hashes *h)
+RT_INLINE void rt_stir(rt_hashes *h)
 {
     h->a += h->b * h->d;
     h->b += h->c * h->a;
@@ -30,12 +30,12 @@ RT_INLINE rt_hashes rt_hash(vuint a, vuint b, vuint c, vuint d)
     h.b = b * factor + step;
     h.c = c * factor + step;
     h.d = d * factor + step;
-    rt_mix(&h);
+    rt_stir(&h);
     h.a ^= h.a >> rt_vuint(16u);
     h.b ^= h.b >> rt_vuint(16u);
     h.c ^= h.c >> rt_vuint(16u);
     h.d ^= h.d >> rt_vuint(16u);
-    rt_mix(&h);
+    rt_stir(&h);
     return h;
 }
 

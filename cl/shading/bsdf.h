@@ -81,7 +81,7 @@ RT_INLINE rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
 }
 
 /* Whether a lobe of probability p is picked. u, in [0, 1), becomes the rest of the choice, in [0, 1) again. */
-RT_INLINE vmask rt_pick(vfloat p, vfloat *u)
+RT_INLINE vmask rt_takes_lobe(vfloat p, vfloat *u)
 {
     const vfloat one = rt_vfloat(1.0f);
     const vmask picked = RT_MASK(*u < p);
@@ -99,11 +99,11 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
     rt_bsdf_sample s;
     /* The diffuse lobe comes first, then mirror, metal, glass. */
     vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + p.mirror + p.metal + p.glass > zero);
-    const vmask diffuse = left & rt_pick(p.diffuse, &u_lobe);
+    const vmask diffuse = left & rt_takes_lobe(p.diffuse, &u_lobe);
     left &= ~diffuse;
-    const vmask mirror = left & rt_pick(p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
+    const vmask mirror = left & rt_takes_lobe(p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
     left &= ~mirror;
-    const vmask metal = left & (rt_pick(p.metal / rt_max(p.metal + p.glass, rt_vfloat(1e-20f)), &u_lobe) | RT_MASK(p.glass <= zero));
+    const vmask metal = left & (rt_takes_lobe(p.metal / rt_max(p.metal + p.glass, rt_vfloat(1e-20f)), &u_lobe) | RT_MASK(p.glass <= zero));
     const vmask glass = left & ~metal;
 
     s.wi = rt_vec_of(-wo.x, -wo.y, wo.z);
@@ -119,7 +119,7 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
             vfloat cos_out;
             const vfloat reflected = rt_fresnel_dielectric(wo.z, b->eta, &cos_out);
             const vfloat glass_share = b->glass / rt_max(p.glass, rt_vfloat(1e-20f));
-            const vmask back = glass & smooth & rt_pick(reflected, &u_lobe), through = glass & smooth & ~back;
+            const vmask back = glass & smooth & rt_takes_lobe(reflected, &u_lobe), through = glass & smooth & ~back;
             s.transmitted |= through;
             s.pdf = rt_select(back, p.glass * reflected, rt_select(through, p.glass * (one - reflected), s.pdf));
             s.weight = rt_choose(back, rt_vec_of(glass_share, glass_share, glass_share), s.weight);
@@ -131,7 +131,7 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
     const vmask spread = (diffuse | metal) & ~s.delta;
     s.valid = s.delta;
     if (rt_any(spread)) {
-        const vmask facets = spread & metal & ~rt_pick(p.again, &u_lobe);
+        const vmask facets = spread & metal & ~rt_takes_lobe(p.again, &u_lobe);
         rt_vec wi = rt_warp_cosine(u1, u2);
         if (rt_any(facets)) {
             const rt_vec h = rt_warp_visible_normal(wo, rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA)), u1, u2);

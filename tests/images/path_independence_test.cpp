@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "images/path_checks.hpp"
-#include "support/scenes.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -14,6 +13,40 @@ namespace {
 
 constexpr int kWidth = 61, kHeight = 43;
 constexpr unsigned kSamples = 5;
+
+// Triangles, spheres and a plane, of every model of surfaces, with lamps, a light that glows and a sky.
+ScenePtr every_kind() {
+    Scene scene = scene_of(box(0.6));
+    scene.materials[0].values = mirror(0.5f);
+    for (float& c : scene.materials[0].values.color) c = 0.8f;
+    rt_material metal = diffuse(0.9f, 0.7f, 0.4f), frosted = glass(1.4f), glow = diffuse(0.5f, 0.5f, 0.5f);
+    metal.model = RT_MODEL_CONDUCTOR;
+    metal.roughness = 0.5f;
+    frosted.model = RT_MODEL_DIELECTRIC;
+    frosted.absorption[0] = 0.4f;
+    glow.emission[0] = glow.emission[1] = 2;
+    const rt_u32 of_spheres[] = {add_material(scene, metal), add_material(scene, frosted), add_material(scene, glass(1.5f)),
+                                 add_material(scene, glow)};
+    for (int i = 0; i < 4; ++i) {
+        Sphere sphere;
+        sphere.center = {-2.0f + 1.3f * float(i), 0.1f * float(i), 1.5f};
+        sphere.radius = 0.5f;
+        sphere.material = of_spheres[i];
+        scene.spheres.push_back(sphere);
+    }
+    scene.planes.push_back({{0, 1, 0}, -0.7f, add_material(scene, diffuse(0.6f, 0.6f, 0.5f))});
+    return shared_scene(std::move(scene));
+}
+
+View view_of_it() {
+    View view = view_from({0.5f, 1.5f, 6}, {0, 0, 0}, 45);
+    view.background = {0.3f, 0.4f, 0.5f};
+    rt_light light{};
+    light.position[0] = 2, light.position[1] = 4, light.position[2] = 3;
+    for (float& c : light.color) c = 0.7f;
+    view.lights = {light};
+    return view;
+}
 
 class PathIndependence : public testing::Test {
  protected:
@@ -32,8 +65,8 @@ class PathIndependence : public testing::Test {
                                  false, progress);
         return bench.frames().read_values();
     }
-    const ScenePtr scene_ = load_scene(source_file("scenes/primitives.scene"));
-    const View view_ = make_view(*scene_, float(kWidth) / kHeight);
+    const ScenePtr scene_ = every_kind();
+    const View view_ = view_of_it();
 };
 
 size_t differing_values(const FloatImage& a, const FloatImage& b) {

@@ -46,10 +46,33 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
     return s;
 }
 
-RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_surface *s, uint bits, rt_vec at, vfloat *pdf)
+#define RT_LIGHT_OF_SURFACES 0x40000000
+#define RT_LIGHT_OF_SKY 0x40000001
+
+RT_INLINE void rt_hit_lights(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *ray, vfloat *t, vint *light)
+{
+    *light = rt_vint(-1);
+}
+
+RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfloat t, vint light, vmask lanes, vfloat *pdf)
 {
     *pdf = rt_vfloat(0.0f);
-    return rt_load_materials(ctx, s, bits, at).emission;
+    return rt_splat(0.0f, 0.0f, 0.0f);
+}
+
+RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, const rt_surface *surface, vmask lanes, vfloat *pdf)
+{
+    *pdf = rt_vfloat(0.0f);
+    rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
+    int numbers[RT_LANES];
+    rt_store(surface->material, numbers);
+    for (uint left = rt_bits(lanes); left != 0u;) {
+        const int id = numbers[rt_lowest(left)];
+        const vmask mine = RT_MASK(surface->material == rt_vint(id));
+        left &= ~rt_bits(mine);
+        sum = rt_choose(mine, rt_spread(ctx->materials[id].emission), sum);
+    }
+    return sum;
 }
 
 RT_INLINE rt_vec rt_sky(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec direction, vmask lanes, vfloat *pdf)
@@ -57,5 +80,13 @@ RT_INLINE rt_vec rt_sky(const rt_ctx *ctx, const constant rt_frame *frame, rt_ve
     *pdf = rt_vfloat(0.0f);
     return rt_splat(frame->background[0], frame->background[1], frame->background[2]);
 }
+
+RT_INLINE rt_vec rt_seen_sky(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec direction, vmask lanes)
+{
+    vfloat pdf;
+    return rt_sky(ctx, frame, direction, lanes, &pdf);
+}
+
+RT_INLINE bool rt_has_emitters(const rt_ctx *ctx, const constant rt_frame *frame) { return frame->light_count != 0u; }
 
 #endif

@@ -191,21 +191,34 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
         if (first != 0u) RT_FOR_LANES_STORE(distances, p->slot, hit.t, first)
     }
 
-    const vmask hits = p->alive & RT_MASK(hit.prim >= rt_vint(0)), missed = p->alive & ~hits;
-    if (rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, hit.t), p->weight), p->weight);
+    vfloat t = hit.t;
+    vint light;
+    rt_hit_lights(ctx, frame, &ray, &t, &light);
+    if (rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
+    const vmask lights = p->alive & RT_MASK(light >= rt_vint(0)), hits = p->alive & ~lights & RT_MASK(hit.prim >= rt_vint(0));
+    const vmask missed = p->alive & ~lights & ~hits;
+    vfloat pdf;
+    if (rt_any(lights)) {
+        const rt_vec found = rt_emission_of_light(ctx, &ray, t, light, lights, &pdf);
+        rt_collect(frame, p, lights, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, light);
+    }
     if (rt_any(missed)) {
-        vfloat pdf;
-        const rt_vec found = rt_sky(ctx, frame, p->direction, missed, &pdf);
-        rt_collect(frame, p, missed, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(-1));
+        const vmask seen = missed & RT_MASK(p->event == rt_vint(0));
+        rt_vec found = rt_scale(rt_vfloat(0.0f), p->direction);
+        if (rt_any(missed & ~seen)) {
+            found = rt_sky(ctx, frame, p->direction, missed, &pdf);
+            found = rt_scale(rt_found_weight(frame, p, pdf), found);
+        }
+        if (rt_any(seen)) found = rt_choose(seen, rt_seen_sky(ctx, frame, p->direction, seen), found);
+        rt_collect(frame, p, missed, found, p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SKY));
     }
     const uint hit_bits = rt_bits(hits);
     if (hit_bits == 0u) return hits;
     const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
     rt_meeting m;
     m.point = rt_point_of(&ray, &surface, hits);
-    vfloat pdf;
-    const rt_vec found = rt_emission_of_hit(ctx, &surface, hit_bits, m.point.at, &pdf);
-    rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(-1));
+    const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
+    rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
 
     const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
     const uint scattered_bits = rt_bits(scattered);
@@ -214,7 +227,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     rt_basis(m.point.normal, &m.s, &m.t);
     m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
     m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, scattered_bits, m.point.at);
-    if (frame->light_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
+    if (rt_has_emitters(ctx, frame)) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
     const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);
     tally->secondary += popcount(rt_bits(on));
     return on;
