@@ -86,6 +86,52 @@ TEST(Path, SumsOfManySamplesAreExact) {
     for (const float error : picture.error.pixels) EXPECT_LT(error, 1e-6f);
 }
 
+// A half-plane x > 0 that glows, seen from (0, 0, 4), 0.8 wide. Returns the mean of each column.
+std::vector<double> glowing_half(const Pairs& settings, float aperture, float focus) {
+    TriangleMesh mesh;
+    const rt_u32 a = mesh.add_vertex(0, -9, 0), b = mesh.add_vertex(9, -9, 0), c = mesh.add_vertex(9, 9, 0),
+                 d = mesh.add_vertex(0, 9, 0);
+    mesh.add_triangle(a, b, c);
+    mesh.add_triangle(a, c, d);
+    Scene scene = scene_of(mesh);
+    scene.materials[0].values = diffuse(0, 0, 0);
+    for (float& e : scene.materials[0].values.emission) e = 1;
+    View view = view_from({0, 0, 4}, {0, 0, 0}, 2 * std::atan(0.1) * 180 / 3.14159265358979);
+    view.background = view.ambient = {0, 0, 0};
+    view.camera.aperture = aperture;
+    view.camera.focus = focus;
+    Pairs all = {{"size", "16x16"}, {"depth", "1"}};
+    all.insert(all.end(), settings.begin(), settings.end());
+    const PathPicture picture = trace_paths(scene, view, 256, all);
+    std::vector<double> columns(16);
+    for (size_t i = 0; i < 256; ++i) columns[i % 16] += picture.mean.pixels[3 * i + 1] / 16;
+    return columns;
+}
+
+TEST(Path, PixelFilters) {
+    const std::vector<double> box = glowing_half({}, 0, 0), gaussian = glowing_half({{"filter", "gaussian"}}, 0, 0);
+    for (const int x : {0, 5, 6, 9, 10, 15}) EXPECT_EQ(box[x], x > 8) << x;
+    EXPECT_NEAR(box[7], 0, 1e-3);
+    EXPECT_NEAR(box[8], 1, 1e-3);
+    // Half a pixel, one deviation, from the edge: the Gaussian's integral, cut at three deviations.
+    EXPECT_NEAR(gaussian[8], (0.841345 - 0.001350) / 0.997300, 0.005);
+    EXPECT_NEAR(gaussian[7], 1 - (0.841345 - 0.001350) / 0.997300, 0.005);
+    EXPECT_EQ(gaussian[5], 0);
+    EXPECT_EQ(gaussian[10], 1);
+}
+
+// Out of focus each point becomes a disc: here of radius 0.25 on the plane.
+TEST(Path, ThinLens) {
+    const std::vector<double> sharp = glowing_half({}, 0.5f, 0), blurred = glowing_half({}, 0.5f, 2);
+    EXPECT_EQ(sharp[6], 0);
+    EXPECT_EQ(sharp[9], 1);
+    for (int x = 0; x < 16; ++x) {
+        const double q = std::clamp(((x + 0.5) / 16 * 0.8 - 0.4) / 0.25, -1.0, 1.0);
+        const double covered = 1 - (std::acos(q) - q * std::sqrt(1 - q * q)) / 3.14159265358979;
+        EXPECT_NEAR(blurred[x], covered, 0.01) << x;
+    }
+}
+
 // The parts of a picture, by the number of events, by how light was found, and by the first event, add up to it.
 TEST(Path, PartsAddUpToThePicture) {
     View view = floor_view();
