@@ -1,8 +1,6 @@
-// The Render tab: the settings of the picture. Rows come from the settings table and from the plugins' parameters. The names in
-// this file only give an order; rows which are not named here appear at the end.
+// The Render tab: the settings of the picture. Rows come from the settings table, which gives their order, and from the
+// plugins' parameters.
 #include <imgui.h>
-
-#include <algorithm>
 
 #include "render/settings/tracer_choice.hpp"
 #include "ui/panel/panel.hpp"
@@ -11,20 +9,6 @@
 
 namespace clarity::ui {
 namespace {
-
-struct Group {
-    const char* title;
-    std::vector<const char*> keys;
-    bool shared;  // by both sides of a comparison
-};
-const std::vector<Group>& groups() {
-    static const std::vector<Group> all = {
-        {"TRACING", {"tracer", "depth", "packet", "lanes", "ray_slots", "shadows", "min_weight", "poses"}, false},
-        {"PATHS", {"strategy", "mis", "sampler", "seed", "filter"}, false},
-        {"PICTURE", {"size", "spp", "shutter", "aov", "scale_max", "exposure", "tone"}, true},
-    };
-    return all;
-}
 
 // Draws the rows that choose which side the rows below edit, and how both sides are shown.
 void compare_rows(Session& session, UiState& state) {
@@ -164,28 +148,12 @@ void size_rows(Session& session, const UiState& state) {
         session.desired.moving_fps = fps < 0.5f ? 0 : fps;
 }
 
-bool in_a_group(const std::string& key) {
-    for (const Group& group : groups())
-        if (std::any_of(group.keys.begin(), group.keys.end(), [&](const char* k) { return key == k; })) return true;
-    return false;
-}
-
-// Whether the setting changes pictures of the tracer that is chosen.
-bool is_used(const Setting* row, const Settings& settings) {
-    return row && (row->picture.empty() || row->picture == picture_of_tracer(settings.tracer));
-}
-
-void group_rows(const Group& group, Session& session, const UiState& state) {
-    const bool compared = session.desired.other.has_value();
-    Settings& settings = group.shared ? session.desired.main.settings : session.edited().settings;
-    const auto used = [&](const char* key) { return is_used(find_setting(key), settings); };
-    if (std::none_of(group.keys.begin(), group.keys.end(), used) || !folding_section(group.title)) return;
-    if (compared && group.shared) dim_text("of both sides");
-    for (const char* key : group.keys)
-        if (const Setting* row = find_setting(key); is_used(row, settings)) {
-            setting_row(*row, settings);
-            if (row->key == "size") size_rows(session, state);
-        }
+void group_rows(SettingGroup group, Session& session, const UiState& state) {
+    for (const Setting& row : settings_table()) {
+        if (row.group != group || !row.used(session.edited().settings)) continue;
+        setting_row(row, session.settings_for(row.key));
+        if (row.key == "size") size_rows(session, state);
+    }
 }
 
 }  // namespace
@@ -200,10 +168,14 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
     level_rows(overlay);
     section("DEVICE");
     device_row(session);
-    for (const Group& group : groups()) group_rows(group, session, state);
-    if (folding_section("MORE", false))
-        for (const Setting& row : settings_table())
-            if (!in_a_group(row.key) && is_used(&row, session.edited().settings)) setting_row(row, session.edited().settings);
+    if (folding_section("TRACING")) group_rows(SettingGroup::tracing, session, state);
+    if (picture_of_tracer(session.edited().settings.tracer) == kPathPicture && folding_section("PATHS"))
+        group_rows(SettingGroup::paths, session, state);
+    if (folding_section("PICTURE")) {
+        if (session.desired.other) dim_text("of both sides");
+        group_rows(SettingGroup::picture, session, state);
+    }
+    if (folding_section("MORE", false)) group_rows(SettingGroup::more, session, state);
     ImGui::PopID();
     draw_output_rows(session, state);
 }

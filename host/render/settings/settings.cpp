@@ -1,5 +1,7 @@
 #include "render/settings/settings.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/settings/aov.hpp"
@@ -8,17 +10,43 @@
 namespace clarity {
 namespace {
 
-// Lets a setting compare and copy its values, which these members hold.
+// What all kinds have in common. The values are held in these members.
 template <class... Member>
-void hold_in(Setting& s, Member Settings::*... members) {
+Setting row_of(const std::string& key, std::string label, std::string help, Effect effect, Member Settings::*... members) {
+    Setting s;
+    s.key = key;
+    s.label = std::move(label);
+    s.help = std::move(help);
+    s.effect = effect;
     s.equal = [=](const Settings& a, const Settings& b) { return (... && (a.*members == b.*members)); };
     s.copy = [=](Settings& to, const Settings& from) { (..., (to.*members = from.*members)); };
+    return s;
+}
+
+Setting with_range(Setting s, Setting::Kind kind, double min, double max) {
+    s.kind = kind;
+    s.min = min;
+    s.max = max;
+    return s;
+}
+
+// Gives a row its choices. `read` gets one of them.
+template <class Read>
+Setting with_choices(Setting s, const std::vector<std::string>& choices, Read read) {
+    s.kind = Setting::Kind::choice;
+    s.choices = choices;
+    s.set = [key = s.key, choices, read](Settings& settings, const std::string& text) {
+        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return read(settings, text);
+        std::string known;
+        for (const std::string& c : choices) known += (known.empty() ? "" : ", ") + c;
+        refuse_value(key, text, "one of " + known);
+    };
+    return s;
 }
 
 Setting integer(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
                 int Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::integer, min, max);
     s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         int value = 0;
@@ -31,8 +59,7 @@ Setting integer(const std::string& key, std::string label, std::string help, dou
 
 Setting real(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
              double Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::real, min, max);
     s.get = [member](const Settings& settings) { return exact_text(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         double value = 0;
@@ -44,8 +71,7 @@ Setting real(const std::string& key, std::string label, std::string help, double
 }
 
 Setting boolean(const std::string& key, std::string label, std::string help, Effect effect, bool Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::boolean, 0, 1, {}, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::boolean, 0, 1);
     s.get = [member](const Settings& settings) { return std::string(settings.*member ? "true" : "false"); };
     s.set = [=](Settings& settings, const std::string& text) {
         if (text == "1" || text == "true" || text == "on" || text == "yes")
@@ -60,28 +86,16 @@ Setting boolean(const std::string& key, std::string label, std::string help, Eff
 
 Setting choice(const std::string& key, std::string label, std::string help, const std::vector<std::string>& choices,
                Effect effect, std::string Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::choice, 0, 0, choices, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_choices(row_of(key, std::move(label), std::move(help), effect, member), choices,
+                             [member](Settings& settings, const std::string& text) { settings.*member = text; });
     s.get = [member](const Settings& settings) { return settings.*member; };
-    s.set = [=](Settings& settings, const std::string& text) {
-        std::string known;
-        for (const std::string& c : choices) {
-            if (c == text) {
-                settings.*member = text;
-                return;
-            }
-            known += (known.empty() ? "" : ", ") + c;
-        }
-        refuse_value(key, text, "one of " + known);
-    };
     return s;
 }
 
 Setting size(const std::string& key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
              int Settings::*width, int Settings::*height) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::size, double(min), double(max), {}, effect, {}, {}, {},
-              {}};
-    hold_in(s, width, height);
+    Setting s =
+        with_range(row_of(key, std::move(label), std::move(help), effect, width, height), Setting::Kind::size, min, max);
     s.get = [=](const Settings& settings) {
         if (automatic && settings.*width == 0) return std::string("auto");
         return std::to_string(settings.*width) + "x" + std::to_string(settings.*height);
@@ -102,29 +116,14 @@ Setting size(const std::string& key, std::string label, std::string help, int mi
     return s;
 }
 
-Setting only_of(const char* picture, Setting s) {
-    s.picture = picture;
-    return s;
-}
-Setting of_paths(Setting s) {
-    return only_of(kPathPicture, std::move(s));
-}
-
 Setting lanes_setting() {
     Setting s =
-        choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
-               {"auto", "1", "4", "8", "16"}, Effect::recompile, &Settings::tracer);
-    hold_in(s, &Settings::lanes);
-    const auto choices = s.choices;
+        row_of("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
+               Effect::recompile, &Settings::lanes);
+    s = with_choices(std::move(s), {"auto", "1", "4", "8", "16"}, [](Settings& settings, const std::string& text) {
+        settings.lanes = text == "auto" ? 0 : std::stoi(text);
+    });
     s.get = [](const Settings& settings) { return settings.lanes == 0 ? std::string("auto") : std::to_string(settings.lanes); };
-    s.set = [choices](Settings& settings, const std::string& text) {
-        for (const std::string& c : choices)
-            if (c == text) {
-                settings.lanes = text == "auto" ? 0 : std::stoi(text);
-                return;
-            }
-        refuse_value("lanes", text, "auto, 1, 4, 8 or 16");
-    };
     return s;
 }
 
@@ -142,84 +141,139 @@ std::vector<std::string> tone_names() {
     return {"linear", "reinhard", "aces", "agx"};
 }
 
+Setting Setting::in(SettingGroup of) const {
+    Setting s = *this;
+    s.group = of;
+    return s;
+}
+
+Setting Setting::only_ways() const {
+    Setting s = *this;
+    s.changes_picture = false;
+    return s;
+}
+
+Setting Setting::only_of(const char* shown) const {
+    Setting s = *this;
+    s.picture = shown;
+    return s;
+}
+
+bool Setting::used(const Settings& settings) const {
+    return picture.empty() || picture == picture_of_tracer(settings.tracer);
+}
+
+namespace {
+
+// Those of the tracer `path`.
+std::vector<Setting> settings_of_paths() {
+    std::vector<Setting> table = {
+        choice("strategy", "Strategy",
+               "how `path` finds light. nee: each event draws a point of a lamp; bsdf: rays that surfaces scatter find lamps "
+               "and sky; mis: both, with weights. Lamps without a size are always drawn",
+               {"nee", "bsdf", "mis"}, Effect::frame, &Settings::strategy),
+        choice("mis", "Weights", "of the strategy mis: by densities (balance) or by their squares (power)",
+               {"balance", "power"}, Effect::frame, &Settings::mis),
+        choice(
+            "sampler", "Sampler",
+            "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers that are "
+            "spread evenly over the samples of a pixel, with less noise",
+            {"independent", "sobol"}, Effect::frame, &Settings::sampler),
+        integer("seed", "Seed", "of `path`: pictures of two seeds have independent noise", 0, 1 << 30, Effect::frame,
+                &Settings::seed),
+        choice("filter", "Pixel filter",
+               "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and those of "
+               "its neighbours too (deviation half a pixel, cut at one and a half)",
+               {"box", "gaussian"}, Effect::frame, &Settings::filter),
+        integer("only_bounce", "Only bounce",
+                "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all", -1,
+                kMostDepth, Effect::frame, &Settings::only_bounce),
+        choice("only_by", "Only by", "of `path`: light of points that were drawn on lamps (nee), or that rays found (bsdf)",
+               {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by),
+        choice("only_first", "Only first",
+               "of `path`: light whose last event before the camera was of this kind; mirrors are glossy",
+               {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first),
+        integer("only_light", "Only light", "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1,
+                1 << 20, Effect::frame, &Settings::only_light),
+    };
+    for (Setting& row : table) row = row.in(SettingGroup::paths).only_of(kPathPicture);
+    return table;
+}
+
+}  // namespace
+
 const std::vector<Setting>& settings_table() {
-    static const std::vector<Setting> table = {
-        choice("poses", "Each pose",
-               "how the structure follows a scene that plays in the window. refit: its boxes are fitted to what moved; build: "
-               "a new "
-               "tree; auto: refits until a build pays; clip: as auto, from the best of five trees. `render` always builds; the "
-               "samples of a blurred picture are refitted, unless this is build",
-               {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
-        choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer),
+    constexpr auto kTracing = SettingGroup::tracing, kPicture = SettingGroup::picture;
+    static const std::vector<Setting> general = {
+        choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer)
+            .in(kTracing)
+            .only_ways(),  // what a tracer's pictures show: TracerChoice::picture
         integer(
             "depth", "Depth",
             "generations of rays, 1: camera rays only; of `path` the most events of scattering, each lit by lamps, and a last "
             "ray that may only find light",
-            1, kMostDepth, Effect::frame, &Settings::depth),
+            1, kMostDepth, Effect::frame, &Settings::depth)
+            .in(kTracing),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,
-             Effect::recompile, &Settings::packet_w, &Settings::packet_h),
-        lanes_setting(),
-        only_of(kWhittedPicture,
-                integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted",
-                        1, 64, Effect::recompile, &Settings::ray_slots)),
-        size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height),
-        integer("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::frame, &Settings::spp),
+             Effect::recompile, &Settings::packet_w, &Settings::packet_h)
+            .in(kTracing)
+            .only_ways(),
+        lanes_setting().in(kTracing).only_ways(),
+        integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
+                Effect::recompile, &Settings::ray_slots)
+            .in(kTracing)
+            .only_of(kWhittedPicture),
+        boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows).in(kTracing),
+        real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
+             &Settings::min_weight)
+            .in(kTracing)
+            .only_of(kWhittedPicture),
+        choice("poses", "Each pose",
+               "how the structure follows a scene that plays. refit: its boxes are fitted to what moved; build: a new tree; "
+               "auto: refits until a build pays; clip: as auto, from the best of five trees. `render` builds each frame, and "
+               "refits between the samples of a blurred one, unless this is build",
+               {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses)
+            .in(kTracing)
+            .only_ways(),
+        size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height)
+            .in(kPicture),
+        integer("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::samples, &Settings::spp).in(kPicture),
         real("shutter", "Shutter",
-             "motion blur: share of a frame's time that the shutter is open; 0: none. The samples of a pixel are spread over "
-             "this time, half of it before the frame's time and half after; each shows the scene at a time of its own. So it "
-             "takes several samples, 16 and more, and a scene that is shown at a time. While the window plays, pictures are "
-             "not blurred",
-             0, 1, Effect::frame, &Settings::shutter),
-        boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
-        of_paths(
-            choice("strategy", "Strategy",
-                   "how `path` finds light. nee: each event draws a point of a lamp; bsdf: rays that surfaces scatter find "
-                   "lamps and sky; mis: both, with weights. Lamps without a size are always drawn",
-                   {"nee", "bsdf", "mis"}, Effect::frame, &Settings::strategy)),
-        of_paths(choice("mis", "Weights", "of the strategy mis: by densities (balance) or by their squares (power)",
-                        {"balance", "power"}, Effect::frame, &Settings::mis)),
-        of_paths(
-            choice("sampler", "Sampler",
-                   "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers "
-                   "that are spread evenly over the samples of a pixel, with less noise",
-                   {"independent", "sobol"}, Effect::frame, &Settings::sampler)),
-        of_paths(integer("seed", "Seed", "pictures of two seeds have independent noise", 0, 1 << 30, Effect::frame,
-                         &Settings::seed)),
-        of_paths(choice("filter", "Pixel filter",
-                        "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and "
-                        "those of its neighbours too (deviation half a pixel, cut at one and a half)",
-                        {"box", "gaussian"}, Effect::frame, &Settings::filter)),
-        of_paths(integer("only_bounce", "Only bounce",
-                         "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all",
-                         -1, kMostDepth, Effect::frame, &Settings::only_bounce)),
-        of_paths(choice("only_by", "Only by",
-                        "of `path`: light of points that were drawn on lamps (nee), or that rays found (bsdf)",
-                        {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by)),
-        of_paths(choice("only_first", "Only first",
-                        "of `path`: light whose last event before the camera was of this kind; mirrors are glossy",
-                        {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first)),
-        of_paths(integer("only_light", "Only light",
-                         "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1, 1 << 20,
-                         Effect::frame, &Settings::only_light)),
-        only_of(kWhittedPicture, real("min_weight", "Least weight", "rays that would add less than this share are not followed",
-                                      0, 1, Effect::frame, &Settings::min_weight)),
-        choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov),
+             "motion blur: the share of a frame's time that the shutter is open, half of it before the frame's time; 0: none. "
+             "Each sample shows the scene at a time of its own, so take 16 samples or more. While the window plays, pictures "
+             "are not blurred",
+             0, 1, Effect::frame, &Settings::shutter)
+            .in(kPicture),
+        choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov).in(kPicture),
         real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
-             Effect::frame, &Settings::scale_max),
-        real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::frame, &Settings::exposure),
-        choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::frame, &Settings::tone),
+             Effect::display, &Settings::scale_max)
+            .in(kPicture),
+        real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::display, &Settings::exposure).in(kPicture),
+        choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::display, &Settings::tone)
+            .in(kPicture),
         boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
                 Effect::recompile, &Settings::fast_math),
         boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks",
-                Effect::recompile, &Settings::portable),
+                Effect::recompile, &Settings::portable)
+            .only_ways(),
         boolean("debug", "Debug kernels", "bounds every traversal stack and counts what would overflow", Effect::recompile,
-                &Settings::debug),
+                &Settings::debug)
+            .only_ways(),
         choice("trial", "Try kernels",
                "kernels that were edited, and those of plugins that did not come with the program, run in a worker process "
                "first, on a small scene; auto: on CPUs; off: never, for measurements",
-               {"auto", "on", "off"}, Effect::recompile, &Settings::trial),
+               {"auto", "on", "off"}, Effect::recompile, &Settings::trial)
+            .only_ways(),
     };
+    static const std::vector<Setting> table = [] {
+        std::vector<Setting> all = general;
+        const auto first_of_picture =
+            std::find_if(all.begin(), all.end(), [](const Setting& row) { return row.group == kPicture; });
+        const std::vector<Setting> of_paths = settings_of_paths();
+        all.insert(first_of_picture, of_paths.begin(), of_paths.end());
+        return all;
+    }();
     return table;
 }
 
