@@ -10,13 +10,22 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     r.what = "tracer path";
     r.file = "tracers/path/path.cl";
     r.entry = "trace_path";
-    r.headers = {"sampling/hash.h",       "sampling/sobol.h",
-                 "sampling/dimensions.h", "sampling/math.h",
-                 "sampling/warps.h",      "shading/material.h",
-                 "shading/lost_metal.h",  "shading/microfacets.h",
-                 "shading/bsdf.h",        "shading/bsdf_of.h",
-                 "tracers/path/sum.h",    "tracers/path/camera_rays.h",
-                 "tracers/path/state.h",  "tracers/path/first_lights.h",
+    r.headers = {"sampling/hash.h",
+                 "sampling/sobol.h",
+                 "sampling/dimensions.h",
+                 "sampling/math.h",
+                 "sampling/warps.h",
+                 "shading/material.h",
+                 "shading/lost_metal.h",
+                 "shading/lost_glass_outside.h",
+                 "shading/lost_glass_inside.h",
+                 "shading/microfacets.h",
+                 "shading/bsdf.h",
+                 "shading/bsdf_of.h",
+                 "tracers/path/sum.h",
+                 "tracers/path/camera_rays.h",
+                 "tracers/path/state.h",
+                 "tracers/path/first_lights.h",
                  "tracers/path/scatter.h"};
     r.defines = defines;
     r.traits = kFrame | kCountsRays | kSumsSamples;
