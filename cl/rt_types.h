@@ -75,7 +75,7 @@ typedef struct rt_texture {
 } rt_texture;
 #define RT_WRAP_ALONG_V 4u
 
-/* Values that may change from frame to frame while program and scene stay the same. 176 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 228 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
     rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
@@ -103,7 +103,29 @@ typedef struct rt_frame {
     rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
     rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
+    rt_u32 samples;    /* `path`: of this launch, this one first; they are added to the film in their order */
+    rt_u32 seed;       /* `path`: pictures of two seeds have independent noise */
+    rt_u32 path_flags; /* RT_PATH_* */
+    rt_f32 focus;          /* thin lens: distance along `forward` that is sharp */
+    rt_f32 lens_x, lens_y; /* radius of the lens by the lengths of right and up; 0: a pinhole */
+    /* The paths that count (--only-paths); RT_NONE: all. */
+    rt_u32 only_bounce; /* number of events between light and camera */
+    rt_u32 only_by;     /* RT_BY_* */
+    rt_u32 only_first;  /* RT_FIRST_*, of the first event */
+    rt_u32 only_light;  /* number of a light */
 } rt_frame;
+/* How a path came to its light: by a point that was drawn on it, or by the ray of a surface or the camera. */
+#define RT_BY_NEE 0u
+#define RT_BY_BSDF 1u
+/* How the first surface scattered. A smooth or rough mirror is glossy. */
+#define RT_FIRST_DIFFUSE 0u
+#define RT_FIRST_GLOSSY 1u
+#define RT_FIRST_TRANSMISSION 2u
+#define RT_PATH_SOBOL 1u          /* samples are Sobol's points, scrambled; else independent */
+#define RT_PATH_DRAWS_LIGHTS 2u   /* points of lights that have a size are drawn: strategies nee and mis */
+#define RT_PATH_FINDS_LIGHTS 4u   /* rays of rough surfaces count lights that they find: strategies bsdf and mis */
+#define RT_PATH_POWER_WEIGHTS 8u  /* of both: weights of squared densities */
+#define RT_PATH_GAUSSIAN 16u      /* pixels are weighted by a Gaussian; else all points of a pixel count alike */
 
 /* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of
  * RT_LANES of them, field by field: cl/tracers/rays/ray_blocks.h. */

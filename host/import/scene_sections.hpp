@@ -33,7 +33,7 @@ struct WireLight {
 struct WireCamera {
     uint32_t name_bytes, node;
     std::array<float, 3> eye, target, up, node_eye, node_target, node_up;
-    float fov_y_rad;
+    float fov_y_rad, aperture, focus;
 };
 struct WireNode {
     uint32_t name_bytes, pad;

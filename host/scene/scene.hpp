@@ -109,6 +109,8 @@ struct Camera {
     rt_u32 node = RT_NONE;                                      // that moves it
     std::array<float, 3> node_eye{}, node_target{}, node_up{};  // in the node's space
     rt_u32 source = 0;                                          // for the import only: by which channels name it
+    // Of a thin lens, for the tracer `path`: its diameter, 0: a pinhole; the distance that is sharp, 0: that of the target.
+    float aperture = 0, focus = 0;
 };
 
 // A change that a file makes to what it and the files that it loads hold: words of host/render/edit/edit.hpp.

@@ -189,6 +189,8 @@ std::string check_view(const Scene& s) {
         }
         if (!(camera.fov_y_rad > 0 && camera.fov_y_rad < static_cast<float>(kPi)))
             return text("camera", i, "field of view outside 0..180 degrees");
+        for (const float size : {camera.aperture, camera.focus})
+            if (!(size >= 0 && std::isfinite(size))) return text("camera", i, "aperture or focus is no length");
         if (camera.eye == camera.target) return text("camera", i, "it looks at its own eye");
     }
     if (!all_finite(s.background) || !all_finite(s.ambient)) return "background or ambient light is not a finite number";

@@ -24,7 +24,7 @@
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
- *      wrap_v of textures; content of rt_host, flags of rt_importer. */
+ *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -366,6 +366,7 @@ typedef struct rt_camera {
     float fov_y_rad;
     rt_u32 node; /* appended: id of the node that moves it; 0: none */
     rt_u32 pad;  /* 0 */
+    float aperture, focus; /* appended: diameter of a thin lens, 0: a pinhole; distance that is sharp, 0: that of the target */
 } rt_camera;
 
 /* A light without falloff. With a node, position and direction are in the node's space. */

@@ -357,6 +357,8 @@ rt_u32 SceneSink::camera(const rt_camera& d) {
     std::copy(d.target, d.target + 3, camera.target.begin());
     std::copy(d.up, d.up + 3, camera.up.begin());
     camera.fov_y_rad = d.fov_y_rad;
+    camera.aperture = d.aperture;
+    camera.focus = d.focus;
     camera.node = motion_.node_of(d.node, "camera");
     camera.node_eye = camera.eye;
     camera.node_target = camera.target;

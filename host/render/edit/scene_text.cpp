@@ -58,7 +58,9 @@ std::string camera_lines(const EditedView& edited, const std::array<double, 3>& 
     const Camera& camera = edited.view.camera;
     return std::string("camera ") + kCamera + "  eye " + point_text(camera.eye.data(), origin, " ") + "  target " +
            point_text(camera.target.data(), origin, " ") + "  up" + spaced(camera.up) + "  fov " +
-           exact_text(std::clamp(degrees_of(camera.fov_y_rad), 0.1f, 179.0f)) + "\n";
+           exact_text(std::clamp(degrees_of(camera.fov_y_rad), 0.1f, 179.0f)) +
+           (camera.aperture > 0 ? "  aperture " + exact_text(camera.aperture) + "  focus " + exact_text(camera.focus) : "") +
+           "\n";
 }
 
 std::string surroundings(const View& view) {

@@ -1,8 +1,25 @@
 #include "render/settings/aov.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace clarity {
+namespace {
+
+// Of a sample; of one sample it is not known.
+float variance(const float* sum, const float* rest) {
+    return sum[3] > 1 ? rest[3] / (sum[3] - 1) : 0.0f;
+}
+
+// A row of what the tracer `path` knows of its noise.
+Aov statistic(const char* name, const char* help, FalseColorScale scale, float (*of)(const float*, const float*)) {
+    Aov aov{name,  help, Aov::About::noise, "path", Aov::Film::statistics, Aov::Paint::scale, false, Aov::Range::measured,
+            scale, of};
+    if (std::string(name) == "mis") aov.range = Aov::Range::share;
+    return aov;
+}
+
+}  // namespace
 
 const std::vector<Aov>& aov_table() {
     using About = Aov::About;
@@ -61,6 +78,14 @@ const std::vector<Aov>& aov_table() {
          false,
          Range::counts,
          {Map::heat, 1, 2, true, "Generations", "of rays"}},
+        statistic("variance", "variance of the samples", {Map::heat, 0, 1, false, "Variance", "of a sample's luminance"},
+                  [](const float* sum, const float* rest) { return variance(sum, rest); }),
+        statistic("error", "standard error of the mean", {Map::heat, 0, 1, false, "Standard error", "of the mean luminance"},
+                  [](const float* sum, const float* rest) { return std::sqrt(variance(sum, rest) / sum[3]); }),
+        statistic("samples", "number of samples", {Map::heat, 0, 1, true, "Samples", "per pixel"},
+                  [](const float* sum, const float*) { return sum[3]; }),
+        statistic("mis", "share of light by next-event estimation", {Map::heat, 0, 1, false, "By next event", "share of light"},
+                  [](const float* sum, const float*) { return sum[1] > 0 ? sum[0] / sum[1] : 0.0f; }),
     };
     return table;
 }
@@ -96,7 +121,7 @@ std::string aov_help() {
         return list;
     };
     return all_about(Aov::About::color) + ", or of the first hit: " + all_about(Aov::About::first_hit) +
-           "; or what it cost: " + all_about(Aov::About::cost);
+           "; or what it cost: " + all_about(Aov::About::cost) + "; or, of `path`, its noise: " + all_about(Aov::About::noise);
 }
 
 }  // namespace clarity

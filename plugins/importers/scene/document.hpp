@@ -19,7 +19,8 @@ struct Name {
 struct Camera {
     Name name;
     Vec3 eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
-    float fov_deg = 45;  // vertical, degrees
+    float fov_deg = 45;             // vertical, degrees
+    float aperture = 0, focus = 0;  // as in rt_camera
 };
 struct Light {
     Name name;

@@ -105,6 +105,8 @@ bool Emitter::lights_and_cameras() {
         std::copy(camera.target.begin(), camera.target.end(), desc.target);
         std::copy(camera.up.begin(), camera.up.end(), desc.up);
         desc.fov_y_rad = camera.fov_deg * rad_per_deg;
+        desc.aperture = camera.aperture;
+        desc.focus = camera.focus;
         desc.node = motion_.node_of_camera(camera);
         for (int i = 0; desc.node != 0 && i < 3; ++i) {
             desc.target[i] -= desc.eye[i];

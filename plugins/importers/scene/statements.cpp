@@ -30,8 +30,8 @@ void once(Statement& s, Position first) {
 }
 
 void read_camera(Statement& s, Document& document, Diagnostics&) {
-    enum { kEye, kTarget, kUp, kFov };
-    s.expect_keys({{"eye"}, {"target"}, {"up"}, {"fov"}});
+    enum { kEye, kTarget, kUp, kFov, kAperture, kFocus };
+    s.expect_keys({{"eye"}, {"target"}, {"up"}, {"fov"}, {"aperture"}, {"focus"}});
     Camera camera;
     camera.name = s.name("the camera's name");
     while (!s.done()) {
@@ -47,6 +47,12 @@ void read_camera(Statement& s, Document& document, Diagnostics&) {
                 break;
             case kFov:
                 camera.fov_deg = s.number_between("`fov` (vertical, degrees)", 0.1f, 179.0f);
+                break;
+            case kAperture:
+                camera.aperture = s.number_between("`aperture` (diameter of the lens; 0: a pinhole)", 0, 1e9f);
+                break;
+            case kFocus:
+                camera.focus = s.number_between("`focus` (distance that is sharp; 0: that of the target)", 0, 1e9f);
                 break;
         }
     }
