@@ -18,7 +18,8 @@ enum : unsigned {
     kVotes = 8,           // uses votes among the work-items of a warp: cl/lanes/subgroup.h
     kFrame = 16,          // traces frames; so on a frame of no size it ends at once
     kCountsRays = 32,     // traces more than camera rays: it has `counters`, and the `distances` of the camera rays
-    kLayers = 64          // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
+    kLayers = 64,         // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
+    kPicksLights = 128    // has the table of emitters and the sky: cl/shading/emitters.h
 };
 
 struct KernelRow {
