@@ -3,7 +3,7 @@
 #include "render/accel/accel_build.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/launch/device_scene.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
