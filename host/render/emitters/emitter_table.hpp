@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/accel/accel_build.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
