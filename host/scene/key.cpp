@@ -28,8 +28,10 @@ const Member& member(const void* values, size_t offset) {
 }
 
 std::string range_text(const Key& key) {
-    return key.max < kMostNumber ? "from " + exact_text(key.min) + " to " + exact_text(key.max)
-                                 : exact_text(key.min) + " or more, and at most 1e15";
+    if (key.max < kMostNumber) return "from " + exact_text(key.min) + " to " + exact_text(key.max);
+    return key.min < 0   ? "numbers of at most 1e15"
+           : key.min > 0 ? exact_text(key.min) + " or more"
+                         : "0 or more, nothing negative";
 }
 
 }  // namespace
@@ -65,7 +67,7 @@ std::string range_fault(const Key& key, const std::array<float, 3>& value) {
     const size_t count = count_of(key);
     const auto is_outside = [&](float x) { return !(x >= key.min && x <= key.max); };
     if (std::any_of(value.begin(), value.begin() + count, is_outside)) return range_text(key);
-    if (key.kind == RT_KEY_VECTOR && value == std::array<float, 3>{}) return "a vector other than 0,0,0";
+    if (key.kind == RT_KEY_VECTOR && value == std::array<float, 3>{}) return "a vector other than 0,0,0, which has no length";
     return {};
 }
 
@@ -81,7 +83,8 @@ std::array<float, 3> nearest_value(const Key& key, const std::array<float, 3>& v
 }
 
 std::string value_text(const Key& key, const std::array<float, 3>& value, const char* between) {
-    if (is_choice(key) && value[0] >= 0 && value[0] <= static_cast<float>(key.max)) return words_of(key)[static_cast<size_t>(value[0])];
+    if (is_choice(key) && value[0] >= 0 && value[0] <= static_cast<float>(key.max))
+        return words_of(key)[static_cast<size_t>(value[0])];
     std::string text;
     for (size_t k = 0; k < count_of(key); ++k) text += (k ? between : "") + exact_text(value[k]);
     return text;

@@ -16,20 +16,21 @@ enum class Moves { never, point, direction, vector, length };
 // A key. `offset` and `bit` place its value in the struct.
 struct Key {
     const char* name = "";
-    const char* label = "";                         // in the panel
-    const char* help = "";                          // what the number is, in few words
-    const char* more = "";                          // further words of its tooltip and the reference
-    rt_u32 kind = RT_KEY_NUMBER;                    // RT_KEY_NUMBER, _POINT, _VECTOR, _COLOR, _WORD or _FLAG
-    double min = 0, max = 0;                        // of each number
-    std::array<float, 3> def{};                     // a word's number, a flag's 0 or 1
-    const char* const* words = nullptr;             // of RT_KEY_WORD, NULL-terminated
-    size_t offset = 0;                              // of the member, in bytes
-    rt_u32 bit = 0;                                 // words and flags: the bit that holds the value; 0: the whole member does
-    bool inverted = false;                          // the bit is set where the value is 0; the vector points the other way
+    const char* label = "";              // in the panel
+    const char* help = "";               // what the number is, in few words
+    const char* more = "";               // further words of its tooltip and the reference
+    rt_u32 kind = RT_KEY_NUMBER;         // RT_KEY_NUMBER, _POINT, _VECTOR, _COLOR, _WORD or _FLAG
+    double min = 0, max = 0;             // of each number
+    std::array<float, 3> def{};          // a word's number, a flag's 0 or 1
+    const char* const* words = nullptr;  // of RT_KEY_WORD, NULL-terminated
+    size_t offset = 0;                   // of the member, in bytes
+    rt_u32 bit = 0;                      // words and flags: the bit that holds the value; 0: the whole member does
+    bool inverted = false;               // the bit is set where the value is 0; the vector points the other way
     Moves moves = Moves::never;
-    bool logarithmic = false;                       // slider
-    bool alias = false;                             // another name for the member of the key before it
-    bool follows_model = false;                     // the model of a material changes it, too
+    bool logarithmic = false;        // slider
+    bool alias = false;              // another name for the member of the key before it
+    bool follows_model = false;      // the model of a material changes it, too
+    bool reversed_in_edits = false;  // edits have the opposite vector, as those of older versions do
 };
 
 // What is left of its range if the largest number has no meaning of its own: what text can hold.

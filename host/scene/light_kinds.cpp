@@ -15,7 +15,8 @@ using L = rt_light;
 constexpr const char* kFalloffs[] = {"none", "square", nullptr};
 
 Key direction_key(size_t offset, bool towards_light) {
-    Key key = shown(vector_key("direction", offset, {0, -1, 0}), "Direction", "x y z, in which the light travels", "any length");
+    Key key =
+        shown(vector_key("direction", offset, {0, -1, 0}), "Direction", "x y z, in which the light travels", "any length");
     key.moves = Moves::direction;
     key.inverted = towards_light;
     return key;
@@ -27,9 +28,10 @@ Key light_color(const char* name, const char* label, const char* more) {
     return shown(color_key(name, offsetof(L, color), kMostNumber, 1), label, "r g b", more);
 }
 Key falloff_key() {
-    return shown(word_key("falloff", offsetof(L, flags), RT_LIGHT_FALLOFF, kFalloffs), "Falloff", "how light fades with the distance",
-                 "`none`: not at all, as Whitted has it; the colour is an irradiance divided by pi. `square`: by the inverse square; "
-                 "the colour is an intensity, W/sr");
+    return shown(
+        word_key("falloff", offsetof(L, flags), RT_LIGHT_FALLOFF, kFalloffs), "Falloff", "how light fades with the distance",
+        "`none`: not at all, as Whitted has it; the colour is an irradiance divided by pi. `square`: by the inverse square; "
+        "the colour is an intensity, W/sr");
 }
 Key angle_key(const char* name, size_t offset, double max, float def, const char* help, const char* more) {
     return shown(number_key(name, offset, 0, max, def), std::strcmp(name, "inner") == 0 ? "Inner angle" : "Angle", help, more);
@@ -41,7 +43,8 @@ Key length_key(const char* name, size_t offset) {
     return key;
 }
 Key edge_key(const char* name, size_t offset, const std::array<float, 3>& def) {
-    return shown(vector_key(name, offset, def), name, "x y z, half an edge", "corners are center +- u +- v; it emits to the side of u x v");
+    return shown(vector_key(name, offset, def), name, "x y z, half an edge",
+                 "corners are center +- u +- v; it emits to the side of u x v");
 }
 Key two_sided_key() {
     return shown(flag_key("two_sided", offsetof(L, flags), RT_LIGHT_TWO_SIDED), "Two-sided", "whether both sides emit");
@@ -102,7 +105,8 @@ LightKind completed(LightKind row, void (*complete)(rt_light&)) {
 
 std::vector<LightKind> make_kinds() {
     const Key normal = [] {
-        Key key = shown(vector_key("normal", offsetof(L, normal), {0, -1, 0}), "Normal", "x y z, of the side that emits", "any length");
+        Key key = shown(vector_key("normal", offsetof(L, normal), {0, -1, 0}), "Normal", "x y z, of the side that emits",
+                        "any length");
         key.moves = Moves::direction;
         return key;
     }();
@@ -112,9 +116,11 @@ std::vector<LightKind> make_kinds() {
     const Key irradiance = light_color("irradiance", "Irradiance", "of a surface that faces it, linear");
     const Key radiance = light_color("radiance", "Radiance", "linear, 0 or more");
     const size_t angle = offsetof(L, angle), inner = offsetof(L, inner), radius = offsetof(L, radius);
+    Key legacy = towards;
+    legacy.reversed_in_edits = true;
     return {
         kind(RT_LIGHT_POINT, "point", "lamp", "a point", {place_key("position", "where it is"), color, falloff_key()}),
-        far_away(kind(RT_LIGHT_DIRECTIONAL, "directional", "directional", "parallel light", {towards, color})),
+        far_away(kind(RT_LIGHT_DIRECTIONAL, "directional", "directional", "parallel light", {legacy, color})),
         completed(kind(RT_LIGHT_SPOT, "spot", "spot", "a point with a cone",
                        {place_key("position", "where it is"), into, color,
                         angle_key("angle", angle, 180, 60, "degrees", "of the whole cone; beyond it there is no light"),
@@ -129,9 +135,9 @@ std::vector<LightKind> make_kinds() {
                                  {place_key("center", "its middle"), edge_key("u", offsetof(L, u), {1, 0, 0}),
                                   edge_key("v", offsetof(L, v), {0, 0, 1}), radiance, two_sided_key()})),
                   complete_rect),
-        completed(with_size(kind(RT_LIGHT_DISC, "disc", "disc", "a disc that shines",
-                                 {place_key("center", "its middle"), normal, length_key("radius", radius), radiance,
-                                  two_sided_key()})),
+        completed(with_size(kind(
+                      RT_LIGHT_DISC, "disc", "disc", "a disc that shines",
+                      {place_key("center", "its middle"), normal, length_key("radius", radius), radiance, two_sided_key()})),
                   complete_disc),
         completed(with_size(kind(RT_LIGHT_SPHERE, "sphere", "sphere", "a ball that shines",
                                  {place_key("center", "its middle"), length_key("radius", radius), radiance})),
@@ -227,6 +233,17 @@ bool move_light(rt_light& light, const Matrix& m) {
         if (key.moves == Moves::length) set_value(key, &light, {static_cast<float>(scale * value[0]), 0, 0});
     }
     return make_sound(light);
+}
+
+std::array<float, 3> edit_value(const Key& key, const rt_light& light) {
+    std::array<float, 3> value = value_of(key, &light);
+    for (float& x : value) x = key.reversed_in_edits ? -x : x;
+    return value;
+}
+
+void set_edit_value(const Key& key, rt_light& light, std::array<float, 3> value) {
+    for (float& x : value) x = key.reversed_in_edits ? -x : x;
+    set_value(key, &light, value);
 }
 
 std::string light_fault(const rt_light& light) {

@@ -23,7 +23,7 @@ const std::vector<LightKind>& light_kinds();  // in the order of RT_LIGHT_POINT,
 const LightKind& kind_of(const rt_light& light);
 const LightKind* find_light_kind(const std::string& name);
 
-rt_light default_light(rt_u32 kind);  // all keys at their defaults
+rt_light default_light(rt_u32 kind);                           // all keys at their defaults
 const rt_primitive_kind* light_kind_for_plugins(rt_u32 kind);  // NULL: there is no such kind
 // What an importer delivers, in its own coordinates. Sets `problem` as material_of() does. Returns false if it cannot be used:
 // numbers that are not finite, vectors of no length.
@@ -33,6 +33,9 @@ bool light_of(const rt_light_desc& desc, rt_light& light, std::string& problem);
 bool make_sound(rt_light& light, bool keep_units = false);
 // Moves the light as its keys say, and makes it sound.
 bool move_light(rt_light& light, const Matrix& world_from_local);
+// The value of a key as edits have it: see Key::reversed_in_edits.
+std::array<float, 3> edit_value(const Key& key, const rt_light& light);
+void set_edit_value(const Key& key, rt_light& light, std::array<float, 3> value);
 // "`angle` is 200, expected from 0 to 180", or an empty text.
 std::string light_fault(const rt_light& light);
 

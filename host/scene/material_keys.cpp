@@ -26,7 +26,8 @@ Key on_log_scale(Key key) {
 std::vector<Key> make_keys() {
     return {
         shown(word_key("model", offsetof(M, model), 0, kModels), "Model", "what `path` takes the surface for",
-              "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `whitted` is the mixture below"),
+              "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `whitted` is the mixture "
+              "below"),
         shown(color_key("color", offsetof(M, color), kMostColor, 0.7f), "Colour", "r g b",
               "share of light that is scattered; also tints what is refracted. Of a conductor: what it mirrors straight on"),
         shown(number_key("roughness", offsetof(M, roughness), 0, 1, 0), "Roughness", "of a conductor or dielectric",

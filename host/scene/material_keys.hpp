@@ -16,8 +16,9 @@ const rt_primitive_kind* material_kind_for_plugins();
 // they can. Setting the model sets those shares. As long as nothing else sets them, they follow what the model's look depends
 // on, as a conductor's roughness.
 void set_material_value(rt_material& material, const Key& key, const std::array<float, 3>& value);
-// What an importer delivers. The texture is still an id of the sink. Sets `problem` to what is wrong, or to an empty text: numbers
-// that are not finite are replaced by defaults, others are brought into range without a word, and unknown keys are left out.
+// What an importer delivers. The texture is still an id of the sink. Sets `problem` to what is wrong, or to an empty text:
+// numbers that are not finite are replaced by defaults, others are brought into range without a word, and unknown keys are left
+// out.
 rt_material material_of(const rt_material_desc& desc, std::string& problem);
 // "`reflect` is 2, expected from 0 to 1", or an empty text.
 std::string material_fault(const rt_material& material);

@@ -108,7 +108,7 @@ struct Camera {
     float fov_y_rad = 0.7853982f;
     float aperture = 0;     // radius of the lens; 0: a pinhole
     float focus = 0;        // distance along the view at which the lens is sharp; 0: that of the target
-    rt_u32 node = RT_NONE;                                      // that moves it
+    rt_u32 node = RT_NONE;  // that moves it
     std::array<float, 3> node_eye{}, node_target{}, node_up{};  // in the node's space
     rt_u32 source = 0;                                          // for the import only: by which channels name it
 };

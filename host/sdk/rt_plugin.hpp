@@ -327,8 +327,15 @@ inline void part(const rt_shape_output* out, const float lo[3], const float hi[3
 
 // A material of the values that the host gives to objects without one.
 constexpr rt_material_desc material(const char* name = nullptr) {
-    return {sizeof(rt_material_desc), 0, name,    {0.7f, 0.7f, 0.7f}, 0, {0, 0, 0}, 0, {0.15f, 0.15f, 0.15f}, 32, 1.5f,
-            RT_NONE,                  nullptr, 0, 0};
+    rt_material_desc m{};
+    m.struct_bytes = sizeof m;
+    m.name = name;
+    for (float& c : m.color) c = 0.7f;
+    for (float& c : m.specular) c = 0.15f;
+    m.shininess = 32;
+    m.ior = 1.5f;
+    m.texture = RT_NONE;
+    return m;
 }
 // A white light at the origin, or one that shines downwards. kind: RT_LIGHT_POINT, ...
 constexpr rt_light_desc light(rt_u32 kind, const char* name = nullptr) {

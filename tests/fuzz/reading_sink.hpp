@@ -74,12 +74,13 @@ inline ReadingSink::ReadingSink() {
     sink_.struct_bytes = sizeof sink_;
     sink_.ctx = this;
     SINK(texture, rt_texture_desc, s.read(d->path); s.read(d->bytes, d->byte_count); return s.textures_++);
-    SINK(material, rt_material_desc, s.read(d->name); s.read_values(d->values, d->value_count); require(d->texture == RT_NONE || d->texture < s.textures_, "texture");
-         return s.materials_++);
+    SINK(material, rt_material_desc, s.read(d->name); s.read_values(d->values, d->value_count);
+         require(d->texture == RT_NONE || d->texture < s.textures_, "texture"); return s.materials_++);
     SINK(mesh, rt_mesh, s.mesh(*d); return s.meshes_++);
     SINK(instance, rt_instance_desc, s.read(d->name); require(d->mesh < s.meshes_ && d->node <= s.nodes_, "instance");
          return rt_u32(0));
-    SINK(light, rt_light_desc, s.read(d->name); s.read_values(d->values, d->value_count); require(d->node <= s.nodes_, "light"); return s.views_++);
+    SINK(light, rt_light_desc, s.read(d->name); s.read_values(d->values, d->value_count); require(d->node <= s.nodes_, "light");
+         return s.views_++);
     SINK(camera, rt_camera, s.read(d->name); require(d->node <= s.nodes_, "camera"); return s.views_++);
     SINK(info, rt_scene_info, s.sum_ += d->up_axis);
     SINK(load, rt_load, s.read(d->path); return int32_t(RT_OK));

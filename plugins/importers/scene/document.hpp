@@ -19,7 +19,7 @@ struct Name {
 struct Camera {
     Name name;
     Vec3 eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
-    float fov_deg = 45;              // vertical, degrees
+    float fov_deg = 45;             // vertical, degrees
     float aperture = 0, focus = 0;  // as in rt_camera
 };
 // Values of keys that come from the host. The names are those of its tables.

@@ -86,7 +86,8 @@ void share(Looks& values, const Name& material, Position refract_position, Diagn
     // .1 + .9 is not exactly 1, so a small excess is no reason for a warning.
     if (sum > 1.0001f) {
         char text[160];
-        std::snprintf(text, sizeof text, "`reflect` and `refract` of material %s add up to %g; both are scaled down to add up to 1",
+        std::snprintf(text, sizeof text,
+                      "`reflect` and `refract` of material %s add up to %g; both are scaled down to add up to 1",
                       in_quotes(material.text).c_str(), static_cast<double>(sum));
         diagnostics.warning(refract_position, text);
     }
@@ -115,9 +116,10 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
     desc.kind = static_cast<rt_u32>(number);
     // Three of the values are members of the description.
     const auto member = [&](const rt_key& key) -> float* {
-        return key.kind == RT_KEY_POINT ? desc.position : key.kind == RT_KEY_COLOR ? desc.color
-               : is_named(key, "direction")                                        ? desc.direction
-                                                                                   : nullptr;
+        return key.kind == RT_KEY_POINT     ? desc.position
+               : key.kind == RT_KEY_COLOR   ? desc.color
+               : is_named(key, "direction") ? desc.direction
+                                            : nullptr;
     };
     for (const rt_key* key : keys)
         if (float* to = member(*key)) {
@@ -203,7 +205,8 @@ void read_light_edits(Statement& s, const std::string& key, Document& document) 
     while (!s.done()) {
         const size_t i = s.key();
         values[i] = read_look(s, *keys[i]);
-        if (is_word(*keys[i])) further.push_back({key + "." + keys[i]->name, std::string(word_of(*keys[i], values[i])), s.position()});
+        if (is_word(*keys[i]))
+            further.push_back({key + "." + keys[i]->name, std::string(word_of(*keys[i], values[i])), s.position()});
     }
     for (size_t i = 0; i < keys.size(); ++i)
         if (!is_word(*keys[i])) numbers += "," + text_of(values[i].data(), count_of(*keys[i]));

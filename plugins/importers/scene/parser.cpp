@@ -109,8 +109,7 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
 
 }  // namespace
 
-bool parse(std::string_view text, Document& document, Diagnostics& diagnostics,
-           const std::function<bool(float)>& proceed) {
+bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, const std::function<bool(float)>& proceed) {
     Lexer lexer(text);
     std::vector<Token> tokens;
     uint32_t lines = 0;

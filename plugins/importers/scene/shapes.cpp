@@ -41,7 +41,8 @@ std::vector<float> read_values(Statement& s, const rt_key& key) {
 
 Kinds kinds_of(const rt_scene_sink& sink) {
     if (!RT_HAS(&sink, rt_scene_sink, material_kind) || !sink.light_kind || !sink.material_kind)
-        throw std::runtime_error("this importer needs a newer Clarity, which tells it the keys of lights and materials: update the program");
+        throw std::runtime_error(
+            "this importer needs a newer Clarity, which tells it the keys of lights and materials: update the program");
     Kinds kinds;
     kinds.material = sink.material_kind(sink.ctx);
     const auto all = [&](auto kind, std::vector<const rt_primitive_kind*>& list) {

@@ -8,7 +8,8 @@
 
 namespace scene_format {
 
-// All kinds of shapes, lights and materials that the sink takes. Throws std::runtime_error if the host is older than their tables.
+// All kinds of shapes, lights and materials that the sink takes. Throws std::runtime_error if the host is older than their
+// tables.
 Kinds kinds_of(const rt_scene_sink& sink);
 const rt_key& key_of(const rt_primitive_kind& kind, size_t index);
 // Reads the numbers of a key of a shape, or of a number or vector of a light or material. Throws StatementError.
