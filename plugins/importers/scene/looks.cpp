@@ -199,17 +199,24 @@ void read_light_edits(Statement& s, const std::string& key, Document& document) 
     const std::vector<const rt_key*> keys = keys_of(*kind);
     expect(s, keys);
     std::vector<Vec3> values;
-    for (const rt_key* k : keys) values.push_back(default_of(*k));
+    std::vector<size_t> places;  // of each key's value: a light has one colour, which may have two names
+    size_t color = keys.size();
+    for (size_t i = 0; i < keys.size(); ++i) {
+        values.push_back(default_of(*keys[i]));
+        const bool is_color = keys[i]->kind == RT_KEY_COLOR;
+        if (is_color && color == keys.size()) color = i;
+        places.push_back(is_color ? color : i);
+    }
     std::vector<Edit> further;
     std::string numbers = kind->id;
     while (!s.done()) {
         const size_t i = s.key();
-        values[i] = read_look(s, *keys[i]);
+        values[places[i]] = read_look(s, *keys[i]);
         if (is_word(*keys[i]))
             further.push_back({key + "." + keys[i]->name, std::string(word_of(*keys[i], values[i])), s.position()});
     }
     for (size_t i = 0; i < keys.size(); ++i)
-        if (!is_word(*keys[i])) numbers += "," + text_of(values[i].data(), count_of(*keys[i]));
+        if (!is_word(*keys[i]) && places[i] == i) numbers += "," + text_of(values[i].data(), count_of(*keys[i]));
     document.edits.push_back({key, numbers, s.position()});
     document.edits.insert(document.edits.end(), further.begin(), further.end());
 }

@@ -403,10 +403,12 @@ TEST(SceneFormat, CamerasHaveALens) {
 TEST(SceneFormat, EditsOfAllKinds) {
     const Recording r = import_good(
         "edit material 1 model conductor roughness .25 one_sided checker false\n"
-        "edit light 0 spot position 1 2 3 angle 50 falloff square\n");
-    EXPECT_EQ(r.edits, (std::vector<std::string>{"material.1.model=conductor", "material.1.roughness=0.25",
-                                                 "material.1.one_sided=true", "material.1.checker=false",
-                                                 "light.0=spot,1,2,3,0,-1,0,1,1,1,50,45", "light.0.falloff=square"}));
+        "edit light 0 spot position 1 2 3 angle 50 falloff square\n"
+        "edit light 1 sun color .5\n");
+    EXPECT_EQ(r.edits,
+              (std::vector<std::string>{"material.1.model=conductor", "material.1.roughness=0.25", "material.1.one_sided=true",
+                                        "material.1.checker=false", "light.0=spot,1,2,3,0,-1,0,1,1,1,50,45",
+                                        "light.0.falloff=square", "light.1=sun,0,-1,0,0.5,0.5,0.5,0.53"}));
 }
 
 }  // namespace
