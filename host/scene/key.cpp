@@ -27,6 +27,10 @@ const Member& member(const void* values, size_t offset) {
     return *reinterpret_cast<const Member*>(static_cast<const char*>(values) + offset);
 }
 
+bool are_finite(const std::array<float, 3>& value) {
+    return std::all_of(value.begin(), value.end(), [](float x) { return std::isfinite(x); });
+}
+
 std::string range_text(const Key& key) {
     if (key.max < kMostNumber) return "from " + exact_text(key.min) + " to " + exact_text(key.max);
     return key.min < 0   ? "numbers of at most 1e15"
@@ -68,6 +72,16 @@ std::string range_fault(const Key& key, const std::array<float, 3>& value) {
     const auto is_outside = [&](float x) { return !(x >= key.min && x <= key.max); };
     if (std::any_of(value.begin(), value.begin() + count, is_outside)) return range_text(key);
     if (key.kind == RT_KEY_VECTOR && value == std::array<float, 3>{}) return "a vector other than 0,0,0, which has no length";
+    return {};
+}
+
+std::string fault_of(const std::vector<Key>& keys, const void* values) {
+    for (const Key& key : keys) {
+        const std::array<float, 3> value = value_of(key, values);
+        const std::string fault = range_fault(key, value), name = "`" + std::string(key.name) + "`";
+        if (!are_finite(value)) return "not a finite number in " + name;
+        if (!fault.empty()) return name + " is " + value_text(key, value, " ") + ", expected " + fault;
+    }
     return {};
 }
 

@@ -128,7 +128,7 @@ std::vector<LightKind> make_kinds() {
                         falloff_key()}),
                   complete_spot),
         completed(far_away(kind(RT_LIGHT_SUN, "sun", "sun", "a disc in the sky",
-                                {towards, irradiance, alias(color),
+                                {towards, irradiance, alias(light_color("color", "Irradiance", "another name of `irradiance`")),
                                  angle_key("angle", angle, 180, 0.53f, "degrees", "across; that of the sun is 0.53")})),
                   complete_sun),
         completed(with_size(kind(RT_LIGHT_RECT, "rect", "rectangle", "a parallelogram that shines",
@@ -247,13 +247,8 @@ void set_edit_value(const Key& key, rt_light& light, std::array<float, 3> value)
 }
 
 std::string light_fault(const rt_light& light) {
-    if (light.kind >= light_kinds().size()) return "its kind " + std::to_string(light.kind) + " is unknown";
-    for (const Key& key : kind_of(light).keys) {
-        const std::array<float, 3> value = value_of(key, &light);
-        const std::string fault = range_fault(key, value);
-        if (!fault.empty()) return "`" + std::string(key.name) + "` is " + value_text(key, value, " ") + ", expected " + fault;
-    }
-    return {};
+    if (light.kind >= light_kinds().size()) return "unknown kind " + std::to_string(light.kind);
+    return fault_of(kind_of(light).keys, &light);
 }
 
 }  // namespace clarity

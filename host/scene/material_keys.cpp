@@ -37,7 +37,7 @@ std::vector<Key> make_keys() {
                        "share that Fresnel's equations divide into reflected and refracted")),
         on_log_scale(shown(number_key("ior", offsetof(M, ior), 1e-3, 100, 1.5f), "Index", "index of refraction",
                            "of the inside: water 1.33, glass 1.5, diamond 2.4")),
-        of_model(shown(color_key("specular", offsetof(M, specular), kMostColor, 0.15f), "Highlight", "r g b, or one grey",
+        of_model(shown(color_key("specular", offsetof(M, specular), kMostColor, 0.15f), "Highlight", "r g b",
                        "colour of the Blinn-Phong highlight of Whitted's tracers")),
         of_model(on_log_scale(shown(number_key("shininess", offsetof(M, shininess), 0, 1e6, 32), "Shininess",
                                     "exponent of the highlight", "larger is smaller and sharper"))),
@@ -135,12 +135,7 @@ rt_material material_of(const rt_material_desc& d, std::string& problem) {
 }
 
 std::string material_fault(const rt_material& material) {
-    for (const Key& key : material_keys()) {
-        const std::array<float, 3> value = value_of(key, &material);
-        const std::string fault = range_fault(key, value);
-        if (!fault.empty()) return "`" + std::string(key.name) + "` is " + value_text(key, value, " ") + ", expected " + fault;
-    }
-    return {};
+    return fault_of(material_keys(), &material);
 }
 
 }  // namespace clarity

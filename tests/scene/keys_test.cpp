@@ -62,7 +62,7 @@ TEST(Keys, RefuseWhatIsOutsideOfTheirRange) {
     std::array<float, 3> value{};
     std::string expected;
     EXPECT_FALSE(read_value(material_key("shininess"), "1000001", value, expected));
-    EXPECT_EQ(expected, "from 0 to 1000000");
+    EXPECT_EQ(expected, "from 0 to 1e+06");
     EXPECT_FALSE(read_value(material_key("model"), "wood", value, expected));
     EXPECT_NE(expected.find("conductor"), std::string::npos);
     rt_material m = default_material();

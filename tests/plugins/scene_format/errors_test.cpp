@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "recorder.hpp"
+#include "scene/light_kinds.hpp"
 
 namespace {
 
@@ -13,7 +14,8 @@ struct Case {
 #define STATEMENTS \
     " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate, edit)"
 
-#define LIGHTS "point, directional, spot, sun, rect, disc, sphere"
+// Stands for the kinds of lights.
+#define LIGHTS "@"
 
 const Case kCases[] = {
     {"sphere radious 2", "1:8: unknown key `radious`; did you mean `radius`? (keys of sphere: center, radius, material)"},
@@ -133,11 +135,19 @@ const Case kCases[] = {
     {"# only a comment", "1:1: the file holds no statement; expected at least one, like `sphere center 0 0 0 radius 1`"},
 };
 
+std::string kinds_of_lights() {
+    std::string kinds;
+    for (const clarity::LightKind& kind : clarity::light_kinds()) kinds += (kinds.empty() ? "" : ", ") + std::string(kind.name);
+    return kinds;
+}
+
 TEST(SceneFormatErrors, NameLineColumnWhatWasReadAndWhatWasExpected) {
     for (const Case& c : kCases) {
         const Recording r = import_text(c.text);
         EXPECT_EQ(r.status, RT_FAILED) << c.text;
-        EXPECT_EQ(r.why, std::string("test.scene:") + c.message) << c.text;
+        std::string message = std::string("test.scene:") + c.message;
+        if (const size_t at = message.find(LIGHTS); at != std::string::npos) message.replace(at, 1, kinds_of_lights());
+        EXPECT_EQ(r.why, message) << c.text;
         EXPECT_TRUE(r.order.empty() && r.materials.empty() && r.cameras.empty()) << "half-loaded: " << c.text;
     }
 }
