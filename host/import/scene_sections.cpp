@@ -64,8 +64,8 @@ bool convert_back(const Converted& c, Scene& s) {
     for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values});
     for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values, l.node, l.at_node, 0});
     for (const WireCamera& k : c.cameras)
-        s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.node, k.node_eye, k.node_target,
-                             k.node_up, 0, k.aperture, k.focus});
+        s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.aperture, k.focus, k.node, k.node_eye,
+                             k.node_target, k.node_up, 0});
     for (const WireNode& n : c.nodes) {
         s.motion.nodes.push_back({name(n.name_bytes), n.values});
         s.motion.nodes.back().values.name = nullptr;

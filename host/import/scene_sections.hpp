@@ -27,8 +27,7 @@ struct WireMaterial {
 };
 struct WireLight {
     uint32_t name_bytes, node;
-    rt_light values;
-    std::array<float, 3> at_node;
+    rt_light values, at_node;
 };
 struct WireCamera {
     uint32_t name_bytes, node;
