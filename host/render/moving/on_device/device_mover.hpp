@@ -95,7 +95,7 @@ class DeviceMover {
 
     // The pose, on the host.
     std::vector<PosedInstance> instances_;  // of the Scene
-    std::vector<DevicePlacement> placements_;
+    std::vector<DeviceInstance> placements_;
     MovedInstances moved_;
     UninitializedVector<float> positions_, normals_;  // what was sent last; the device may read it until sent_ is complete
     std::vector<uint8_t> is_posed_, is_deformed_;     // for each mesh: by the pose that is taken over, and by the last one
