@@ -7,6 +7,7 @@
 #include "scene/light_kinds.hpp"
 #include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -19,14 +20,14 @@ rt_light new_light(const Session& session, rt_u32 kind) {
     const Camera& camera = session.desired.camera;
     const bool has_place = kind_of(light).has_place;
     for (int i = 0; i < 3; ++i) {
-        const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * session.scene_size() * 0.3f;
+        const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * scene_size(session) * 0.3f;
         light.position[i] = has_place ? camera.target[i] + towards : towards;
     }
     // Edges and radii are a twentieth of the scene.
     for (const Key& key : kind_of(light).keys) {
         if (key.moves != Moves::vector && key.moves != Moves::length) continue;
         std::array<float, 3> value = value_of(key, &light);
-        for (float& x : value) x *= session.scene_size() * 0.05f;
+        for (float& x : value) x *= scene_size(session) * 0.05f;
         set_value(key, &light, value);
     }
     make_sound(light);
@@ -111,7 +112,7 @@ void draw_light_rows(Session& session, UiState& state) {
     kind_row(session, light.values);
     for (const Key& key : kind_of(light.values).keys) {
         std::array<float, 3> value = value_of(key, &light.values);
-        if (key.alias || !key_row(key, value, session.scene_size())) continue;
+        if (key.alias || !key_row(key, value, scene_size(session))) continue;
         rt_light changed = light.values;
         set_value(key, &changed, value);
         if (make_sound(changed)) light.values = changed;
@@ -136,7 +137,7 @@ void draw_bookmark_rows(Session& session, UiState& state) {
         note_rect("name of bookmark " + std::to_string(i + 1));
         tooltip("click to rename");
         ImGui::SameLine();
-        if (button("Go", "to this view", go)) session.go_to(bookmark.camera, bookmark.pose);
+        if (button("Go", "to this view", go)) go_to(session, bookmark.camera, bookmark.pose);
         note_rect("go to " + bookmark.name);
         ImGui::SameLine();
         if (button("\u00d7", "delete this bookmark", cross)) gone = i;

@@ -7,12 +7,12 @@
 
 #include "base/error.hpp"
 #include "scene/camera.hpp"
-#include "scene/flatten.hpp"
 #include "scene/instance_edit.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
+#include "scene/singular_instances.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity {
@@ -234,7 +234,7 @@ Scene posed(Scene scene, const Pose& pose) {
         std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.own().begin() + first);
         if (!mesh.normals.empty()) std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.own().begin() + first);
     }
-    bake_flattened_instances(result);
+    bake_singular_instances(result);
     return result;
 }
 
