@@ -277,9 +277,7 @@ class Run {
             const bool takes_scene = options_.scene && name == "hits";
             if (takes_scene) arguments.insert(arguments.end(), {"--rays", options_.rays_file});
             worker::WorkerProcess process(launch.program, launch.command, arguments, Exit::failed);
-            if (takes_scene)
-                if (const std::string why = import::write_scene(process.result(), *options_.scene); !why.empty())
-                    throw Error(Exit::failed, "the scene cannot be given to the worker: " + why);
+            if (takes_scene) import::write_scene(process.result(), *options_.scene);
             const std::function<void(CheckResult)> on_result = [&](CheckResult result) {
                 if (!log.empty()) result.outcome = with_findings(result.outcome, log);
                 finish(result);

@@ -175,7 +175,7 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     Scene scene;
     if (!arguments.rays.empty() && !arguments.list) {
         rays = read_rays(arguments.rays);
-        if (const std::string why = import::read_scene(worker::kResultFd, scene); !why.empty()) throw Error(Exit::failed, why);
+        scene = import::read_scene(MemoryFile::of(worker::kResultFd));
     }
     enter_sandbox(WorkerKind::driver, {}, {});
     HitsOptions options;

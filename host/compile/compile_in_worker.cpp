@@ -106,14 +106,14 @@ CompileOutcome compile_in_worker(const DeviceInfo& info, const CompileJob& job, 
     if (progress.cancelled()) throw Cancelled();
     worker::WorkerProcess process(worker::worker_program(), "compile-worker", {"--parent", std::to_string(getpid())},
                                   Exit::kernel_build_failed);
-    std::string why = write_compile_job(process.result(), job);
+    std::string why = write_compile_job(process.result().fd(), job);
     if (!why.empty()) throw Error(Exit::kernel_build_failed, why);
     worker::send_message(process.channel(), {worker::MessageKind::proceed, 0, 0, {}});
     CompileSupervisor(process, info, what, progress).follow();
     process.kill_now();
     process.wait();
     CompileOutcome outcome;
-    why = read_compile_outcome(process.result(), outcome);
+    why = read_compile_outcome(process.result().fd(), outcome);
     if (!why.empty()) throw Error(Exit::kernel_build_failed, why);
     return outcome;
 }

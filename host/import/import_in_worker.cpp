@@ -129,10 +129,11 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
 
     worker::WorkerProcess process(program, "import-worker", arguments, Exit::import_failed);
     ImportSupervisor(process, limits, files.front(), program, progress).follow();
-    Scene scene;
-    const std::string why = read_scene(process.result(), scene);
-    if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the import worker's result cannot be used: " + why);
-    return scene;
+    try {
+        return read_scene(process.result());
+    } catch (const Error& e) {
+        throw Error(Exit::import_failed, files.front() + ": the import worker's result cannot be used: " + e.what());
+    }
 }
 
 }  // namespace clarity::import

@@ -74,7 +74,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     return !arguments.files.empty();
 }
 
-std::string import_files(const Arguments& arguments, ImportProgress& progress) {
+void import_files(const Arguments& arguments, ImportProgress& progress) {
     const FileAccess access(arguments.files, arguments.search_paths);
     const PluginRegistry plugins = PluginRegistry::of(arguments.plugins);
     const ImporterParameters parameters = parse_importer_choices(plugins, arguments.importers);
@@ -88,15 +88,19 @@ std::string import_files(const Arguments& arguments, ImportProgress& progress) {
     for (const std::string& file : arguments.files) builder.add_root(file);
     Scene scene = builder.take();
     worker::allow_writing_result();
-    const std::string why = write_scene(worker::kResultFd, std::move(scene));
-    return why.empty() ? why : arguments.files.front() + ": " + why;
+    MemoryFile result = MemoryFile::of(worker::kResultFd);
+    try {
+        write_scene(result, std::move(scene));
+    } catch (const Error& e) {
+        throw Error(Exit::import_failed, arguments.files.front() + ": " + e.what());
+    }
 }
 
 int run(const Arguments& arguments) {
     ImportProgress progress;
     std::string why;
     try {
-        why = import_files(arguments, progress);
+        import_files(arguments, progress);
     } catch (const std::bad_alloc&) {
         why = arguments.files.front() + ": out of memory";
     } catch (const std::exception& e) {

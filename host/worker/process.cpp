@@ -37,13 +37,13 @@ int checked(int fd, const char* what) {
     return fd;
 }
 
-// Moves a descriptor to a number above those that the worker's descriptors get.
+// A copy of a descriptor with a number above those that the worker's descriptors get.
+FileDescriptor copied_up(int fd) {
+    return FileDescriptor(checked(fcntl(fd, F_DUPFD_CLOEXEC, 10), "descriptor"));
+}
 FileDescriptor moved_up(int fd) {
-    const int moved = fcntl(fd, F_DUPFD_CLOEXEC, 10);
-    const int error = errno;
-    close(fd);
-    if (moved < 0) fail("descriptor", error);
-    return FileDescriptor(moved);
+    const FileDescriptor low(fd);
+    return copied_up(fd);
 }
 
 struct FileActions {
@@ -79,14 +79,15 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::string& comm
     output_ = moved_up(pipe_ends[0]);
     const FileDescriptor their_output = moved_up(pipe_ends[1]);
     fcntl(output_.get(), F_SETFL, O_NONBLOCK);
-    result_ = moved_up(checked(memfd_create("clarity-worker", MFD_CLOEXEC | MFD_ALLOW_SEALING), "shared memory"));
+
+    const FileDescriptor their_result = copied_up(result_.fd());
 
     FileActions files;
     posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 1);
     posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 2);
     posix_spawn_file_actions_adddup2(&files.actions, their_channel.get(), kChannelFd);
-    posix_spawn_file_actions_adddup2(&files.actions, result_.get(), kResultFd);
+    posix_spawn_file_actions_adddup2(&files.actions, their_result.get(), kResultFd);
     // The worker gets a process group of its own, so that Ctrl-C reaches only us and we turn it into a cancel. Its signals have
     // the default handlers.
     Attributes spawn;

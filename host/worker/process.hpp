@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/files/memory_file.hpp"
 
 namespace clarity::worker {
 
@@ -44,7 +45,7 @@ class WorkerProcess {
 
     int channel() const { return channel_.get(); }
     // Shared memory for the worker's result; empty at the start. The caller may put the input there.
-    int result() const { return result_.get(); }
+    MemoryFile& result() { return result_; }
     pid_t pid() const { return pid_; }
     // Pipe with everything that the worker and its libraries print; non-blocking.
     int output() const { return output_.get(); }
@@ -61,7 +62,8 @@ class WorkerProcess {
  private:
     pid_t pid_ = -1;
     int status_ = 0;
-    FileDescriptor channel_, result_, output_;
+    FileDescriptor channel_, output_;
+    MemoryFile result_;
 };
 
 }  // namespace clarity::worker

@@ -85,13 +85,13 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
         worker::WorkerProcess process(
             worker::worker_program(), "build-worker",
             {"--library", library, "--memory", std::to_string(memory), "--parent", std::to_string(getpid())}, Exit::failed);
-        std::string why = write_builder_input(process.result(), *input, prims, plugin.param_count, tree);
+        std::string why = write_builder_input(process.result().fd(), *input, prims, plugin.param_count, tree);
         if (!why.empty()) throw Error(Exit::failed, why);
         worker::send_message(process.channel(), {worker::MessageKind::proceed, 0, 0, {}});
         BuildSupervisor(process, plugin, library, prims, memory, progress).follow();
         process.kill_now();
         process.wait();
-        why = replay_builder_result(process.result(), built_slots(plugin), input->group_count, *out);
+        why = replay_builder_result(process.result().fd(), built_slots(plugin), input->group_count, *out);
         if (!why.empty()) throw Error(Exit::failed, why);
     } catch (const Cancelled&) {
         throw;
