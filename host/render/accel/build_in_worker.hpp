@@ -2,6 +2,7 @@
 #pragma once
 #include "base/progress.hpp"
 #include "rt_plugin.h"
+#include "worker/job.hpp"
 
 namespace clarity {
 
@@ -17,7 +18,6 @@ enum class BuildPlace {
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
                      const rt_topology* tree, const rt_build_output* out, Progress& progress);
 
-// Main function of the worker (`clarity build-worker ...`, which people do not call).
-int build_worker_main(int argc, char** argv);
+extern const worker::JobKind kBuildJob;
 
 }  // namespace clarity

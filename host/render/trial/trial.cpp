@@ -6,15 +6,14 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
+#include "base/physical_memory.hpp"
 #include "base/printable.hpp"
 #include "compile/compile.hpp"
 #include "device/kernel_files.hpp"
 #include "plugin/registry.hpp"
 #include "render/film/film.hpp"
 #include "render/trial/passed_programs.hpp"
-#include "render/trial/trial_arguments.hpp"
-#include "render/trial/trial_supervisor.hpp"
-#include "worker/child.hpp"
+#include "render/trial/trial_job.hpp"
 
 namespace clarity {
 namespace {
@@ -22,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_wanted(const DeviceInfo& info, const Settings& settings) {
-    if (std::getenv(worker::kWorkerVariable) || settings.trial == "off") return false;
+    if (worker::in_worker() || settings.trial == "off") return false;
     return settings.trial == "on" || (info.cpu && compiles_in_worker());
 }
 
@@ -74,7 +73,7 @@ struct Subject {
     std::vector<const rt_plugin*> plugins;  // with kernels in it
 };
 
-void try_subject(const Subject& subject, const std::function<TrialArguments()>& arguments, Progress& progress) {
+void try_subject(const Subject& subject, const std::function<TrialJob()>& work, Progress& progress) {
     const Suspects suspects = suspects_of(subject.info, subject.source, subject.plugins);
     if (suspects.text.empty()) return;
     const PassedProgram passed(subject.options + '\n' + subject.info.name + '\n' + subject.info.driver + '\n' +
@@ -82,10 +81,10 @@ void try_subject(const Subject& subject, const std::function<TrialArguments()>& 
     if (passed.known()) return;
     if (progress.cancelled()) throw Cancelled();
     progress.stage("trying kernels in a worker");
-    worker::WorkerProcess process(worker::worker_program(), "trial-worker", words_of(arguments()), Exit::kernel_build_failed);
-    TrialSupervisor supervisor(process, progress);
+    worker::Job job(kTrialJob, "the trial of kernels", {60, 0, physical_memory_bytes() / 4 * 3});
+    std::string not_tried;
     try {
-        supervisor.follow();
+        job.run(work(), not_tried, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
@@ -97,38 +96,50 @@ void try_subject(const Subject& subject, const std::function<TrialArguments()>& 
                         "; --trial off (in the window: Try kernels) runs kernels untried",
                     {}, place);
     }
-    if (supervisor.not_tried().empty())
+    if (not_tried.empty())
         passed.keep();
     else
-        log(LogLevel::debug, "kernels were not tried: " + printable_line(supervisor.not_tried()));
+        log(LogLevel::debug, "kernels were not tried: " + printable_line(not_tried));
 }
 
-TrialArguments arguments_for(const DeviceInfo& info, const Settings& settings, const char* kernels) {
-    TrialArguments arguments;
-    arguments.kernels = kernels;
-    arguments.device = info.id();
-    arguments.device_name = info.name;
-    arguments.settings = settings;
-    return arguments;
+TrialJob job_for(const DeviceInfo& info, const Settings& settings, const char* kernels) {
+    TrialJob job;
+    job.kernels = kernels;
+    job.device = info.id();
+    job.device_name = info.name;
+    job.settings = settings;
+    return job;
 }
 
-TrialArguments arguments_of(const Prepared& prepared, const DeviceInfo& info, const KernelRow& row) {
+TrialJob job_of(const Prepared& prepared, const DeviceInfo& info, const KernelRow& row) {
     const AccelData& accel = *prepared.accel;
-    TrialArguments arguments = arguments_for(info, prepared.settings, row.tracer);
+    TrialJob job = job_for(info, prepared.settings, row.tracer);
     std::vector<const rt_plugin*> plugins = plugins_with_kernels(prepared);
     plugins.push_back(accel.plugin);
     for (const rt_plugin* plugin : plugins) {
         const std::string library = library_of(*plugin);
-        if (!library.empty()) arguments.libraries[library] = original_of(library);
+        if (!library.empty()) job.libraries[library] = original_of(library);
     }
-    arguments.features = features_of(*prepared.scene, accel.scene);
-    arguments.shapes = sample_shapes(*prepared.scene);
-    arguments.settings.accel = accel.plugin->id;
-    arguments.settings.accel_params = accel.params;
-    return arguments;
+    job.features = features_of(*prepared.scene, accel.scene);
+    job.shapes = sample_shapes(*prepared.scene);
+    job.settings.accel = accel.plugin->id;
+    job.settings.accel_params = accel.params;
+    return job;
 }
 
+constexpr const char* kKilled = "were killed from outside, maybe for want of memory, while {step}";
+
 }  // namespace
+
+const worker::JobKind kTrialJob = {"trial",
+                                   "to try kernels, run `clarity check`",
+                                   Exit::kernel_build_failed,
+                                   true,
+                                   LogLevel::debug,
+                                   {"crashed ({how}) while {step}", "ended the process ({how}) while {step}",
+                                    "did not come to an end within {how} of processor time while {step}", kKilled,
+                                    "took more than {how} of memory while {step}", kKilled},
+                                   trial_job};
 
 std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepared& prepared, const KernelRow& row,
                                             Progress& progress, bool* fresh) {
@@ -147,7 +158,7 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
                  std::string(info.llvmpipe ? "; take another structure" : "") + "; `clarity check " + layout.id +
                      "` looks closer, with oclgrind if that is installed",
                  plugins_with_kernels(prepared)},
-                [&] { return arguments_of(prepared, info, row); }, progress);
+                [&] { return job_of(prepared, info, row); }, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
@@ -163,7 +174,7 @@ void try_film(const DeviceInfo& info, const Settings& settings, Progress& progre
     const CompileRequest program = film_program();
     try_subject(
         {info, program.what, program.source, program.options, {}, {}, {}},
-        [&] { return arguments_for(info, settings, kFilmKernels); }, progress);
+        [&] { return job_for(info, settings, kFilmKernels); }, progress);
 }
 
 }  // namespace clarity
