@@ -42,9 +42,10 @@ TEST_F(Worker, crashes_are_told_apart) {
     expect_death("recurse", kThreadSanitizer ? "crashed (segmentation fault" : "crashed (segmentation fault: stack overflow)");
     EXPECT_TRUE(contains(failure_of_text("abort"), kAddressSanitizer ? "the importer cltest" : "crashed (aborted)"));
     EXPECT_TRUE(contains(failure_of_text("throw_in_thread where nobody catches"), "where nobody catches"));
-    if (!kAddressSanitizer)
+    if (!kAddressSanitizer) {
         EXPECT_TRUE(contains(failure_of_text("throw_in_thread out of memory"), "crashed (aborted: out of memory)"))
             << "the words of a library are no cause of death";
+    }
     EXPECT_TRUE(contains(failure_of_text("exit 0"), "ended the worker process (exit code 0) without a result"));
     EXPECT_TRUE(contains(failure_of_text("exit 42"), "exit code 42"));
     EXPECT_EQ(import_text("triangles good 1").placed_triangle_count(), 1u) << "and the next import works";
