@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "plugin/known_libraries.hpp"
 #include "plugin/registry.hpp"
+#include "plugin/trust.hpp"
 #include "worker/child.hpp"
 
 namespace clarity {
@@ -38,7 +38,7 @@ const worker::JobKind kLoadJob = {
     load};
 
 std::string try_to_load(const std::string& path) {
-    if (worker::in_worker() || is_known_library(path)) return {};
+    if (worker::in_worker() || trust_of(path) != Trust::none) return {};
     worker::Job job(kLoadJob, "a library that was opened", {10, 0, uint64_t(4) << 30});
     job.advice = kAdvice;
     job.subject = path;

@@ -7,7 +7,7 @@
 
 namespace clarity {
 
-// Opens and checks a library that is not known (known_libraries.hpp) in a worker. Returns an empty text if that worker came to
+// Opens and checks a library without trust (trust.hpp) in a worker. Returns an empty text if that worker came to
 // an end, or could not be started; otherwise how it died: the library must then not be opened here. Thread-safe.
 std::string try_to_load(const std::string& path);
 

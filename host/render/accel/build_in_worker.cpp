@@ -6,21 +6,12 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/physical_memory.hpp"
-#include "plugin/known_libraries.hpp"
+#include "plugin/trust.hpp"
 #include "render/accel/build_job.hpp"
 #include "render/accel/run_builder.hpp"
 
 namespace clarity {
 namespace {
-
-// The file of the library that a plugin is in; empty: it is part of this program. `plugin` is a copy, its texts are the
-// library's.
-std::string library_of(const rt_plugin& plugin) {
-    std::error_code error;
-    const std::filesystem::path library = std::filesystem::canonical(loaded_file_of(plugin.id), error);
-    if (error || library == program_file()) return {};
-    return library.string();
-}
 
 int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, const rt_host* host, const rt_build_input* input,
                         const rt_topology* tree, const rt_build_output* out, Progress& progress) {
@@ -59,8 +50,8 @@ const worker::JobKind kBuildJob = {
 
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
                      const rt_topology* tree, const rt_build_output* out, Progress& progress) {
-    const std::string library = place == BuildPlace::here || worker::in_worker() ? "" : library_of(plugin);
-    if (library.empty() || (place == BuildPlace::automatic && is_known_library(library)))
+    const std::string library = place == BuildPlace::here || worker::in_worker() ? "" : library_of(plugin.id);
+    if (library.empty() || (place == BuildPlace::automatic && trust_of(library) != Trust::none))
         return run_builder(plugin, host, input, tree, out);
     const int32_t status = build_in_worker(plugin, library, host, input, tree, out, progress);
     if (status == RT_OK) remember_library(library);

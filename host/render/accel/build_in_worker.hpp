@@ -8,7 +8,7 @@ namespace clarity {
 
 // Where builders run.
 enum class BuildPlace {
-    automatic,  // libraries that are not our own: in a worker the first time, until a build has come to its end; else here
+    automatic,  // in a worker where the plugin's library has no trust (plugin/trust.hpp), else here
     worker,     // always in a worker, on memory between guard pages: for --debug
     here
 };

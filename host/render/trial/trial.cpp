@@ -1,6 +1,5 @@
 #include "render/trial/trial.hpp"
 
-#include <filesystem>
 #include <vector>
 
 #include "base/error.hpp"
@@ -10,7 +9,7 @@
 #include "base/printable.hpp"
 #include "compile/compile.hpp"
 #include "device/kernel_files.hpp"
-#include "plugin/registry.hpp"
+#include "plugin/trust.hpp"
 #include "render/film/film.hpp"
 #include "render/trial/passed_programs.hpp"
 #include "render/trial/trial_job.hpp"
@@ -18,18 +17,9 @@
 namespace clarity {
 namespace {
 
-namespace fs = std::filesystem;
-
 bool is_wanted(const DeviceInfo& info, const Settings& settings) {
     if (worker::in_worker() || settings.trial == "off") return false;
     return settings.trial == "on" || (info.cpu && compiles_in_worker());
-}
-
-// The file that a plugin was loaded from; empty: it is part of this program.
-std::string library_of(const rt_plugin& plugin) {
-    const std::string file = loaded_file_of(plugin.id);
-    std::error_code error;
-    return file.empty() || fs::equivalent(file, program_file(), error) ? std::string() : file;
 }
 
 // The plugins whose kernels are in programs for this scene and structure.
@@ -55,8 +45,8 @@ Suspects suspects_of(const DeviceInfo& info, const std::string& source, const st
         add(edited.path + (edited.line ? ", changed from line " + std::to_string(edited.line) + " on" : ""));
     }
     for (const rt_plugin* plugin : plugins) {
-        const std::string library = library_of(*plugin);
-        if (!library.empty() && !is_own_library(original_of(library))) add("the kernels of " + original_of(library));
+        const std::string library = library_of(plugin->id);
+        if (!library.empty() && trust_of(original_of(library)) != Trust::own) add("the kernels of " + original_of(library));
     }
     // It makes wrong code of some kernels: those of bvh4 pop more from their stack than they have pushed (Mesa 22.3).
     if (info.llvmpipe && found.text.empty())
@@ -117,7 +107,7 @@ TrialJob job_of(const Prepared& prepared, const DeviceInfo& info, const KernelRo
     std::vector<const rt_plugin*> plugins = plugins_with_kernels(prepared);
     plugins.push_back(accel.plugin);
     for (const rt_plugin* plugin : plugins) {
-        const std::string library = library_of(*plugin);
+        const std::string library = library_of(plugin->id);
         if (!library.empty()) job.libraries[library] = original_of(library);
     }
     job.features = features_of(*prepared.scene, accel.scene);
@@ -152,7 +142,7 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
     // A worker cannot load a structure that is part of this program.
     const rt_plugin& layout = *prepared.accel->layout;
     try {
-        if (!library_of(layout).empty())
+        if (!library_of(layout.id).empty())
             try_subject(
                 {info, source.what, source.text, source.options, prepared.accel->plugin->id,
                  std::string(info.llvmpipe ? "; take another structure" : "") + "; `clarity check " + layout.id +
