@@ -14,7 +14,7 @@
 #include "render/launch/prepared.hpp"
 #include "render/launch/view_buffers.hpp"
 #include "render/settings/tracer_choice.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 
