@@ -67,7 +67,6 @@ struct Converted {
     std::vector<char> names;
 };
 
-constexpr uint32_t kSectionCount = 50;
 // The one list of all sections: whoever writes, reads or compares scenes uses it, so that they always agree.
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {

@@ -1,44 +1,16 @@
-// compile_worker_main.cpp -- main function of the worker process that compiles one program.
-#include <poll.h>
-#include <unistd.h>
+#include "compile/compile_job.hpp"
 
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <sstream>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "compile/compile.hpp"
-#include "compile/compile_wire.hpp"
 #include "compile/pocl_forms.hpp"
 #include "compile/zero_launch.hpp"
+#include "device/device.hpp"
 #include "worker/child.hpp"
-#include "worker/sandbox.hpp"
 
 namespace clarity {
 namespace {
-
-using worker::MessageKind;
-
-// The parent says `proceed` when the job is written.
-CompileJob wait_for_job() {
-    worker::Message message;
-    do {
-        pollfd ready = {worker::kChannelFd, POLLIN, 0};
-        poll(&ready, 1, -1);
-        if (receive_message(worker::kChannelFd, message) == worker::Received::closed) _exit(1);
-    } while (message.kind != MessageKind::proceed);
-    CompileJob job;
-    const std::string why = read_compile_job(worker::kResultFd, job);
-    if (!why.empty()) throw Error(Exit::failed, why);
-    return job;
-}
-
-void say_step(const char* step) {
-    worker::take_crash_signals();  // the driver, loaded or first used since the last step, may have set its own
-    worker::send_message(worker::kChannelFd, {MessageKind::running, 0, 0, step});
-}
 
 std::vector<char> binary_of(const cl::Program& program) {
     size_t bytes = 0;
@@ -78,7 +50,7 @@ CompileOutcome compile(const CompileJob& job) {
         return outcome;
     }
     const cl::Device& cl_device = device->info().cl_device;
-    say_step("compiling");
+    worker::say_step("compiling");
     cl::Program program(device->context(), job.source);
     outcome.error = clBuildProgram(program(), 1, &cl_device(), job.options.c_str(), nullptr, nullptr);
     outcome.log = log_of(program, cl_device);
@@ -87,7 +59,7 @@ CompileOutcome compile(const CompileJob& job) {
         return outcome;
     }
     if (job.ends_on_zeros) {
-        say_step("launching");
+        worker::say_step("generating code for");
         launch_on_zeros(*device, program);
         if (device->info().pocl) share_launched_forms(kernels_of(program));
     }
@@ -95,35 +67,17 @@ CompileOutcome compile(const CompileJob& job) {
     return outcome;
 }
 
-void run() {
-    const CompileJob job = wait_for_job();
-    if (!job.pocl_cache.empty()) setenv("POCL_CACHE_DIR", job.pocl_cache.c_str(), 1);
-    for (const std::string& note : worker::enter_sandbox(worker::WorkerKind::driver, {}, {}, {}))
-        log(LogLevel::debug, "compile worker: " + note);
-    const std::string why = write_compile_outcome(worker::kResultFd, compile(job));
-    if (!why.empty()) throw Error(Exit::failed, why);
-}
-
 }  // namespace
 
-// compile-worker --parent PID
-int compile_worker_main(int argc, char** argv) {
-    constexpr const char* instead = "to compile kernels, run `clarity render`";
-    const long parent = argc == 4 && std::strcmp(argv[2], "--parent") == 0 ? std::strtol(argv[3], nullptr, 10) : 0;
-    if (!worker::begin_worker(worker::kCompileGreeting, parent, instead)) return static_cast<int>(Exit::usage);
-    worker::Message last{MessageKind::done, 0, 0, {}};
+void compile_job(PacketReader& arguments) {
+    const auto job = worker::arguments_in<CompileJob>(arguments);
+    if (!job.pocl_cache.empty()) setenv("POCL_CACHE_DIR", job.pocl_cache.c_str(), 1);
+    worker::enter_sandbox(worker::WorkerKind::driver);
     try {
-        run();
+        worker::answer(compile(job));
     } catch (const cl::Error& e) {
-        last.kind = MessageKind::failed;
-        last.text = std::string(e.what()) + " failed with OpenCL error " + std::to_string(e.err());
-    } catch (const std::exception& e) {
-        last.kind = MessageKind::failed;
-        last.text = e.what();
+        throw Error(Exit::failed, std::string(e.what()) + " failed with OpenCL error " + std::to_string(e.err()));
     }
-    std::fflush(nullptr);  // what the compiler printed comes before the end
-    worker::send_message(worker::kChannelFd, last);
-    _exit(last.kind == MessageKind::done ? 0 : 1);  // without destructors: a driver may crash in them
 }
 
 }  // namespace clarity

@@ -1,8 +1,10 @@
-// compile_wire.hpp -- what the program and its compile worker say to each other through the worker's shared memory.
+// compile_job.hpp -- what a compilation in a worker takes and returns.
 #pragma once
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "base/files/packet.hpp"
 
 namespace clarity {
 
@@ -10,9 +12,14 @@ namespace clarity {
 struct CompileJob {
     std::string source, options;
     std::string device, name, driver;  // id as `--device` takes it; the worker refuses a device of another name or driver
-    uint32_t ends_on_zeros = 0;
-    uint32_t wants_binary = 0;
+    bool ends_on_zeros = false;
+    bool wants_binary = false;
     std::string pocl_cache;  // the folder that PoCL compiles into; empty: its own
+    template <class Packet, class Self>
+    static void visit(Packet& packet, Self& self) {
+        packet(self.source, self.options, self.device, self.name, self.driver, self.ends_on_zeros, self.wants_binary,
+               self.pocl_cache);
+    }
 };
 
 // Worker to program.
@@ -22,13 +29,13 @@ struct CompileOutcome {
     int32_t error = 0;         // OpenCL's, if failed
     std::string log;           // the compiler's; why, if there is no device
     std::vector<char> binary;  // empty: not asked for, or the driver gives none
+    template <class Packet, class Self>
+    static void visit(Packet& packet, Self& self) {
+        packet(self.state, self.error, self.log, self.binary);
+    }
 };
 
-// Each replaces what the memory holds. Return why it failed; empty: it did not.
-std::string write_compile_job(int fd, const CompileJob& job);
-std::string write_compile_outcome(int fd, const CompileOutcome& outcome);
-// The other process may have written anything.
-std::string read_compile_job(int fd, CompileJob& job);
-std::string read_compile_outcome(int fd, CompileOutcome& outcome);
+// The work of kCompileJob.
+void compile_job(PacketReader& arguments);
 
 }  // namespace clarity
