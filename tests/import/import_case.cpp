@@ -1,4 +1,5 @@
 #include "import_case.hpp"
+#include "support/errors.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -39,15 +40,9 @@ const PluginRegistry& ImportCase::plugins() {
 }
 
 std::string ImportCase::failure(const std::vector<std::string>& files) {
-    try {
-        import(files);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Exit::import_failed) << e.what();
-        EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << "one line: " << e.what();
-        return e.what();
-    }
-    ADD_FAILURE() << "the import succeeded";
-    return {};
+    const std::string why = test::expect_error([&] { import(files); }, {}, Exit::import_failed);
+    EXPECT_EQ(why.find('\n'), std::string::npos) << "one line: " << why;
+    return why;
 }
 
 std::vector<std::string> ImportCase::logged() const {
