@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "support/errors.hpp"
+#include "support/scratch.hpp"
 
 namespace {
 
@@ -20,22 +21,17 @@ using clarity::LogLevel;
 
 class Log : public testing::Test {
  protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "clarity-log-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
     void TearDown() override {
         clarity::set_log_level(LogLevel::info);
         clarity::set_log_listener({});
         clarity::set_log_file("/dev/null");
-        fs::remove_all(folder_);
     }
     static std::string text_of(const fs::path& path) {
         std::ifstream in(path);
         return std::string(std::istreambuf_iterator<char>(in), {});
     }
-    fs::path folder_;
+    const Scratch scratch_;
+    const fs::path folder_ = scratch_.path("");
 };
 
 TEST_F(Log, StderrShowsTheLevelAndNoColourOffATerminal) {

@@ -1,16 +1,9 @@
 #include "import_case.hpp"
 #include "support/errors.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
 namespace clarity {
 
 void ImportCase::SetUp() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "clarity-import-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = std::filesystem::canonical(pattern).string();
     options_.worker = CLARITY_TEST_WORKER;
     set_log_listener([this](LogLevel, const std::string& line) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -20,14 +13,6 @@ void ImportCase::SetUp() {
 
 void ImportCase::TearDown() {
     set_log_listener(nullptr);
-    std::filesystem::remove_all(folder_);
-}
-
-std::string ImportCase::file(const std::string& name, const std::string& text) const {
-    const std::string full = path(name);
-    std::filesystem::create_directories(std::filesystem::path(full).parent_path());
-    std::ofstream(full, std::ios::binary) << text;
-    return full;
 }
 
 Scene ImportCase::import(const std::vector<std::string>& files) {

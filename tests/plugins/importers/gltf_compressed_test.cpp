@@ -61,7 +61,7 @@ class GltfCompressed : public testing::Test {
             EXPECT_NEAR(a.bounds().max[k], b.bounds().max[k], tolerance);
         }
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 Model plain(const Sheet& sheet) {

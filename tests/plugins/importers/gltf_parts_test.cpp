@@ -65,7 +65,7 @@ class GltfParts : public testing::Test {
         return std::any_of(scene.warnings.begin(), scene.warnings.end(),
                            [&](const std::string& warning) { return warning.find(part) != std::string::npos; });
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 TEST_F(GltfParts, AreAllReadWhereNothingIsWrong) {

@@ -21,7 +21,7 @@ class Gltf : public testing::Test {
     void expect_refused(const std::string& bytes, const std::string& part, const std::string& name = "model.gltf") {
         expect_error([&] { import(bytes, name); }, {name + ": ", part});
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 TEST_F(Gltf, ReadsStripsAndFans) {

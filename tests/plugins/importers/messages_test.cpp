@@ -155,7 +155,7 @@ TEST_P(Messages, CanBeActedOn) {
     // faces lack.
     const std::regex faceless("nothing of it can be used: \\d+ of \\d+ faces .*");
     const std::regex place("(line \\d+, column \\d+|byte \\d+|[a-zA-Z_0-9.\\[\\]]+|the top level).*: found .*, expected .*");
-    const TemporaryFolder folder;
+    const Scratch folder;
     int refused = 0;
     for (int i = 0; i < count; ++i) {
         const std::string name = "damaged." + seed.extension, bytes = Mutator(static_cast<uint32_t>(i)).mutate(seed.bytes);
@@ -199,7 +199,7 @@ TEST(ColladaMessages, SayWhatIsWrong) {
     GTEST_SKIP() << "SKIPPED: with this sanitizer's memory, assimp does not crash";
 #endif
     const std::string good = seed_of("box.dae").bytes;
-    const TemporaryFolder folder;
+    const Scratch folder;
     const auto expect = [&](const std::string& what, const std::string& instead, const std::string& why) {
         std::string bytes = good;
         const size_t at = bytes.find(what);
