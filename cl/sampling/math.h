@@ -6,6 +6,9 @@
 #ifndef RT_MATH_H
 #define RT_MATH_H
 
+/* From here on a compiler may not fuse products and sums, which it does for one number of lanes and not for another. */
+#pragma OPENCL FP_CONTRACT OFF
+
 #define RT_PI 3.14159265f
 #define RT_INVERSE_PI 0.318309886f
 #define RT_LN_2 0.693147181f

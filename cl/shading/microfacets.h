@@ -8,6 +8,9 @@
 /* The nodes of the tables lost_*.h, as scripts/albedo_tables has them. */
 #define RT_METAL_COSINES 32
 #define RT_METAL_ROUGHNESSES 32
+#define RT_GLASS_COSINES 24
+#define RT_GLASS_ROUGHNESSES 18
+#define RT_GLASS_IORS 14
 #define RT_LOST_MEAN_SCALE 8.0f
 
 /* Facets below this alpha are as good as none, and floats do not tell their normals apart. */
@@ -62,34 +65,74 @@ RT_INLINE rt_between rt_between_nodes(vfloat x, int nodes)
     return b;
 }
 
-/* The number between nodes `index` and `index` + step, 0 to 1. */
-RT_INLINE vfloat rt_from_pair(const constant ushort *table, vint index, int step, vfloat share)
+/* The number between the nodes `index` and `index` + 1, 0 to 1; of `other` in the lanes of a mask. */
+RT_INLINE vfloat rt_from_either(const constant ushort *table, const constant ushort *other, vmask from_other, vint index, vfloat share)
 {
-    int at[RT_LANES];
+    int at[RT_LANES], pick[RT_LANES];
     float low[RT_LANES], high[RT_LANES];
     rt_store(index, at);
+    rt_store(from_other, pick);
     for (uint l = 0; l < RT_LANES; ++l) {
-        low[l] = (float)table[at[l]];
-        high[l] = (float)table[at[l] + step];
+        const constant ushort *numbers = (pick[l] != 0 ? other : table) + at[l];
+        low[l] = (float)numbers[0];
+        high[l] = (float)numbers[1];
     }
     return fma(share, rt_load(high) - rt_load(low), rt_load(low)) * rt_vfloat(1.0f / 65535.0f);
 }
+RT_INLINE vfloat rt_from_pair(const constant ushort *table, vint index, vfloat share)
+{
+    return rt_from_either(table, table, rt_vint(0), index, share);
+}
 RT_INLINE vfloat rt_mix(vfloat a, vfloat b, vfloat share) { return fma(share, b - a, a); }
+
+/* The tables' axis along the cosine: where alpha is small, the loss depends on mu / alpha. */
+RT_INLINE vfloat rt_facet_axis(vfloat mu, vfloat alpha) { return sqrt(mu * (rt_vfloat(1.0f) + alpha) / (mu + alpha)); }
 
 /* The share of the light from a direction of cosine mu that a metal with F = 1 loses when light meets one facet only. */
 RT_INLINE vfloat rt_lost_by_metal(vfloat mu, vfloat alpha)
 {
-    const vfloat axis = sqrt(mu * (rt_vfloat(1.0f) + alpha) / (mu + alpha)); /* the loss depends on mu / alpha where alpha is small */
-    const rt_between c = rt_between_nodes(axis, RT_METAL_COSINES), r = rt_between_nodes(sqrt(alpha), RT_METAL_ROUGHNESSES);
+    const rt_between c = rt_between_nodes(rt_facet_axis(mu, alpha), RT_METAL_COSINES), r = rt_between_nodes(sqrt(alpha), RT_METAL_ROUGHNESSES);
     const vint first = c.low * rt_vint(RT_METAL_ROUGHNESSES) + r.low;
-    return rt_mix(rt_from_pair(rt_lost_metal, first, 1, r.share),
-                  rt_from_pair(rt_lost_metal, first + rt_vint(RT_METAL_ROUGHNESSES), 1, r.share), c.share);
+    return rt_mix(rt_from_pair(rt_lost_metal, first, r.share),
+                  rt_from_pair(rt_lost_metal, first + rt_vint(RT_METAL_ROUGHNESSES), r.share), c.share);
 }
 /* Its mean over the hemisphere. */
 RT_INLINE vfloat rt_lost_by_metal_mean(vfloat alpha)
 {
     const rt_between r = rt_between_nodes(sqrt(alpha), 2 * RT_METAL_ROUGHNESSES - 1);
-    return rt_vfloat(RT_LOST_MEAN_SCALE) * alpha * sqrt(alpha) * rt_from_pair(rt_lost_metal_mean, r.low, 1, r.share);
+    return rt_vfloat(RT_LOST_MEAN_SCALE) * alpha * sqrt(alpha) * rt_from_pair(rt_lost_metal_mean, r.low, r.share);
+}
+
+/* The tables' axis along the ior n: the root of (n - 1) / (n + 1), 1 at an ior of 10. eta may be n or 1 / n. */
+RT_INLINE rt_between rt_ior_nodes(vfloat eta)
+{
+    const vfloat one = rt_vfloat(1.0f);
+    return rt_between_nodes(sqrt(fabs(eta - one) / (eta + one) * rt_vfloat(1.0f / 0.82f)), RT_GLASS_IORS);
+}
+
+/* As rt_lost_by_metal(), of a dielectric; what it lets through is not lost. eta: ior of the other side / ior of mu's side. */
+RT_INLINE vfloat rt_lost_by_glass(vfloat mu, vfloat alpha, vfloat eta)
+{
+    const vmask inside = RT_MASK(eta < rt_vfloat(1.0f));
+    const rt_between c = rt_between_nodes(rt_vfloat(0.5f) * (rt_facet_axis(mu, alpha) + mu), RT_GLASS_COSINES);
+    const rt_between r = rt_between_nodes(sqrt(alpha), RT_GLASS_ROUGHNESSES), n = rt_ior_nodes(eta);
+    vfloat found[2];
+    for (int k = 0; k < 2; ++k) {
+        const vint first = ((c.low + rt_vint(k)) * rt_vint(RT_GLASS_ROUGHNESSES) + r.low) * rt_vint(RT_GLASS_IORS) + n.low;
+        found[k] = rt_mix(rt_from_either(rt_lost_glass_outside, rt_lost_glass_inside, inside, first, n.share),
+                          rt_from_either(rt_lost_glass_outside, rt_lost_glass_inside, inside, first + rt_vint(RT_GLASS_IORS), n.share), r.share);
+    }
+    return rt_mix(found[0], found[1], c.share);
+}
+RT_INLINE vfloat rt_lost_by_glass_mean(vfloat alpha, vfloat eta)
+{
+    const vmask inside = RT_MASK(eta < rt_vfloat(1.0f));
+    const rt_between r = rt_between_nodes(sqrt(alpha), 2 * RT_GLASS_ROUGHNESSES - 1), n = rt_ior_nodes(eta);
+    const vint first = r.low * rt_vint(RT_GLASS_IORS) + n.low;
+    const vfloat mean =
+        rt_mix(rt_from_either(rt_lost_glass_outside_mean, rt_lost_glass_inside_mean, inside, first, n.share),
+               rt_from_either(rt_lost_glass_outside_mean, rt_lost_glass_inside_mean, inside, first + rt_vint(RT_GLASS_IORS), n.share), r.share);
+    return rt_vfloat(RT_LOST_MEAN_SCALE) * alpha * sqrt(alpha) * mean;
 }
 
 #endif

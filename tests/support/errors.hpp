@@ -20,7 +20,7 @@ std::string expect_error(Work&& work, const std::vector<std::string>& words, std
         ADD_FAILURE() << "nothing was thrown";
     } catch (const Error& error) {
         message = error.what();
-        if (code) EXPECT_EQ(error.code(), *code) << message;
+        EXPECT_EQ(error.code(), code.value_or(error.code())) << message;
         for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << word << "\nin: " << message;
     }
     return message;

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "base/angle.hpp"
 #include "device/device.hpp"
 #include "device/kernel_files.hpp"
 #include "device/program.hpp"
@@ -60,7 +59,5 @@ class LaneKernel {
     const unsigned reads_, writes_, lanes_;
     cl::Kernel kernel_;
 };
-
-constexpr unsigned kLaneCounts[] = {1, 4, 8, 16};
 
 }  // namespace clarity::test

@@ -37,7 +37,8 @@ LaneKernel& kernel(unsigned lanes) {
     if (!found)
         found = std::make_unique<LaneKernel>(
             std::vector<std::string>{"lanes/lanes.h", "lanes/vec.h", "sampling/math.h", "sampling/warps.h",
-                                     "shading/lost_metal.h", "shading/microfacets.h", "shading/bsdf.h"},
+                                     "shading/lost_metal.h", "shading/lost_glass_outside.h", "shading/lost_glass_inside.h",
+                                     "shading/microfacets.h", "shading/bsdf.h"},
             kReads, kWrites, kBody, lanes);
     return *found;
 }

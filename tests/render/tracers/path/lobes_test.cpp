@@ -7,7 +7,10 @@
 #include <cstring>
 #include <functional>
 
+#include "base/angle.hpp"
+#include "reference/path_surface.hpp"
 #include "render/tracers/path/lane_kernel.hpp"
+#include "support/workbench.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -37,6 +40,11 @@ std::vector<Lobe> lobes_with_density() {
             metal(0.5f, false),
             metal(0.8f),
             colored(metal(1), 0.9f, 0.6f, 0.3f),
+            glass(0.4f, 1.5f),
+            glass(0.4f, 1 / 1.5f),
+            glass(0.7f, 2.4f, false),
+            glass(0.8f, 1 / 1.2f),
+            colored(glass(1, 1.33f), 0.9f, 0.6f, 0.3f),
             mixture(0.3f, 0.2f, 1.5f),
             mixture(0, 0.5f, 1 / 1.5f)};
 }
@@ -127,7 +135,7 @@ Energy energy(const Lobe& lobe, double mu, unsigned side, unsigned seed) {
 // Fixed seeds. A failure by chance (beyond 4 sigma, one in 30,000) is repeated with another seed.
 TEST(PathLobes, DirectionsAreDrawnWithTheirDensity) {
     for (const Lobe& lobe : lobes_with_density())
-        for (const double mu : {0.95, 0.6, 0.15}) {
+        for (const double mu : quick() ? std::vector<double>{0.6} : std::vector<double>{0.95, 0.6, 0.15}) {
             double misfit = density_misfit(lobe, mu, 11);
             if (misfit > 4) misfit = density_misfit(lobe, mu, 12);
             EXPECT_LT(misfit, 4) << lobe.name << ", cosine " << mu;
@@ -153,7 +161,7 @@ TEST(PathLobes, WeightsAreValuesOverDensities) {
 // f(wo, wi) = f(wi, wo) on one side; through a surface f(wo, wi) / eta_o^2 = f(wi, wo) / eta_i^2.
 TEST(PathLobes, ValuesAreReciprocal) {
     for (const Lobe& lobe : lobes_with_density()) {
-        std::vector<LobeQuery> there = draws(0.5, 4000, 31), back = there;
+        std::vector<LobeQuery> there = draws(0.5, 4000, 31), back = there, through = there, out_again = there;
         for (size_t i = 0; i < there.size(); ++i) {
             const auto direction = [](float u, float v, float* w) {
                 const float z = 0.02f + 0.98f * u, r = std::sqrt(1 - z * z), phi = 6.2831853f * v;
@@ -164,12 +172,80 @@ TEST(PathLobes, ValuesAreReciprocal) {
             std::memcpy(back[i].wo, there[i].wi, sizeof back[i].wo);
             std::memcpy(back[i].wi, there[i].wo, sizeof back[i].wi);
         }
-        const auto forth = ask(lobe, there), reverse = ask(lobe, back);
         for (size_t i = 0; i < there.size(); ++i)
             for (int k = 0; k < 3; ++k) {
-                const double a = double(forth[i].f[k]) / there[i].wi[2], b = double(reverse[i].f[k]) / there[i].wo[2];
-                EXPECT_NEAR(a, b, 1e-4 * (a + b) + 1e-7) << lobe.name;
+                const float down = k == 2 ? -1 : 1;  // the frame is on the side of the ray
+                through[i].wo[k] = there[i].wo[k];
+                through[i].wi[k] = down * there[i].wi[k];
+                out_again[i].wo[k] = there[i].wi[k];
+                out_again[i].wi[k] = down * there[i].wo[k];
             }
+        Lobe other_side = lobe;
+        other_side.eta = 1 / lobe.eta;
+        const auto compare = [&](const std::vector<LobeAnswer>& forth, const std::vector<LobeAnswer>& reverse, double scale) {
+            double sum = 0;
+            for (size_t i = 0; i < there.size(); ++i)
+                for (int k = 0; k < 3; ++k) {
+                    const double a = double(forth[i].f[k]) / there[i].wi[2],
+                                 b = scale * double(reverse[i].f[k]) / there[i].wo[2];
+                    EXPECT_NEAR(a, b, 1e-3 * (a + b) + 2e-6) << lobe.name;  // near total reflection floats are that coarse
+                    sum += a;
+                }
+            return sum;
+        };
+        EXPECT_GT(compare(ask(lobe, there), ask(lobe, back), 1), 1) << lobe.name;
+        const double passed = compare(ask(lobe, through), ask(other_side, out_again), 1 / (double(lobe.eta) * lobe.eta));
+        EXPECT_EQ(passed > 1, lobe.glass > 0 && lobe.alpha > 0) << lobe.name;
+    }
+}
+
+// The reference in double precision shares no line with the kernels, and integrates the losses between facets by itself. Tables
+// of losses are off by 0.001, which is a share of light that is spread over the hemisphere.
+TEST(PathLobes, ValuesAreThoseOfTheReference) {
+    const auto material = [](rt_u32 model, float roughness, float ior, rt_u32 flags = 0) {
+        rt_material m{};
+        m.model = model;
+        m.roughness = roughness;
+        m.ior = ior;
+        m.flags = flags;
+        m.reflect = 0.3f;
+        m.refract = 0.2f;
+        return m;
+    };
+    const struct {
+        rt_material material;
+        Lobe lobe;
+    } surfaces[] = {
+        {material(RT_MODEL_LAMBERT, 0, 1), lambert(0.9f, 0.5f, 0.2f)},
+        {material(RT_MODEL_CONDUCTOR, 0.2f, 1), metal(0.2f)},
+        {material(RT_MODEL_CONDUCTOR, 0.5f, 1), metal(0.5f)},
+        {material(RT_MODEL_CONDUCTOR, 0.5f, 1, RT_MATERIAL_SINGLE_SCATTER), metal(0.5f, false)},
+        {material(RT_MODEL_CONDUCTOR, 1, 1), metal(1)},
+        {material(RT_MODEL_DIELECTRIC, 0.3f, 1.5f), glass(0.3f, 1.5f)},
+        {material(RT_MODEL_DIELECTRIC, 0.6f, 1 / 1.5f), glass(0.6f, 1 / 1.5f)},
+        {material(RT_MODEL_DIELECTRIC, 1, 1.2f), glass(1, 1.2f)},
+        {material(RT_MODEL_DIELECTRIC, 1, 1 / 2.4f, RT_MATERIAL_SINGLE_SCATTER), glass(1, 1 / 2.4f, false)},
+        {material(RT_MODEL_WHITTED, 0, 1.5f), mixture(0.3f, 0.2f, 1.5f)},
+    };
+    for (const auto& surface : surfaces) {
+        const Lobe lobe = colored(surface.lobe, 0.9f, 0.5f, 0.2f);
+        const reference::PathSurface truth(surface.material, {0.9f, 0.5f, 0.2f}, true);
+        std::vector<LobeQuery> queries = draws(0.5, 3000, 81);
+        for (size_t i = 0; i < queries.size(); ++i) {
+            const auto direction = [](double z, double turn, float* w) {
+                const double r = std::sqrt(1 - z * z);
+                w[0] = float(r * std::cos(2 * kPi * turn)), w[1] = float(r * std::sin(2 * kPi * turn)), w[2] = float(z);
+            };
+            const float* const u = queries[i].u;
+            direction(0.03 + 0.97 * u[0], u[1], queries[i].wo);
+            direction(i % 2 ? 0.03 + 0.97 * u[2] : -0.03 - 0.97 * u[2], u[0] * 97 - std::floor(u[0] * 97), queries[i].wi);
+        }
+        const auto answers = ask(lobe, queries);
+        for (size_t i = 0; i < queries.size(); ++i) {
+            const Vec f = truth.value(to_vec(queries[i].wo), to_vec(queries[i].wi));
+            for (size_t k = 0; k < 3; ++k)
+                EXPECT_NEAR(answers[i].f[k], f[k], 3e-3 * std::abs(queries[i].wi[2]) + 0.02 * f[k]) << lobe.name << " " << i;
+        }
     }
 }
 
@@ -186,8 +262,12 @@ TEST(PathLobes, WhiteSurfacesKeepAllLight) {
         EXPECT_NEAR(mean, 1, 0.002) << lobe.name;
     };
     is_one(lambert(1, 1, 1));
-    for (const float roughness : {0.0f, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1.0f}) is_one(metal(roughness));
-    for (const float eta : {1.0f, 1.1f, 1.5f, 2.4f, 1 / 1.1f, 1 / 1.5f, 1 / 2.4f}) is_one(glass(0, eta));
+    const auto some = [](std::vector<float> all, std::vector<float> few) { return quick() ? few : all; };
+    for (const float r : some({0, 0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1}, {0, 0.3f, 0.7f, 1}))
+        is_one(metal(r));
+    for (const float eta : some({1.1f, 1.5f, 2.4f, 1 / 1.1f, 1 / 1.5f, 1 / 2.4f}, {1.5f, 1 / 1.5f}))
+        for (const float r : some({0, 0.1f, 0.3f, 0.5f, 0.7f, 1}, {0, 0.4f, 1})) is_one(glass(r, eta));
+    is_one(glass(0, 1));
     is_one(colored(mixture(0.3f, 0.2f, 1.5f), 1, 1, 1));
     is_one(colored(mixture(0.1f, 0.6f, 1 / 1.5f), 1, 1, 1));
 }
@@ -226,8 +306,11 @@ TEST(PathLobes, LanesAgree) {
     for (const Lobe& lobe : lobes_with_density()) {
         const std::vector<LobeQuery> queries = draws(0.4, 3000, 71);
         const auto one = ask(lobe, queries, 1);
-        for (const unsigned lanes : kLaneCounts)
-            EXPECT_EQ(std::memcmp(ask(lobe, queries, lanes).data(), one.data(), one.size() * sizeof one[0]), 0)
-                << lobe.name << ", " << lanes << " lanes";
+        for (const int lanes : lane_counts()) {
+            const auto found = ask(lobe, queries, unsigned(lanes));
+            size_t differ = 0;
+            for (size_t i = 0; i < one.size(); ++i) differ += std::memcmp(&found[i], &one[i], sizeof one[i]) != 0;
+            EXPECT_EQ(differ, 0u) << lobe.name << ", " << lanes << " lanes";
+        }
     }
 }

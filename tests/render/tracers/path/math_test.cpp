@@ -5,7 +5,9 @@
 #include <cstring>
 #include <random>
 
+#include "base/angle.hpp"
 #include "render/tracers/path/lane_kernel.hpp"
+#include "support/workbench.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -77,8 +79,8 @@ TEST(PathMath, FunctionsAgreeWithTheLibrary) {
 
 TEST(PathMath, LanesAgree) {
     const std::vector<float> rows = numbers(), one = LaneKernel(kHeaders, 2, 9, kBody, 1).run(rows);
-    for (const unsigned lanes : kLaneCounts) {
-        const std::vector<float> found = LaneKernel(kHeaders, 2, 9, kBody, lanes).run(rows);
+    for (const int lanes : lane_counts()) {
+        const std::vector<float> found = LaneKernel(kHeaders, 2, 9, kBody, unsigned(lanes)).run(rows);
         EXPECT_EQ(std::memcmp(found.data(), one.data(), 4 * one.size()), 0) << lanes << " lanes";
     }
 }
