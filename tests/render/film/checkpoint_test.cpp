@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "support/errors.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;
@@ -24,14 +25,7 @@ Checkpoint sample_checkpoint() {
 }
 
 std::string why_refused(const std::string& path) {
-    try {
-        load_checkpoint(path);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Exit::failed);
-        EXPECT_NE(std::string(e.what()).find(path), std::string::npos) << e.what();
-        return e.what();
-    }
-    return {};
+    return expect_error([&] { load_checkpoint(path); }, {path}, Exit::failed);
 }
 
 }  // namespace

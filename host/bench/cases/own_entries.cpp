@@ -1,10 +1,11 @@
-#include "bench/cases/frame_entries.hpp"
+#include "bench/cases/own_entries.hpp"
 
 #include <algorithm>
 #include <chrono>
 
 #include "base/elapsed.hpp"
 #include "bench/baselines/speedup.hpp"
+#include "bench/cases/analysis.hpp"
 #include "bench/cases/moving.hpp"
 
 namespace clarity::bench {
@@ -35,6 +36,59 @@ double show_frame(CaseState& state, const Settings& settings, const Fixture::Hel
 }
 
 }  // namespace
+
+void add_build(Entry& entry, std::function<AccelData()> build) {
+    const auto last = std::make_shared<BenchRecord>(entry.row);
+    entry.once = [last, build = std::move(build)] {
+        const auto begin = std::chrono::steady_clock::now();
+        const AccelData built = build();
+        describe(*last, built);
+        return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
+    };
+    entry.finish = [=](BenchRecord& row) {
+        row.build_ms = last->build_ms;
+        row.pack_ms = last->pack_ms;
+        row.accel_bytes = last->accel_bytes;
+        row.bytes_per_triangle = last->bytes_per_triangle;
+        row.nodes = last->nodes;
+        row.sah_cost = last->sah_cost;
+    };
+}
+
+void time_rays(CaseState& state, Entry& entry, const Fixture::Held& held, const RaySet& set) {
+    const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+    std::shared_ptr<const RayBlocks>& packed = state.packed[lanes];
+    if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
+    entry.once = [=, &set, blocks = packed] {
+        Sample sample;
+        sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
+        const RayTuning tuning = held.queries->tuning();
+        sample.trial = tuning.trial;
+        sample.settled = tuning.settled;
+        sample.variant = tuning.variant;
+        return sample;
+    };
+    set_ray_counts(entry.row, set);
+}
+
+void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
+    const RaySet& set = state.fixture.rays(state.definition.measure, held);
+    state.rays = &set;
+    time_rays(state, entry, held, set);
+    entry.finish = [=, &set, &state](BenchRecord& row) {
+        const auto hits = held.queries->trace(*held.prepared, set.rays, RayQuery{set.any_hit, true});
+        const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+        const rt_accel& accel = *held.prepared->accel->layout->accel;
+        row.analysis = analyze(set.rays, hits, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
+        std::vector<float> distances;
+        for (const rt_hit& hit : hits) distances.push_back(hit.t);
+        state.agreement.check_hits(row, set, distances);
+    };
+}
+
+void set_ray_counts(BenchRecord& row, const RaySet& set) {
+    (set.kind == "primary" ? row.rays_primary : set.kind == "shadow" ? row.rays_shadow : row.rays_secondary) = set.active;
+}
 
 void add_frame(CaseState& state, Entry& entry, const Settings& settings, const Fixture::Held& held) {
     const auto parts = std::make_shared<PartTimes>();
