@@ -21,7 +21,7 @@ Checkpoint sample_checkpoint() {
     for (size_t i = 0; i < 7 * 5 * 4; ++i) sums.pixels.push_back(std::ldexp(1.0f + float(i) * 0.013f, int(i % 41) - 20));
     sums.pixels[3] = std::numeric_limits<float>::infinity();
     sums.pixels[4] = std::numeric_limits<float>::quiet_NaN();
-    return {"0123456789abcdef", "a device, bvh8", 388, 4000, std::make_shared<const FloatImage>(sums)};
+    return {"0123456789abcdef", "a device, bvh8", 388, 4000, 1, std::make_shared<const FloatImage>(sums)};
 }
 
 std::string why_refused(const std::string& path) {
