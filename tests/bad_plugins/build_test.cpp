@@ -182,7 +182,8 @@ TEST(Trust, IsEarnedAndCanBeRefused) {
     setenv("XDG_CACHE_HOME", cache.c_str(), 1);
     const fs::path program = std::getenv("CLARITY_WORKER");
     const std::string own = (program.parent_path() / "../lib/clarity/plugins/accel/linear.so").string();
-    const std::string other = std::string(BAD_PLUGINS) + "/bad_packer.so";
+    const std::string other = cache + "/bad_packer.so";  // a copy, because other tests may have made the library proven
+    fs::copy_file(std::string(BAD_PLUGINS) + "/bad_packer.so", other);
     EXPECT_EQ(clarity::trust_of(own), Trust::own);
     EXPECT_EQ(clarity::trust_of(other), Trust::none);
     clarity::remember_library(other);
