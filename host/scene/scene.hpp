@@ -48,8 +48,7 @@ struct Instance {
     Affine world_from_object = kIdentity;
     bool visible = true;  // false: in no acceleration structure, but its primitives keep their numbers
     // For an instance that a node moves. `node` moves it; `root` is the node that places its file. node_from_object places the
-    // object in the node's space. If the transform at rest is singular, `mesh` is a copy with that
-    // transform applied, and moving_mesh is the mesh itself.
+    // object in the node's space. If the transform at rest is flat, `mesh` is a flat copy; moving_mesh is the mesh itself.
     rt_u32 node = RT_NONE, root = RT_NONE, moving_mesh = 0;
     Affine node_from_object = kIdentity;
     bool apart = false;   // moves, so that its mesh is kept apart from the flattened world and can move alone
