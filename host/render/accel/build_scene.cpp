@@ -240,9 +240,9 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
     }
 }
 
-// How each mesh is placed. A mesh with one instance is flattened into the world, because a tree of its own would only make rays
-// slower. There are two exceptions: a reflected mesh, whose triangles would turn inside out, and a mesh that moves, whose tree
-// can then move while the world's tree stays.
+// Which meshes get a tree of their own. A mesh with one instance is flattened: its triangles join the world's tree, because one
+// more tree would only make rays slower. A mirrored mesh is not flattened, because its triangles would turn inside out, and a
+// mesh that moves is not, so that the world's tree stays as it is.
 struct Grouping {
     std::vector<Affine> inverse;  // of each instance
     std::vector<bool> built;      // for each instance: it is in the structure. One that is apart may be hidden there
