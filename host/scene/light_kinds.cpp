@@ -37,7 +37,7 @@ Key angle_key(const char* name, size_t offset, double max, float def, const char
     return shown(number_key(name, offset, 0, max, def), std::strcmp(name, "inner") == 0 ? "Inner angle" : "Angle", help, more);
 }
 Key length_key(const char* name, size_t offset) {
-    Key key = shown(number_key(name, offset, 1e-6, kMostNumber, 1), "Radius", "greater than 0");
+    Key key = shown(number_key(name, offset, 1e-12, kMostNumber, 1), "Radius", "greater than 0");
     key.moves = Moves::length;
     key.logarithmic = true;
     return key;
@@ -212,7 +212,8 @@ bool make_sound(rt_light& light, bool keep_units) {
     const LightKind& row = kind_of(light);
     for (const Key& key : row.keys) {
         const std::array<float, 3> value = value_of(key, &light);
-        if (!are_usable(value)) return false;
+        if (!are_usable(value) || (key.moves == Moves::length && !range_fault(key, value).empty())) return false;
+        if (key.kind == RT_KEY_COLOR) set_value(key, &light, nearest_value(key, value));
         if (key.kind != RT_KEY_VECTOR) continue;
         const double size = length(to_vec(value));
         if (!(size > 0)) return false;
