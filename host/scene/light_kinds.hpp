@@ -20,7 +20,7 @@ struct LightKind {
 };
 
 const std::vector<LightKind>& light_kinds();  // in the order of RT_LIGHT_POINT, ...
-const LightKind& kind_of(const rt_light& light);
+const LightKind& light_kind_of(const rt_light& light);
 const LightKind* find_light_kind(const std::string& name);
 
 rt_light default_light(rt_u32 kind);                           // all keys at their defaults
