@@ -37,7 +37,7 @@ Key angle_key(const char* name, size_t offset, double max, float def, const char
     return shown(number_key(name, offset, 0, max, def), std::strcmp(name, "inner") == 0 ? "Inner angle" : "Angle", help, more);
 }
 Key length_key(const char* name, size_t offset) {
-    Key key = shown(number_key(name, offset, 1e-6, kMostNumber, 1), "Radius", "greater than 0");
+    Key key = shown(number_key(name, offset, 1e-12, kMostNumber, 1), "Radius", "greater than 0");
     key.moves = Moves::length;
     key.logarithmic = true;
     return key;
@@ -156,7 +156,7 @@ const std::vector<LightKind>& light_kinds() {
     return kinds;
 }
 
-const LightKind& kind_of(const rt_light& light) {
+const LightKind& light_kind_of(const rt_light& light) {
     return light_kinds()[std::min<size_t>(light.kind, light_kinds().size() - 1)];
 }
 
@@ -178,14 +178,14 @@ const rt_primitive_kind* light_kind_for_plugins(rt_u32 kind) {
 rt_light default_light(rt_u32 kind) {
     rt_light light{};
     light.kind = kind;
-    for (const Key& key : kind_of(light).keys) set_value(key, &light, key.def);
+    for (const Key& key : light_kind_of(light).keys) set_value(key, &light, key.def);
     make_sound(light);
     return light;
 }
 
 bool light_of(const rt_light_desc& d, rt_light& light, std::string& problem) {
     light = default_light(d.kind);
-    const std::vector<Key>& keys = kind_of(light).keys;
+    const std::vector<Key>& keys = light_kind_of(light).keys;
     const auto set = [&](const Key& key, const float* n) { set_value(key, &light, {n[0], n[1], n[2]}); };
     for (const Key& key : keys) {
         if (key.moves == Moves::point) set(key, d.position);
@@ -209,10 +209,11 @@ bool light_of(const rt_light_desc& d, rt_light& light, std::string& problem) {
 }
 
 bool make_sound(rt_light& light, bool keep_units) {
-    const LightKind& row = kind_of(light);
+    const LightKind& row = light_kind_of(light);
     for (const Key& key : row.keys) {
         const std::array<float, 3> value = value_of(key, &light);
-        if (!are_usable(value)) return false;
+        if (!are_usable(value) || (key.moves == Moves::length && !range_fault(key, value).empty())) return false;
+        if (key.kind == RT_KEY_COLOR) set_value(key, &light, nearest_value(key, value));
         if (key.kind != RT_KEY_VECTOR) continue;
         const double size = length(to_vec(value));
         if (!(size > 0)) return false;
@@ -225,7 +226,7 @@ bool make_sound(rt_light& light, bool keep_units) {
 
 bool move_light(rt_light& light, const Matrix& m) {
     const double scale = std::cbrt(std::abs(determinant(m)));
-    for (const Key& key : kind_of(light).keys) {
+    for (const Key& key : light_kind_of(light).keys) {
         if (key.alias) continue;
         const Vec value = vec_at(light, key);
         if (key.moves == Moves::point) set_value(key, &light, to_floats(point(m, value)));
@@ -248,7 +249,7 @@ void set_edit_value(const Key& key, rt_light& light, std::array<float, 3> value)
 
 std::string light_fault(const rt_light& light) {
     if (light.kind >= light_kinds().size()) return "unknown kind " + std::to_string(light.kind);
-    return fault_of(kind_of(light).keys, &light);
+    return fault_of(light_kind_of(light).keys, &light);
 }
 
 }  // namespace clarity

@@ -20,7 +20,7 @@ struct LightKind {
 };
 
 const std::vector<LightKind>& light_kinds();  // in the order of RT_LIGHT_POINT, ...
-const LightKind& kind_of(const rt_light& light);
+const LightKind& light_kind_of(const rt_light& light);
 const LightKind* find_light_kind(const std::string& name);
 
 rt_light default_light(rt_u32 kind);                           // all keys at their defaults
@@ -28,8 +28,8 @@ const rt_primitive_kind* light_kind_for_plugins(rt_u32 kind);  // NULL: there is
 // What an importer delivers, in its own coordinates. Sets `problem` as material_of() does. Returns false if it cannot be used:
 // numbers that are not finite, vectors of no length.
 bool light_of(const rt_light_desc& desc, rt_light& light, std::string& problem);
-// Makes directions unit vectors, and computes the members that no key holds. Returns false if a member cannot be used.
-// keep_units: a vector of length 1, but for rounding, stays as it is.
+// Makes directions unit vectors, colours 0 or more, and computes the members that no key holds. Returns false if a member
+// cannot be used. keep_units: a vector of length 1, but for rounding, stays as it is.
 bool make_sound(rt_light& light, bool keep_units = false);
 // Moves the light as its keys say, and makes it sound.
 bool move_light(rt_light& light, const Matrix& world_from_local);

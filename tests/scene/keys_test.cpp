@@ -103,6 +103,29 @@ TEST(Keys, ATransformMovesEachLightAsItsKeysSay) {
     }
 }
 
+TEST(Keys, WhatImportersDeliverIsBroughtIntoRangeOrRefused) {
+    rt_light_desc desc{};
+    desc.struct_bytes = sizeof desc;
+    desc.kind = RT_LIGHT_SPOT;
+    desc.position[0] = 3, desc.direction[2] = -2, desc.color[1] = 4, desc.color[2] = -1;
+    const rt_key_value values[] = {{"angle", {500, 0, 0}, 0}, {"falloff", {1, 0, 0}, 0}, {"of_tomorrow", {1, 0, 0}, 0}};
+    desc.values = values, desc.value_count = 3;
+    rt_light light{};
+    std::string problem;
+    ASSERT_TRUE(light_of(desc, light, problem));
+    EXPECT_NE(problem.find("does not know"), std::string::npos);
+    ASSERT_TRUE(make_sound(light));
+    EXPECT_EQ(light_fault(light), "");
+    EXPECT_EQ(light.position[0], 3);
+    EXPECT_EQ(light.normal[2], -1);
+    EXPECT_EQ(light.color[1], 4);
+    EXPECT_EQ(light.color[2], 0);
+    EXPECT_EQ(light.angle, 180);
+    EXPECT_EQ(light.flags, RT_LIGHT_FALLOFF);
+    desc.position[1] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(light_of(desc, light, problem));
+}
+
 TEST(Keys, ALightWithoutSizeIsRefused) {
     rt_light light = default_light(RT_LIGHT_RECT);
     std::copy_n(light.u, 3, light.v);

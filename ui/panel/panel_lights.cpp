@@ -18,13 +18,13 @@ namespace {
 rt_light new_light(const Session& session, rt_u32 kind) {
     rt_light light = default_light(kind);
     const Camera& camera = session.desired.camera;
-    const bool has_place = kind_of(light).has_place;
+    const bool has_place = light_kind_of(light).has_place;
     for (int i = 0; i < 3; ++i) {
         const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * scene_size(session) * 0.3f;
         light.position[i] = has_place ? camera.target[i] + towards : towards;
     }
     // Edges and radii are a twentieth of the scene.
-    for (const Key& key : kind_of(light).keys) {
+    for (const Key& key : light_kind_of(light).keys) {
         if (key.moves != Moves::vector && key.moves != Moves::length) continue;
         std::array<float, 3> value = value_of(key, &light);
         for (float& x : value) x *= scene_size(session) * 0.05f;
@@ -38,7 +38,7 @@ rt_light new_light(const Session& session, rt_u32 kind) {
 void change_kind(const Session& session, rt_light& light, rt_u32 kind) {
     rt_light changed = new_light(session, kind);
     std::copy_n(light.color, 3, changed.color);
-    if (kind_of(light).has_place == kind_of(changed).has_place) std::copy_n(light.position, 3, changed.position);
+    if (light_kind_of(light).has_place == light_kind_of(changed).has_place) std::copy_n(light.position, 3, changed.position);
     light = changed;
 }
 
@@ -55,7 +55,7 @@ void kind_row(const Session& session, rt_light& light) {
     std::string help;
     for (const LightKind& kind : light_kinds()) help += (help.empty() ? "" : "; ") + std::string(kind.label) + ": " + kind.help;
     row_label("Kind", help);
-    if (!ImGui::BeginCombo("##kind", kind_of(light).label)) return;
+    if (!ImGui::BeginCombo("##kind", light_kind_of(light).label)) return;
     for (const LightKind& kind : light_kinds())
         if (option(kind.label, light.kind == kind.kind) && light.kind != kind.kind) change_kind(session, light, kind.kind);
     ImGui::EndCombo();
@@ -110,7 +110,7 @@ void draw_light_rows(Session& session, UiState& state) {
     session.selected_light = std::min<unsigned>(session.selected_light, static_cast<unsigned>(lights.size()) - 1);
     DesiredLight& light = lights[session.selected_light];
     kind_row(session, light.values);
-    for (const Key& key : kind_of(light.values).keys) {
+    for (const Key& key : light_kind_of(light.values).keys) {
         std::array<float, 3> value = value_of(key, &light.values);
         if (key.alias || !key_row(key, value, scene_size(session))) continue;
         rt_light changed = light.values;

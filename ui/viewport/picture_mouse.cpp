@@ -111,7 +111,7 @@ void PictureMouse::drag(const Target& target, Session& session, UiState& state, 
             if (light_ >= session.desired.lights.size()) break;
             rt_light& light = session.desired.lights[light_].values;
             const Projection projection(area, camera_of(target.picture));
-            if (!kind_of(light).has_place)
+            if (!light_kind_of(light).has_place)
                 drag_sun(light, projection, mouse + offset_);
             else if (ImGui::GetIO().KeyShift)
                 push_point_light(light, projection, std::exp(-moved.y * 0.006f / ui_scale()));

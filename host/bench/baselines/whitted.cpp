@@ -14,7 +14,7 @@ View whitted_view(const Scene& scene, View view) {
     view.lights.resize(1);
     // Peers know two kinds of lights.
     const rt_light& first = view.lights[0];
-    view.lights[0] = whitted_light(kind_of(first).has_place ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL,
+    view.lights[0] = whitted_light(light_kind_of(first).has_place ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL,
                                    {first.position[0], first.position[1], first.position[2]},
                                    {first.color[0], first.color[1], first.color[2]});
     rt_material mirror{};

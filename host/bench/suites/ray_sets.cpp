@@ -163,7 +163,7 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
             Vec3 normal = normals.at(hits[i].prim, point);
             if (dot(normal, direction) > 0) normal = -normal;
             const Vec3 origin = point + eps * normal;
-            const bool has_place = kind_of(light).has_place;
+            const bool has_place = light_kind_of(light).has_place;
             const Vec3 to_light = has_place ? vec(light.position) - origin : vec(light.position);
             const double distance = has_place ? glm::length(to_light) : INFINITY;
             sets[0].rays[i] = make_ray(origin, normalized(to_light, normal), distance);

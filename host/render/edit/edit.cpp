@@ -129,11 +129,11 @@ void read_light(const Scene& scene, EditedView& edited, const std::string& key, 
     rt_light light;
     if (path.size() == 3) {
         light = lights[at];
-        const std::vector<Key>& keys = kind_of(light).keys;
+        const std::vector<Key>& keys = light_kind_of(light).keys;
         const Key* part = find_key(keys, path[2]);
         if (!part)
             throw Error(Exit::usage,
-                        key + ": a light of the kind " + kind_of(light).name + " has the parts " + key_names(keys));
+                        key + ": a light of the kind " + light_kind_of(light).name + " has the parts " + key_names(keys));
         set_edit_value(*part, light, read_key(*part, key, value, scene.origin));
     } else {
         const size_t comma = value.find(',');
@@ -238,9 +238,9 @@ bool begins(const std::string& text, const char* with) {
 // The words that make a light from nothing.
 void add_light_words(const rt_light& light, size_t number, const std::array<double, 3>& origin, std::vector<Word>& words) {
     const std::string name = "light." + std::to_string(number);
-    std::string text = kind_of(light).name;
+    std::string text = light_kind_of(light).name;
     std::vector<Word> further;
-    for (const Key& key : kind_of(light).keys) {
+    for (const Key& key : light_kind_of(light).keys) {
         const std::array<float, 3> value = edit_value(key, light);
         if (is_number(key))
             text += "," + (key.moves == Moves::point ? point_text(value.data(), origin, ",") : value_text(key, value, ","));

@@ -86,8 +86,8 @@ std::string instance_lines(const InstanceEdits& before, const InstanceEdits& now
 
 // "edit light 3 spot  position 1 2 3  angle 30": all that the light is made of.
 std::string light_line(const std::string& object, const rt_light& light, const std::array<double, 3>& origin) {
-    std::string line = object + " " + kind_of(light).name;
-    for (const Key& key : kind_of(light).keys) {
+    std::string line = object + " " + light_kind_of(light).name;
+    for (const Key& key : light_kind_of(light).keys) {
         if (key.alias) continue;
         const std::array<float, 3> value = edit_value(key, light);
         line += "  " + std::string(key.name) + " " +

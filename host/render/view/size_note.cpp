@@ -8,7 +8,7 @@
 namespace clarity {
 
 std::string size_note(const std::vector<rt_light>& lights, const std::string& tracer) {
-    const auto count = std::count_if(lights.begin(), lights.end(), [](const rt_light& l) { return kind_of(l).has_size; });
+    const auto count = std::count_if(lights.begin(), lights.end(), [](const rt_light& l) { return light_kind_of(l).has_size; });
     if (count == 0 || picture_of_tracer(tracer) != kWhittedPicture) return {};
     return std::to_string(count) +
            (count == 1 ? " light with a size lights as a point at its middle"

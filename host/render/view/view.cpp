@@ -70,7 +70,7 @@ View make_view(const Scene& scene, float aspect, const std::string& camera, cons
     if (!light.empty()) {
         const std::vector<double> n = read_numbers<double>(light);
         if (n.size() != 3) throw Error(Exit::usage, "--light: `" + light + "` is not x,y,z");
-        if (!kind_of(view.lights[0]).has_place) {
+        if (!light_kind_of(view.lights[0]).has_place) {
             rt_light point = default_light(RT_LIGHT_POINT);
             std::copy_n(view.lights[0].color, 3, point.color);
             view.lights[0] = point;

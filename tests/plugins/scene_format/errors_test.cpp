@@ -56,7 +56,7 @@ const Case kCases[] = {
     {"light point direction 0 0 1", "1:13: unknown key `direction` (keys of light: position, color, falloff, intensity, name)"},
     {"light spot angle 190", "1:18: `190` is out of range; expected `angle` (degrees) between 0 and 180"},
     {"light rect u 0 0 0", "1:14: the zero vector has no direction; expected another for `u` (x y z, half an edge)"},
-    {"light disc radius 0", "1:19: `0` is out of range; expected `radius` (greater than 0) of 1e-06 at least"},
+    {"light disc radius 0", "1:19: `0` is out of range; expected `radius` (greater than 0) of 1e-12 at least"},
     {"light point falloff cubic", "1:21: `cubic` is no falloff (expected: none, square)"},
     {"light sun two_sided",
      "1:11: unknown key `two_sided` (keys of light: direction, irradiance, color, angle, intensity, name)"},
