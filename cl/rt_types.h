@@ -67,6 +67,47 @@ typedef struct rt_light {
     rt_u32 pad[3];
 } rt_light;
 
+/* What emits light, for `path`: a light, an emissive primitive or the sky. The lights of the frame come first, then the sky if it
+ * shines, then primitives by ascending numbers. Entry i is also cell i of a table by which an emitter is picked (Walker 1974): a number
+ * below RT_PICKS has a cell in its upper bits, and picks the cell's own emitter if the rest is below `threshold`, else `alias`.
+ * 32 B. */
+typedef struct rt_emitter {
+    rt_u32 threshold, alias;
+    rt_f32 pick;     /* the probability that the table picks it, exactly; 0: never */
+    rt_u32 kind;     /* RT_LIGHT_* or RT_EMITTER_* */
+    rt_u32 at;       /* number of the light; position of the primitive in leaf order */
+    rt_u32 instance; /* of the primitive; RT_NONE: it is in the world */
+    rt_u32 prim;
+    rt_f32 area;     /* of a polygon, one side */
+} rt_emitter;
+#define RT_PICK_BITS 24u
+#define RT_PICKS 16777216
+#define RT_EMITTER_SURFACE 7u
+#define RT_EMITTER_SKY 8u
+
+/* Primitives of consecutive numbers that are emitters of consecutive numbers, as many as up to the next run's first emitter. 8 B. */
+typedef struct rt_emitter_run {
+    rt_u32 first_prim, first_emitter;
+} rt_emitter_run;
+
+/* The table of emitters as a whole, and the sky. 88 B. */
+typedef struct rt_lighting {
+    rt_u32 emitter_count, cell_bits; /* the table has 2^cell_bits entries; those beyond emitter_count are cells only */
+    rt_u32 run_count;                /* another run follows these, as their end */
+    rt_u32 sun_count;                /* lights that are discs on the sky */
+    rt_u32 sky_emitter;              /* RT_NONE: the sky is black */
+    rt_u32 sky_kind;                 /* RT_SKY_* */
+    rt_u32 sky_width, sky_height;    /* of the picture, in texels */
+    rt_u32 sky_hidden;               /* camera rays see `background` instead */
+    rt_f32 sky_turn;                 /* by which it is turned about +Y, in turns, counter-clockwise from above */
+    rt_f32 sky_color[3];             /* radiance; of a gradient at the zenith; factor of a picture */
+    rt_f32 sky_horizon[3], sky_ground[3];
+    rt_f32 background[3];
+} rt_lighting;
+#define RT_SKY_CONSTANT 0u
+#define RT_SKY_GRADIENT 1u /* with the sine of the elevation from horizon to zenith; below the horizon one color */
+#define RT_SKY_PICTURE 2u
+
 /* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may
  * show one picture. 16 B. */
 typedef struct rt_texture {
