@@ -51,14 +51,19 @@ PathPicture trace_paths(const Scene& scene, const View& view, unsigned samples, 
     const ScenePtr shared = shared_scene(scene);
     Workbench& bench = Workbench::get();
     Progress progress;
+    bench.frames().trace(*bench.prepare(shared, settings), settings, view, Samples(0, samples), false, progress);
     PathPicture picture;
-    const auto values = [&](const char* aov) {
-        settings.aov = aov;
-        bench.frames().trace(*bench.prepare(shared, settings), settings, view, Samples(0, samples), false, progress);
-        return bench.frames().read_values();
-    };
-    picture.mean = values("color");
-    if (samples > 1) picture.error = values("error");
+    picture.mean = bench.frames().read_values();
+    // The film's second plane: cl/tracers/path/sum.h.
+    const unsigned width = picture.mean.width, height = picture.mean.height;
+    FloatImage sums{width, 2 * height, 4, {}};
+    sums.pixels.resize(size_t(width) * height * 8);
+    bench.frames().read_sums(sums);
+    picture.error = {width, height, 1, {}};
+    for (size_t i = 0; i < size_t(width) * height; ++i) {
+        const double count = sums.pixels[4 * i + 3], squares = sums.pixels[4 * (size_t(width) * height + i) + 3];
+        picture.error.pixels.push_back(count > 1 ? float(std::sqrt(squares / (count - 1) / count)) : 0.0f);
+    }
     return picture;
 }
 

@@ -132,6 +132,32 @@ TEST(Path, ThinLens) {
     }
 }
 
+// What the AOVs of noise show is what the film holds.
+TEST(Path, StatisticsAreThoseOfTheFilm) {
+    const Pairs base = {{"depth", "2"}, {"size", "16x16"}, {"sampler", "independent"}, {"strategy", "bsdf"}};
+    const PathPicture picture = trace_paths(sphere_over_floor(), floor_view(), 64, base);
+    Workbench& bench = Workbench::get();
+    Progress progress;
+    const auto shown = [&](const char* aov) {
+        Pairs all = {{"tracer", "path"}, {"lanes", "4"}, {"packet", "8x8"}, {"aov", aov}};
+        all.insert(all.end(), base.begin(), base.end());
+        const Settings settings = make_settings(all);
+        const ScenePtr scene = shared_scene(sphere_over_floor());
+        bench.frames().trace(*bench.prepare(scene, settings), settings, floor_view(), Samples(0, 64), false, progress);
+        return bench.frames().read_values();
+    };
+    const FloatImage error = shown("error"), variance = shown("variance"), samples = shown("samples"), mis = shown("mis");
+    for (size_t i = 0; i < 256; ++i) {
+        ASSERT_FLOAT_EQ(error.pixels[i], picture.error.pixels[i]);
+        ASSERT_NEAR(variance.pixels[i], 64 * error.pixels[i] * error.pixels[i], 1e-5);
+        ASSERT_EQ(samples.pixels[i], 64);
+        ASSERT_EQ(mis.pixels[i], 0);  // the strategy draws nothing
+        // A sample is 0 or 1.
+        const double p = picture.mean.pixels[3 * i + 1];
+        ASSERT_NEAR(variance.pixels[i], p * (1 - p) * 64 / 63, 1e-4);
+    }
+}
+
 // The parts of a picture, by the number of events, by how light was found, and by the first event, add up to it.
 TEST(Path, PartsAddUpToThePicture) {
     View view = floor_view();

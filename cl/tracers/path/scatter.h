@@ -227,7 +227,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     rt_basis(m.point.normal, &m.s, &m.t);
     m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
     m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, scattered_bits, m.point.at);
-    if (rt_has_emitters(ctx, frame)) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
+    if (ctx->lighting->emitter_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
     const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);
     tally->secondary += popcount(rt_bits(on));
     return on;

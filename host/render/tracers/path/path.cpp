@@ -1,4 +1,5 @@
 // path.cpp -- the tracer `path`: a path of light at a time in each lane; a lane whose path has ended takes the next pixel.
+#include "render/emitters/emitter_table.hpp"
 #include "render/tracers/tracer.hpp"
 
 namespace clarity {
@@ -10,25 +11,14 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     r.what = "tracer path";
     r.file = "tracers/path/path.cl";
     r.entry = "trace_path";
-    r.headers = {"sampling/hash.h",
-                 "sampling/sobol.h",
-                 "sampling/dimensions.h",
-                 "sampling/math.h",
-                 "sampling/warps.h",
-                 "shading/material.h",
-                 "shading/lost_metal.h",
-                 "shading/lost_glass_outside.h",
-                 "shading/lost_glass_inside.h",
-                 "shading/microfacets.h",
-                 "shading/bsdf.h",
-                 "shading/bsdf_of.h",
-                 "tracers/path/sum.h",
-                 "tracers/path/camera_rays.h",
-                 "tracers/path/state.h",
-                 "tracers/path/first_lights.h",
-                 "tracers/path/scatter.h"};
+    r.headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h", "sampling/math.h", "sampling/warps.h"};
+    const auto add = [&](const std::vector<const char*>& more) { r.headers.insert(r.headers.end(), more.begin(), more.end()); };
+    add({"shading/material.h", "shading/lost_metal.h", "shading/lost_glass_outside.h", "shading/lost_glass_inside.h",
+         "shading/microfacets.h", "shading/bsdf.h", "shading/bsdf_of.h"});
+    add(emitter_headers());
+    add({"tracers/path/sum.h", "tracers/path/camera_rays.h", "tracers/path/state.h", "tracers/path/scatter.h"});
     r.defines = defines;
-    r.traits = kFrame | kCountsRays | kSumsSamples;
+    r.traits = kFrame | kCountsRays | kPicksLights | kSumsSamples;
     return r;
 }
 
