@@ -25,7 +25,7 @@ Checkpoint sample_checkpoint() {
 }
 
 std::string why_refused(const std::string& path) {
-    return expect_error([&] { load_checkpoint(path); }, {path}, Exit::failed);
+    return test::expect_error([&] { load_checkpoint(path); }, {path}, Exit::failed);
 }
 
 }  // namespace
