@@ -70,7 +70,7 @@ TEST_F(Log, TheFileHasEveryLineWithItsTime) {
 
 TEST_F(Log, AFileThatCannotBeOpenedIsAnError) {
     const std::string path = (folder_ / "missing" / "run.log").string();
-    clarity::test::expect_error([&] { clarity::set_log_file(path); }, {path + ": ", "No such file"});
+    clarity::expect_error([&] { clarity::set_log_file(path); }, {path + ": ", "No such file"});
 }
 
 // A full disk causes one warning; rendering goes on.

@@ -45,7 +45,7 @@ TEST(ReadFile, RefusesOtherThanRegularFilesAtOnce) {
     EXPECT_TRUE(contains(why_not(scratch.path("pipe")), "no regular file"));
     EXPECT_TRUE(contains(why_not("/dev/zero"), "no regular file"));
     EXPECT_TRUE(contains(why_not(scratch.path("missing")), "No such file"));
-    const std::string why = clarity::test::expect_error([] { clarity::read_file("/dev/zero", 100, clarity::Exit::usage); }, {},
-                                                        clarity::Exit::usage);
+    const std::string why =
+        clarity::expect_error([] { clarity::read_file("/dev/zero", 100, clarity::Exit::usage); }, {}, clarity::Exit::usage);
     EXPECT_EQ(why.find("/dev/zero: is no regular file"), 0u) << why;
 }

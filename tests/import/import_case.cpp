@@ -25,7 +25,7 @@ const PluginRegistry& ImportCase::plugins() {
 }
 
 std::string ImportCase::failure(const std::vector<std::string>& files) {
-    const std::string why = test::expect_error([&] { import(files); }, {}, Exit::import_failed);
+    const std::string why = expect_error([&] { import(files); }, {}, Exit::import_failed);
     EXPECT_EQ(why.find('\n'), std::string::npos) << "one line: " << why;
     return why;
 }

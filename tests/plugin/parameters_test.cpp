@@ -33,7 +33,7 @@ double set(const std::string& key, const std::string& value) {
 // The message of the Error(usage) which the call throws.
 template <class Call>
 std::string usage_error(Call call) {
-    return clarity::test::expect_error(call, {}, clarity::Exit::usage);
+    return clarity::expect_error(call, {}, clarity::Exit::usage);
 }
 
 TEST(Parameters, Defaults) {

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 
-namespace clarity::test {
+namespace clarity {
 
 // Expects that `work` throws an Error whose message has all of the words, and which has the code, if one is given. Returns the
 // message; "" if none was thrown.
@@ -26,4 +26,4 @@ std::string expect_error(Work&& work, const std::vector<std::string>& words, std
     return message;
 }
 
-}  // namespace clarity::test
+}  // namespace clarity
