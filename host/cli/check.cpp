@@ -20,7 +20,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "import/import.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity {

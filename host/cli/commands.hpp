@@ -9,7 +9,7 @@
 #include "cli/pose_options.hpp"
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "render/settings/settings.hpp"
 
 namespace clarity {

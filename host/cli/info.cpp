@@ -15,7 +15,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "import/sequence_reader.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {

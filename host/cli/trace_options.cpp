@@ -8,8 +8,8 @@
 #include "cli/commands.hpp"
 #include "import/file_access.hpp"
 #include "import/importer_choice.hpp"
+#include "render/edit/preset.hpp"
 #include "render/settings/accel_choice.hpp"
-#include "render/settings/preset.hpp"
 
 namespace clarity {
 

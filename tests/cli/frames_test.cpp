@@ -81,6 +81,7 @@ TEST_F(Frames, TheDigestIsThatOfThePicture) {
     };
     const std::string plain = digest({});
     EXPECT_EQ(digest({"--accel", "bvh2", "--lanes", "4", "--packet", "8x8", "--device", "cpu"}), plain);
+    EXPECT_EQ(digest({"--portable", "true", "--debug", "true", "--poses", "build", "--trial", "off"}), plain);
     // Tracers that say that they make the same picture; what a tracer costs is of the tracer.
     for (const clarity::TracerChoice& choice : clarity::tracer_choices())
         EXPECT_EQ(digest({"--tracer", choice.id}) == plain, choice.picture == clarity::picture_of_tracer("auto")) << choice.id;

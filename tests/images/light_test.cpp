@@ -74,7 +74,7 @@ TEST(Light, LambertsCosineFromADirection) {
         const double expected = 0.5 * 0.8 * std::max(0.0, std::cos(angle));
         SCOPED_TRACE(std::to_string(degrees) + " degrees");
         expect_picture(
-            trace(plane_scene(), view, 64, 48, 1), view, [&](const Line&) { return expected; }, 1e-5, 64 * 48);
+            trace(plane_scene(), view, 64, 48, 1), view, [&](const Ray&) { return expected; }, 1e-5, 64 * 48);
     }
 }
 
@@ -84,7 +84,7 @@ TEST(Light, LambertsCosineFromAPointWithoutFalloff) {
     view.lights = {point_light({0.7f, -0.4f, 1.5f}, 1)};
     expect_picture(
         trace(plane_scene(), view, 64, 48, 1), view,
-        [&](const Line& line) {
+        [&](const Ray& line) {
             const Vec p = line.at(-line.origin[2] / line.direction[2]);
             return 0.5 * normalized(lamp - p)[2];
         },
@@ -97,7 +97,7 @@ TEST(Light, LightsAndAmbientAddUp) {
     view.ambient = {0.1f, 0.2f, 0.3f};
     const double expected = 0.5 * (0.25 + 0.5 * std::sqrt(0.5) + 0.2);
     expect_picture(
-        trace(plane_scene(), view, 16, 16, 1), view, [&](const Line&) { return expected; }, 1e-5, 256);
+        trace(plane_scene(), view, 16, 16, 1), view, [&](const Ray&) { return expected; }, 1e-5, 256);
 }
 
 // The Blinn-Phong highlight is strongest where the half vector is the normal: there, on a plane with a light beside the eye, it
@@ -111,7 +111,7 @@ TEST(Light, HighlightAtTheMirrorPoint) {
     view.lights = {directional_light({0, 0, 1}, 1)};
     expect_picture(
         trace(scene, view, 65, 49, 1), view,
-        [](const Line& line) {
+        [](const Ray& line) {
             const Vec half = normalized(Vec{0, 0, 1} - line.direction);
             return 0.5 + 0.3 * std::pow(half[2], 50);
         },
@@ -131,13 +131,13 @@ void expect_shadow_of_a_sphere(const rt_light& light) {
     view.lights = {light};
     const Picture picture = trace(scene, view, 160, 120, 1);
     size_t dark = 0;
-    const auto expected = [&](const Line& line) {
+    const auto expected = [&](const Ray& line) {
         double margin = 0;
-        if (meet_sphere(line, center, radius, &margin) < INFINITY || margin < 0.02) return -1.0;
+        if (hit_sphere(center, radius, line, &margin) < INFINITY || margin < 0.02) return -1.0;
         const Vec p = line.at(-line.origin[2] / line.direction[2]);
         const Vec lamp{light.position[0], light.position[1], light.position[2]};
         const Vec towards = light.kind == RT_LIGHT_POINT ? normalized(lamp - p) : lamp;
-        const bool shadow = meet_sphere({p, towards}, center, radius, &margin) < INFINITY;
+        const bool shadow = hit_sphere(center, radius, {p, towards}, &margin) < INFINITY;
         if (margin < 0.02) return -1.0;
         dark += shadow;
         return shadow ? 0.0 : 0.5 * towards[2];
@@ -173,7 +173,7 @@ TEST(Shadow, NotFromBehindTheLamp) {
     view.lights = {point_light({0, 0, 2}, 1)};
     expect_picture(
         trace(scene, view, 48, 48, 1), view,
-        [](const Line& line) {
+        [](const Ray& line) {
             return 0.5 * normalized(Vec{0, 0, 2} - line.at(-line.origin[2] / line.direction[2]))[2];
         },
         1e-5, 48 * 48);

@@ -47,10 +47,10 @@ View lamp_view() {
     return dark_view({0, 1.5f, 5}, {0, 0, 0}, 50);
 }
 
-double lamp_truth(const Line& line, double share) {
+double lamp_truth(const Ray& line, double share) {
     double margin = 0, mirrored_margin = 0;
-    const double direct = meet_sphere(line, {0.3, 1, -0.5}, 0.7, &margin),
-                 mirrored = meet_sphere(line, {0.3, -1, -0.5}, 0.7, &mirrored_margin);
+    const double direct = hit_sphere({0.3, 1, -0.5}, 0.7, line, &margin),
+                 mirrored = hit_sphere({0.3, -1, -0.5}, 0.7, line, &mirrored_margin);
     if (margin < 0.02 || mirrored_margin < 0.02) return -1;
     if (direct < INFINITY) return 1;
     return mirrored < INFINITY && line.direction[1] < 0 ? share : 0;
@@ -59,14 +59,14 @@ double lamp_truth(const Line& line, double share) {
 TEST(Mirror, ShowsObjectsAtTheirMirroredPlace) {
     const View view = lamp_view();
     expect_picture(
-        trace(lamp_over_mirror(), view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
+        trace(lamp_over_mirror(), view, 160, 120, 2), view, [](const Ray& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
 }
 
 TEST(Mirror, DepthOneShowsNoReflection) {
     const View view = lamp_view();
     const Picture picture = trace(lamp_over_mirror(), view, 160, 120, 1);
     expect_picture(
-        picture, view, [](const Line& l) { return lamp_truth(l, 0); }, 1e-5, 15000);
+        picture, view, [](const Ray& l) { return lamp_truth(l, 0); }, 1e-5, 15000);
     EXPECT_EQ(picture.stats.secondary, 0u);
 }
 
@@ -104,7 +104,7 @@ TEST(Mirror, AMeshReflectsLikeAPlane) {
     mesh.instances = triangles.instances;
     const View view = lamp_view();
     expect_picture(
-        trace(mesh, view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
+        trace(mesh, view, 160, 120, 2), view, [](const Ray& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
 }
 
 TEST(Glass, FresnelAtNormalIncidence) {
@@ -130,7 +130,7 @@ TEST(Glass, SlabShiftsBySnellsLaw) {
     add_polygon(scene, {{0, -300, -2}, {300, -300, -2}, {300, 300, -2}, {0, 300, -2}}, add_material(scene, glowing(1)));
     const View view = dark_view({-2, 0.3f, 3}, {0.2f, 0, 0}, 50);
     size_t bright = 0;
-    const auto expected = [&](const Line& line) {
+    const auto expected = [&](const Ray& line) {
         const Vec n{0, 0, 1};
         const double cos_in = -line.direction[2];
         const Vec within = refracted(line.direction, n, 1 / 1.5);
@@ -153,7 +153,7 @@ TEST(Glass, TotalInternalReflection) {
     View view = dark_view({0, 0, 0}, {0, 0, -1}, 80);  // the edges of the wall are at 45 degrees, its corners at 55
     view.background = {1, 1, 1};
     size_t total = 0;
-    const auto expected = [&](const Line& line) {
+    const auto expected = [&](const Ray& line) {
         const Vec p = line.at((-1 - line.origin[2]) / line.direction[2]);
         if (std::fabs(p[0]) > 0.98 || std::fabs(p[1]) > 0.98) return -1.0;  // another wall
         const double cos_in = -line.direction[2], sin2 = 2.25 * (1 - cos_in * cos_in);
@@ -189,9 +189,9 @@ TEST(Glass, ABallInAnEvenlyBrightWorldIsInvisible) {
     view.background = {1, 1, 1};
     // After n reflections inside, the remaining share falls with the n-th power of Fresnel's reflectance. Grazing rays are left
     // out.
-    const auto expected = [](const Line& line) {
+    const auto expected = [](const Ray& line) {
         double margin = 0;
-        meet_sphere(line, {0, 0, 0}, 1, &margin);
+        hit_sphere({0, 0, 0}, 1, line, &margin);
         return margin < 0.1 ? -1.0 : 1.0;
     };
     expect_picture(trace(scene, view, 120, 90, 12), view, expected, 1e-3, 5000);

@@ -188,7 +188,7 @@ TEST(Aov, UvNormalInstanceAndPrim) {
     EXPECT_EQ(instance.pixels[middle], 0);
     EXPECT_EQ(prim.pixels[middle], 1) << "above the diagonal: the second triangle";
     EXPECT_EQ(prim.pixels[60 * 64 + 40], 0) << "below it: the first";
-    const Line line = pixel_line(view.camera, 64, 64, 20, 40);
+    const Ray line = camera_ray(view.camera, 64, 64, 20, 40);
     EXPECT_NEAR(t.pixels[middle], -5 / line.direction[2], 1e-5);
 
     // If the first instance is moved away, the second becomes visible; its numbers follow those of the first.

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "render/settings/edit.hpp"
-#include "render/settings/view.hpp"
+#include "render/edit/edit.hpp"
+#include "render/view/view.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"
 

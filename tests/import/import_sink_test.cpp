@@ -116,6 +116,14 @@ TEST_P(Sink, unusable_primitives_are_errors_and_unusable_views_warnings) {
     EXPECT_EQ(scene.warnings.size(), 1u);
 }
 
+TEST_P(Sink, an_unknown_up_axis_is_y_with_a_warning) {
+    EXPECT_EQ(import_text("triangles good 1\nup_axis 2").up_axis, 2u);
+    const Scene scene = import_text("triangles good 1\nup_axis 3");
+    EXPECT_EQ(scene.up_axis, 1u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_TRUE(contains(scene.warnings[0], "case.cltest: its importer says up axis 3 of 0, 1 and 2"));
+}
+
 TEST_P(Sink, transforms_that_are_not_finite_lose_the_instance) {
     const Scene scene = import_text("triangles good 1\ninstance 1 0 0 nan 0 1 0 0 0 0 1 0");
     EXPECT_EQ(scene.instances.size(), 1u);

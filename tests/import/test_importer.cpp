@@ -222,6 +222,11 @@ struct Run {
             return place(0, m);
         }
         std::getline(words >> std::ws, argument);
+        if (what == "up_axis") {
+            auto info = sized<rt_scene_info>();
+            info.up_axis = static_cast<rt_u32>(std::atoi(argument.c_str()));
+            return sink.info(sink.ctx, &info), RT_OK;
+        }
         if (what == "moving") return moving(host, sink, argument);
         if (what == "broken") return broken(argument);
         if (what == "fail") return fail(argument);

@@ -1,12 +1,19 @@
-#include "whitted.hpp"
+#include "reference/whitted.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "world.hpp"
+#include "reference/world.hpp"
 
 namespace clarity::reference {
 namespace {
+
+Vec product(const Vec& a, const Vec& b) {
+    return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
+}
+double largest(const Vec& a) {
+    return std::max({a[0], a[1], a[2]});
+}
 
 class Tracer {
  public:
@@ -14,17 +21,17 @@ class Tracer {
         : scene_(scene), view_(view), settings_(settings), world_(scene) {}
 
     // The light that comes back along a ray. weight: its share in the pixel; generation counts from 1.
-    Vec trace(const Ray& ray, Vec weight, int generation) const {
+    Vec trace(const Ray& ray, const Vec& weight, int generation) const {
         Hit hit;
-        if (!world_.nearest(ray, INFINITY, hit)) return vec_of(view_.background);
+        if (!world_.nearest(ray, hit)) return to_vec(view_.background);
         const rt_material& material = scene_.materials[hit.material].values;
-        const Vec at = ray.origin + hit.t * ray.direction;
+        const Vec at = ray.at(hit.t);
 
         // Seen from inside, normals are flipped. If the interpolated normal points away from the viewer, the geometric one
         // replaces it.
         const bool leaving = dot(hit.geometric, ray.direction) > 0;
-        const Vec geometric = leaving ? -hit.geometric : hit.geometric;
-        Vec normal = leaving ? -hit.shading : hit.shading;
+        const Vec geometric = leaving ? -1 * hit.geometric : hit.geometric;
+        Vec normal = leaving ? -1 * hit.shading : hit.shading;
         if (dot(normal, ray.direction) >= 0) normal = geometric;
 
         Vec light = direct_light(ray, at, geometric, normal, material);
@@ -32,8 +39,7 @@ class Tracer {
 
         const double cos_in = std::min(1.0, -dot(normal, ray.direction));
         const double eta = leaving ? material.ior : 1 / double(material.ior);
-        const double sin2_out = eta * eta * (1 - cos_in * cos_in);
-        const double fresnel = sin2_out >= 1 ? 1 : reflectance(cos_in, std::sqrt(1 - sin2_out), eta);
+        const double fresnel = test::fresnel(cos_in, eta);
         const double mirrored = material.reflect + material.refract * fresnel, refracted = material.refract * (1 - fresnel);
 
         if (mirrored * largest(weight) > settings_.min_weight) {
@@ -43,49 +49,46 @@ class Tracer {
             light = light + mirrored * trace(leave(at, geometric, direction), mirrored * weight, generation + 1);
         }
         if (refracted * largest(weight) > settings_.min_weight) {
-            const Vec direction = eta * ray.direction + (eta * cos_in - std::sqrt(1 - sin2_out)) * normal;
             const Vec share = refracted * color_at(material, at);
-            light = light + share * trace(leave(at, -geometric, direction), share * weight, generation + 1);
+            const Ray inside = leave(at, -1 * geometric, test::refracted(ray.direction, normal, eta));
+            light = light + product(share, trace(inside, product(share, weight), generation + 1));
         }
         return light;
     }
 
  private:
-    Ray leave(Vec at, Vec side, Vec direction) const { return {at + world_.offset(at) * side, normalize(direction)}; }
-
-    static Vec color_at(const rt_material& material, Vec at) {
-        const Vec color = vec_of(material.color);
-        const bool dark = material.flags & RT_MATERIAL_CHECKER && (long(std::floor(at.x)) + long(std::floor(at.z))) % 2 != 0;
-        return dark ? (1.0 / 3) * color : color;
+    Ray leave(const Vec& at, const Vec& side, const Vec& direction, double distance = INFINITY) const {
+        return {at + world_.offset(at) * side, normalized(direction), 0, distance};
     }
 
-    // Fresnel's equations; the mean of both polarisations.
-    static double reflectance(double cos_in, double cos_out, double eta) {
-        const double across = (eta * cos_in - cos_out) / (eta * cos_in + cos_out);
-        const double along = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
-        return 0.5 * (across * across + along * along);
+    static Vec color_at(const rt_material& material, const Vec& at) {
+        const Vec color = to_vec(material.color);
+        const bool dark = material.flags & RT_MATERIAL_CHECKER && (long(std::floor(at[0])) + long(std::floor(at[2]))) % 2 != 0;
+        return dark ? (1.0 / 3) * color : color;
     }
 
     // Emission, ambient light, Lambert's diffuse light for the share that is neither mirrored nor refracted, and Blinn's
     // highlight.
-    Vec direct_light(const Ray& ray, Vec at, Vec geometric, Vec normal, const rt_material& material) const {
-        Vec diffuse = vec_of(view_.ambient), highlight;
+    Vec direct_light(const Ray& ray, const Vec& at, const Vec& geometric, const Vec& normal,
+                     const rt_material& material) const {
+        Vec diffuse = to_vec(view_.ambient), highlight{};
         for (const rt_light& light : view_.lights) {
-            Vec towards = vec_of(light.position);
+            Vec towards = to_vec(light.position);
             double distance = INFINITY;
             if (light.kind == RT_LIGHT_POINT) {
                 towards = towards - at;
                 distance = length(towards);
             }
-            towards = normalize(towards);
+            towards = normalized(towards);
             if (dot(normal, towards) <= 0 || dot(geometric, towards) <= 0) continue;
-            if (settings_.shadows && world_.blocked(leave(at, geometric, towards), distance)) continue;
-            const double cosine = std::clamp(dot(normal, normalize(towards - ray.direction)), 0.0, 1.0);
-            diffuse = diffuse + dot(normal, towards) * vec_of(light.color);
-            highlight = highlight + std::pow(cosine, material.shininess) * vec_of(light.color);
+            if (settings_.shadows && world_.blocked(leave(at, geometric, towards, distance))) continue;
+            const double cosine = std::clamp(dot(normal, normalized(towards - ray.direction)), 0.0, 1.0);
+            diffuse = diffuse + dot(normal, towards) * to_vec(light.color);
+            highlight = highlight + std::pow(cosine, material.shininess) * to_vec(light.color);
         }
         const double share = std::max(0.0, 1.0 - material.reflect - material.refract);
-        return vec_of(material.emission) + share * (color_at(material, at) * diffuse) + vec_of(material.specular) * highlight;
+        return to_vec(material.emission) + share * product(color_at(material, at), diffuse) +
+               product(to_vec(material.specular), highlight);
     }
 
     const Scene& scene_;
@@ -101,20 +104,14 @@ FloatImage render(const Scene& scene, const View& view, const Settings& settings
         if (material.values.texture != RT_NONE)
             throw std::invalid_argument("the reference knows no textures: " + material.name);
     const Tracer tracer(scene, view, settings);
-    const Camera& camera = view.camera;
-    const Vec eye = vec_of(camera.eye), w = normalize(vec_of(camera.target) - eye);
-    const Vec u = normalize(cross(w, vec_of(camera.up))), v = cross(u, w);
-    const double tangent = std::tan(0.5 * camera.fov_y_rad), aspect = double(settings.width) / settings.height;
-
     FloatImage image;
     image.width = static_cast<unsigned>(settings.width);
     image.height = static_cast<unsigned>(settings.height);
     image.channels = 3;
     for (int y = 0; y < settings.height; ++y)
         for (int x = 0; x < settings.width; ++x) {
-            const double right = (2 * (x + 0.5) / settings.width - 1) * tangent * aspect;
-            const double up = (1 - 2 * (y + 0.5) / settings.height) * tangent;
-            const Vec light = tracer.trace({eye, normalize(w + right * u + up * v)}, {1, 1, 1}, 1);
+            const Ray ray = test::camera_ray(view.camera, settings.width, settings.height, x, y);
+            const Vec light = tracer.trace(ray, {1, 1, 1}, 1);
             for (int c = 0; c < 3; ++c) image.pixels.push_back(static_cast<float>(light[c]));
         }
     return image;

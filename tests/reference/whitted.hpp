@@ -7,7 +7,7 @@
 #include "render/film/byte_image.hpp"
 #include "render/film/image_io.hpp"
 #include "render/settings/settings.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::reference {

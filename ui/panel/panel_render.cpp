@@ -1,8 +1,6 @@
-// The Render tab: the settings of the picture. Rows come from the settings table and from the plugins' parameters. The names in
-// this file only give an order; rows which are not named here appear at the end.
+// The Render tab: the settings of the picture. Rows come from the settings table, which gives their order, and from the
+// plugins' parameters.
 #include <imgui.h>
-
-#include <algorithm>
 
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
@@ -10,19 +8,6 @@
 
 namespace clarity::ui {
 namespace {
-
-struct Group {
-    const char* title;
-    std::vector<const char*> keys;
-    bool shared;  // by both sides of a comparison
-};
-const std::vector<Group>& groups() {
-    static const std::vector<Group> all = {
-        {"TRACING", {"tracer", "depth", "packet", "lanes", "ray_slots", "shadows", "min_weight", "poses"}, false},
-        {"PICTURE", {"size", "spp", "shutter", "aov", "scale_max", "exposure", "tone"}, true},
-    };
-    return all;
-}
 
 // Draws the rows that choose which side the rows below edit, and how both sides are shown.
 void compare_rows(Session& session, UiState& state) {
@@ -162,21 +147,12 @@ void size_rows(Session& session, const UiState& state) {
         session.desired.moving_fps = fps < 0.5f ? 0 : fps;
 }
 
-bool in_a_group(const std::string& key) {
-    for (const Group& group : groups())
-        if (std::any_of(group.keys.begin(), group.keys.end(), [&](const char* k) { return key == k; })) return true;
-    return false;
-}
-
-void group_rows(const Group& group, Session& session, const UiState& state) {
-    const bool compared = session.desired.other.has_value();
-    if (!folding_section(group.title)) return;
-    if (compared && group.shared) dim_text("of both sides");
-    for (const char* key : group.keys)
-        if (const Setting* row = find_setting(key)) {
-            setting_row(*row, group.shared ? session.desired.main.settings : session.edited().settings);
-            if (row->key == "size") size_rows(session, state);
-        }
+void group_rows(SettingGroup group, Session& session, const UiState& state) {
+    for (const Setting& row : settings_table()) {
+        if (row.group != group) continue;
+        setting_row(row, session.settings_for(row.key));
+        if (row.key == "size") size_rows(session, state);
+    }
 }
 
 }  // namespace
@@ -191,10 +167,12 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
     level_rows(overlay);
     section("DEVICE");
     device_row(session);
-    for (const Group& group : groups()) group_rows(group, session, state);
-    if (folding_section("MORE", false))
-        for (const Setting& row : settings_table())
-            if (!in_a_group(row.key)) setting_row(row, session.edited().settings);
+    if (folding_section("TRACING")) group_rows(SettingGroup::tracing, session, state);
+    if (folding_section("PICTURE")) {
+        if (session.desired.other) dim_text("of both sides");
+        group_rows(SettingGroup::picture, session, state);
+    }
+    if (folding_section("MORE", false)) group_rows(SettingGroup::more, session, state);
     ImGui::PopID();
     draw_output_rows(session, state);
 }

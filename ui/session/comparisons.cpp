@@ -5,12 +5,6 @@
 namespace clarity::ui {
 namespace {
 
-// Exposure, tone map and colour scale apply to a film that is already traced. Every other setting of a frame needs a new trace,
-// except for the number of samples.
-bool only_displays(const std::string& key) {
-    return key == "exposure" || key == "tone" || key == "scale_max";
-}
-
 // Whether all settings that `counts` selects are equal.
 template <class Counts>
 bool same_where(const Settings& a, const Settings& b, const Counts& counts) {
@@ -20,7 +14,7 @@ bool same_where(const Settings& a, const Settings& b, const Counts& counts) {
 
 bool prepares_same(const Side& a, const Side& b) {
     return a.device == b.device && a.settings.accel == b.settings.accel && a.settings.accel_params == b.settings.accel_params &&
-           same_where(a.settings, b.settings, [](const Setting& row) { return row.effect != Effect::frame; });
+           same_where(a.settings, b.settings, [](const Setting& row) { return !row.at_once(); });
 }
 
 }  // namespace
@@ -44,16 +38,11 @@ bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b) {
 }
 
 bool traces_same(const Settings& a, const Settings& b) {
-    return same_where(
-        a, b, [](const Setting& row) { return row.effect == Effect::frame && row.key != "spp" && !only_displays(row.key); });
+    return same_where(a, b, [](const Setting& row) { return row.effect == Effect::frame; });
 }
 
 bool displays_same(const Settings& a, const Settings& b) {
-    return same_where(a, b, [](const Setting& row) { return row.effect == Effect::frame && only_displays(row.key); });
-}
-
-bool is_shared(const std::string& key) {
-    return key == "size" || key == "spp" || key == "shutter" || key == "aov" || only_displays(key);
+    return same_where(a, b, [](const Setting& row) { return row.effect == Effect::display; });
 }
 
 }  // namespace clarity::ui

@@ -29,7 +29,4 @@ bool same_light(const rt_light& a, const rt_light& b);
 bool traces_same(const Settings& a, const Settings& b);
 bool displays_same(const Settings& a, const Settings& b);
 
-// Whether both sides of a comparison share the setting with this key; otherwise the pictures could not be compared.
-bool is_shared(const std::string& key);
-
 }  // namespace clarity::ui

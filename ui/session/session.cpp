@@ -115,7 +115,8 @@ void Session::cancel() {
 }
 
 Settings& Session::settings_for(const std::string& key) {
-    return is_shared(key) ? desired.main.settings : edited().settings;
+    const Setting* const row = find_setting(key);
+    return row && row->shared() ? desired.main.settings : edited().settings;
 }
 
 void Session::follow_main() {
@@ -125,7 +126,7 @@ void Session::follow_main() {
     }
     Settings& other = desired.other->settings;
     for (const Setting& row : settings_table())
-        if (is_shared(row.key)) row.copy(other, desired.main.settings);
+        if (row.shared()) row.copy(other, desired.main.settings);
 }
 
 PrepareRequest Session::desired_request() const {

@@ -14,7 +14,7 @@
 #include "base/files/times_watch.hpp"
 #include "device/kernel_watch.hpp"
 #include "plugin/library_watch.hpp"
-#include "render/settings/preset.hpp"
+#include "render/edit/preset.hpp"
 #include "ui/session/history.hpp"
 #include "ui/session/log_buffer.hpp"
 #include "ui/session/playback.hpp"

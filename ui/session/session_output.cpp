@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "render/settings/scene_text.hpp"
+#include "render/edit/scene_text.hpp"
 #include "ui/session/session.hpp"
 
 namespace clarity::ui {

@@ -5,7 +5,7 @@
 
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/motion/pose_time.hpp"
 

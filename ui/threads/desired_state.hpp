@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/motion/pose_time.hpp"
 

@@ -10,7 +10,7 @@ namespace clarity::ui {
 Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
     Settings settings = prepared;
     for (const Setting& row : settings_table())
-        if (row.effect == Effect::frame) row.copy(settings, desired_now);
+        if (row.at_once()) row.copy(settings, desired_now);
     return settings;
 }
 

@@ -134,7 +134,7 @@ std::map<std::string, std::string>& refusals() {
 }
 
 bool edit_value(const Setting& row, const Settings& settings, std::string& text) {
-    const bool at_once = row.effect == Effect::frame;
+    const bool at_once = row.at_once();
     text = row.get(settings);
     switch (row.kind) {
         case Setting::Kind::integer: {

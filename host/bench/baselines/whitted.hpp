@@ -3,7 +3,7 @@
 #pragma once
 #include "render/film/image_io.hpp"
 #include "render/settings/settings.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::bench {

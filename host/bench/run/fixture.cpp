@@ -22,7 +22,7 @@ std::string key_of(size_t device, const Settings& settings) {
     std::string key = std::to_string(device) + " " + settings.accel;
     for (const double value : settings.accel_params) key += "," + exact_text(value);
     for (const Setting& setting : settings_table())
-        if (setting.effect != Effect::frame) key += " " + setting.get(settings);
+        if (!setting.at_once()) key += " " + setting.get(settings);
     return key;
 }
 

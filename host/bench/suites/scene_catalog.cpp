@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/packed_file.hpp"
-#include "render/settings/edit.hpp"
+#include "render/edit/edit.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include "base/progress.hpp"
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::bench {

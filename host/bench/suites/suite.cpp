@@ -36,11 +36,20 @@ class Planner {
 
     Suite plan() {
         for (const std::string& name : request_.suites) add(name);
-        if (request_.suites.empty() && !request_.files.empty()) accel("accel", chosen_or({}), true);
+        if (request_.suites.empty() && !request_.files.empty()) add("accel");
         if (request_.time_limit_s > 0) suite_.time_limit_s = request_.time_limit_s;
         keep_only();
         return std::move(suite_);
     }
+
+    struct Row {
+        const char* name;
+        double limit_s, scene_limit_s;  // of the whole suite, or 0; of each scene if that is 0, or if the user names the scenes
+        std::vector<const char*> scenes;  // of the project by their names, or lists by a word; *: once at each size
+        std::vector<uint64_t> sizes;      // triangles that scenes are split to
+        void (Planner::*cases)(size_t scene);
+    };
+    static const std::vector<Row>& rows();
 
  private:
     // Keeps the cases which --only names. All scenes stay in the list, because cases refer to them by index; a scene without a
@@ -58,54 +67,90 @@ class Planner {
     }
 
     void add(const std::string& name) {
-        if (name == "thesis") return thesis();
-        if (name == "packets") return packets();
-        if (name == "accel") return accel_suite();
-        if (name == "scale") return scale();
-        if (name == "large") return large();
-        if (name == "cpu") return cpu();
-        if (name == "devices") return devices();
-        if (name == "mpi") return mpi();
-        if (name == "moving") return moving();
-        if (name == "policy") return policy();
-        if (name == "quick") return quick();
+        for (const Row& row : rows())
+            if (name == row.name) return add(row);
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
         throw Error(Exit::usage, "bench " + name + ": no such suite, and no such file; the suites are " + known);
     }
 
-    // Adds the scenes named by the user, or else those of the suite's own scenes which were found. Notes the missing ones.
-    // Returns indices into Suite::scenes.
-    std::vector<size_t> chosen_or(const std::vector<BenchScene>& own, uint64_t subdivide_to = 0) {
-        std::vector<BenchScene> sources = own;
-        if (!request_.files.empty()) {
-            sources.clear();
-            for (const std::string& file : request_.files) sources.push_back(scene_of_file(file));
-        }
-        std::vector<size_t> added;
-        for (const BenchScene& source : sources) {
-            if (!source.missing.empty()) {
-                if (std::find(suite_.notes.begin(), suite_.notes.end(), source.missing) == suite_.notes.end())
-                    suite_.notes.push_back(source.missing);
-                continue;
+    // Scenes named by the user replace the suite's own.
+    void add(const Row& row) {
+        row_ = &row;
+        const size_t first = suite_.scenes.size();
+        const bool own = request_.files.empty();
+        const auto add_scenes = [&](uint64_t size) {
+            for (const std::string& file : request_.files) add_scene(scene_of_file(file), size);
+            for (const std::string word : own ? row.scenes : std::vector<const char*>())
+                if ((word[0] == '*') == (size > 0))
+                    for (const BenchView& view : scenes_of(word.substr(size > 0)))
+                        add_scene(view.scene, size > 0 ? size : view.subdivide_to);
+        };
+        if (own || row.sizes.empty()) add_scenes(0);
+        for (const uint64_t size : row.sizes) {
+            if (size > request_.max_triangles) {
+                suite_.notes.push_back(size_name(size) + " triangles and more: beyond --max-triangles " +
+                                       std::to_string(request_.max_triangles));
+                break;
             }
-            suite_.scenes.push_back({source, subdivide_to});
-            if (subdivide_to > 0) suite_.scenes.back().source.name += "_" + size_name(subdivide_to);
-            added.push_back(suite_.scenes.size() - 1);
+            add_scenes(size);
         }
-        return added;
+        const size_t end = suite_.scenes.size();
+        const bool by_scene = row.limit_s == 0 || (!own && row.scene_limit_s > 0);
+        suite_.time_limit_s += by_scene ? row.scene_limit_s * double(end - first) : row.limit_s;
+        for (size_t scene = first; scene < end; ++scene) (this->*row.cases)(scene);
+    }
+
+    std::vector<BenchView> scenes_of(const std::string& word) const {
+        std::vector<BenchView> views;
+        if (word == "views" || word == "skull near") {
+            for (const BenchView& view : catalog_.views())
+                if (word == "views" || view.scene.name == word) views.push_back(view);
+            return views;
+        }
+        const bool is_shared = word == "shared" || word == "dragon_871k";
+        const std::vector<BenchScene> scenes = is_shared          ? catalog_.shared()
+                                               : word == "thesis" ? catalog_.thesis()
+                                                                  : std::vector<BenchScene>{catalog_.project(word)};
+        for (const BenchScene& scene : scenes)
+            if (word != "dragon_871k" || scene.name == word || !scene.missing.empty()) views.push_back({scene, 0});
+        return views;
+    }
+
+    // A scene that was not found becomes a note.
+    void add_scene(BenchScene source, uint64_t subdivide_to) {
+        // Ranks read the files themselves.
+        if (row_->cases == &Planner::mpi && request_.files.empty() && source.missing.empty() &&
+            std::any_of(source.files.begin(), source.files.end(), ends_with_gz))
+            source.missing = source.name + ": ranks do not read .gz; unpack it and name the file";
+        if (!source.missing.empty()) {
+            if (std::find(suite_.notes.begin(), suite_.notes.end(), source.missing) == suite_.notes.end())
+                suite_.notes.push_back(source.missing);
+            return;
+        }
+        if (subdivide_to > 0) source.name += "_" + size_name(subdivide_to);
+        suite_.scenes.push_back({std::move(source), subdivide_to});
     }
 
     const std::string& name_of(size_t scene) const { return suite_.scenes[scene].source.name; }
+    bool is_own(size_t scene, const char* name) const { return request_.files.empty() && name_of(scene) == name; }
 
-    BenchCase& add_case(const std::string& suite, size_t scene, const std::string& what, const std::string& measure) {
+    BenchCase& add_case(size_t scene, const std::string& what, const std::string& measure, std::vector<Variant> variants = {},
+                        std::vector<std::string> qualities = {}) {
         BenchCase c;
-        c.suite = suite;
+        c.suite = row_->name;
         c.name = name_of(scene) + "/" + what;
         c.measure = measure;
         c.scene = scene;
-        suite_.cases.push_back(c);
+        c.variants = std::move(variants);
+        if (request_.baselines) c.baseline_qualities = std::move(qualities);
+        suite_.cases.push_back(std::move(c));
         return suite_.cases.back();
+    }
+    void add_cases(size_t scene, std::initializer_list<const char*> measures, const std::vector<Variant>& variants,
+                   const std::vector<std::string>& qualities = {}) {
+        for (const std::string measure : measures)
+            add_case(scene, measure, measure, variants, measure == "frame" ? std::vector<std::string>() : qualities);
     }
 
     // The structure for suites which do not compare structures.
@@ -121,166 +166,28 @@ class Planner {
         return variants;
     }
 
+    // Without those that test every primitive: on large scenes they would take minutes. An unknown structure stays: its rows
+    // say that it is unknown.
+    std::vector<Variant> every_tree() const {
+        std::vector<Variant> variants = every_accel();
+        const auto tests_everything = [&](const Variant& variant) {
+            const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
+            return plugin && plugin->accel->ray_cost == RT_RAY_COST_LINEAR;
+        };
+        variants.erase(std::remove_if(variants.begin(), variants.end(), tests_everything), variants.end());
+        return variants;
+    }
+
+    // Those asked for, or one.
+    std::vector<Variant> asked_or(const std::string& accel) const {
+        return request_.accels.empty() ? std::vector<Variant>{{accel, accel, {}, false}} : every_accel();
+    }
+
     std::vector<Variant> best_on_gpus(size_t count) const {
         std::vector<Variant> variants;
         for (const rt_plugin* plugin : accels_by_merit(plugins_, DeviceKind::gpu))
             if (variants.size() < count) variants.push_back({plugin->id, plugin->id, {}, false});
         return variants;
-    }
-
-    // An unknown structure does not: its rows say that it is unknown.
-    bool tests_everything(const Variant& variant) const {
-        const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
-        return plugin && plugin->accel->ray_cost == RT_RAY_COST_LINEAR;
-    }
-
-    void limit(double seconds) { suite_.time_limit_s += seconds; }
-
-    void thesis() {
-        limit(480);
-        const auto step_case = [&](size_t scene, int steps, bool naive) {
-            const std::string text = std::to_string(steps);
-            BenchCase& c = add_case("thesis", scene, text + (steps == 1 ? " step" : " steps"), "frame");
-            c.variants = {{"now", main_accel(), {{"depth", text}}, false}};
-            if (naive) c.variants.push_back(then_variant());
-            c.variants.back().settings.emplace_back("depth", text);
-        };
-        for (const size_t scene : chosen_or(catalog_.thesis())) {
-            for (int steps = 1; steps <= 4; ++steps) step_case(scene, steps, true);
-            analysis_cases("thesis", scene);
-        }
-        if (!request_.files.empty()) return;
-        for (const size_t scene : chosen_or({catalog_.project("spheres21")})) step_case(scene, 4, true);
-        for (const size_t scene : chosen_or({catalog_.project("thesis/aim_100k")})) step_case(scene, 4, false);
-    }
-
-    void analysis_cases(const std::string& suite, size_t scene) {
-        for (const char* kind : {"primary", "reflection"}) {
-            BenchCase& c = add_case(suite, scene, kind, kind);
-            c.variants = {{"now", main_accel(), {}, false}, then_variant()};
-            c.timing = Timing::counted_only;
-        }
-        dropped(suite, scene);
-    }
-
-    // How many rays are dropped when each pixel has a ray array of fixed size.
-    void dropped(const std::string& suite, size_t scene) {
-        BenchCase& c = add_case(suite, scene, "dropped", "dropped");
-        c.timing = Timing::counted_only;
-        for (const char* slots : {"1", "2", "4", "8"})
-            c.variants.push_back({std::string("slots ") + slots, main_accel(), {{"ray_slots", slots}, {"depth", "4"}}, false});
-    }
-
-    void packets() {
-        limit(900);
-        for (const size_t scene : chosen_or(catalog_.thesis())) {
-            BenchCase& c = add_case("packets", scene, "4 steps", "frame");
-            for (const char* lanes : {"1", "4", "8", "16"})
-                for (const char* packet : {"1x1", "2x2", "4x4", "8x8", "16x16"}) {
-                    // A packet with fewer pixels than lanes would leave lanes idle. The ray arrays of 16x16 pixels do not fit
-                    // into a GPU's private memory.
-                    const int side = std::atoi(packet), count = std::atoi(lanes);
-                    if (side * side < count) continue;
-                    c.variants.push_back({std::string(packet) + ", lanes " + lanes,
-                                          main_accel(),
-                                          {{"packet", packet}, {"lanes", lanes}, {"depth", "4"}},
-                                          count > 1 || side > 8});
-                }
-        }
-    }
-
-    void accel(const std::string& suite, const std::vector<size_t>& scenes, bool with_dropped) {
-        if (limit_of_accel_added_++ == 0) limit(request_.files.empty() ? 1500 : 120.0 * double(request_.files.size()));
-        for (const size_t scene : scenes) {
-            for (const char* measure : {"build", "primary", "shadow", "reflection", "diffuse", "frame"}) {
-                BenchCase& c = add_case(suite, scene, measure, measure);
-                c.variants = every_accel();
-                if (request_.baselines && c.measure != "frame") c.baseline_qualities = kAllQualities;
-            }
-            if (with_dropped) dropped(suite, scene);
-        }
-    }
-
-    void accel_suite() {
-        std::vector<BenchScene> own = catalog_.thesis();
-        own.push_back(catalog_.project("thesis/aim_100k"));
-        for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
-        accel("accel", chosen_or(own), false);
-    }
-
-    bool beyond_limit(uint64_t size) {
-        if (size <= request_.max_triangles) return false;
-        suite_.notes.push_back(size_name(size) + " triangles and more: beyond --max-triangles " +
-                               std::to_string(request_.max_triangles));
-        return true;
-    }
-
-    void scale() {
-        limit(900);
-        const std::vector<BenchScene> own = {catalog_.project("models/spot")};
-        for (const uint64_t size : {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000}) {
-            if (beyond_limit(size)) break;
-            for (const size_t scene : chosen_or(own, size))
-                for (const char* measure : {"build", "primary", "shadow", "diffuse", "frame"}) {
-                    BenchCase& c = add_case("scale", scene, measure, measure);
-                    for (const Variant& variant : every_accel())
-                        if (!tests_everything(variant)) c.variants.push_back(variant);
-                    if (request_.baselines && c.measure != "frame") c.baseline_qualities = {"medium"};
-                }
-        }
-    }
-
-    // Memory and speed of models which are larger than the caches. Structures: the two best of GPUs, or those asked for.
-    void large() {
-        limit(1200);
-        std::vector<Variant> variants = every_accel();
-        if (request_.accels.empty()) variants = best_on_gpus(2);
-        std::vector<size_t> scenes;
-        if (request_.files.empty()) {
-            std::vector<BenchScene> whole = catalog_.shared();
-            whole.erase(std::remove_if(whole.begin(), whole.end(),
-                                       [](const BenchScene& s) { return s.name != "dragon_871k" && s.missing.empty(); }),
-                        whole.end());
-            scenes = chosen_or(whole);
-        }
-        std::vector<BenchScene> grown;
-        for (const BenchView& view : catalog_.views())
-            if (view.scene.name == "skull near") grown.push_back(view.scene);
-        for (const uint64_t size : {1'000'000, 10'000'000, 100'000'000}) {
-            if (beyond_limit(size)) break;
-            for (const size_t scene : chosen_or(grown, size)) scenes.push_back(scene);
-        }
-        for (const size_t scene : scenes)
-            for (const char* measure : {"build", "primary", "shadow", "diffuse", "frame"})
-                add_case("large", scene, measure, measure).variants = variants;
-    }
-
-    // SIMD performance of a CPU, compared with the fastest mode of the baselines.
-    void cpu() {
-        limit(request_.files.empty() ? 1800 : 150.0 * double(request_.files.size()));
-        std::vector<size_t> scenes = chosen_or(catalog_.shared());
-        if (request_.files.empty())
-            for (const BenchView& view : catalog_.views())
-                for (const size_t scene : chosen_or({view.scene}, view.subdivide_to)) scenes.push_back(scene);
-        for (const size_t scene : scenes)
-            for (const char* measure : {"build", "primary", "shadow", "diffuse", "whitted"}) {
-                BenchCase& c = add_case("cpu", scene, measure, measure);
-                c.variants = {{cpu_accel(), cpu_accel(), {}, false}};
-                if (!request_.accels.empty()) c.variants = every_accel();
-                if (c.measure == "whitted")
-                    for (Variant& variant : c.variants) variant.settings.emplace_back("depth", "5");
-                if (!request_.baselines) continue;
-                std::vector<std::string>& qualities = c.baseline_qualities;
-                qualities = {"medium"};
-                if (c.measure != "build") {
-                    qualities.push_back("high");
-                    continue;
-                }
-                for (const Variant& variant : c.variants)
-                    if (const std::string like = like_quality(variant.accel);
-                        std::find(qualities.begin(), qualities.end(), like) == qualities.end())
-                        qualities.push_back(like);
-            }
     }
 
     // Sets what the user has not.
@@ -289,159 +196,184 @@ class Planner {
         if (std::none_of(request_.settings.begin(), request_.settings.end(), is_key)) variant.settings.emplace_back(key, value);
     }
 
-    // One picture by one device, by two devices, and so on. Without --accel, the default structure of the devices is used.
-    void devices() {
-        std::vector<BenchScene> own = {catalog_.project("thesis/aim_100k")};
-        for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
-        const std::vector<size_t> scenes = chosen_or(own);
-        limit(90.0 * double(scenes.size()));
-        for (const size_t scene : scenes) {
-            BenchCase& c = add_case("devices", scene, "picture", "picture");
-            c.variants = {{"", "", {}, false}};
-            if (!request_.accels.empty()) c.variants = every_accel();
-            for (Variant& variant : c.variants) {
-                usual(variant, "size", "3840x2160");
-                usual(variant, "spp", "16");
-            }
-            const std::vector<Variant> variants = c.variants;
-            BenchCase& moving = add_case("devices", scene, "moving", "moving");
-            for (Variant variant : variants)
-                for (const bool overlapped : {false, true}) {
-                    variant.label = (variant.accel.empty() ? "" : variant.accel + ", ") +
-                                    std::string(overlapped ? "copied beside the next" : "one by one");
-                    variant.overlapped = overlapped;
-                    moving.variants.push_back(variant);
-                }
-        }
+    // Today's way and the thesis's, with a depth.
+    void steps(size_t scene, int depth, bool with_then) {
+        const std::string text = std::to_string(depth);
+        std::vector<Variant> variants = {{"now", main_accel(), {{"depth", text}}, false}};
+        if (with_then) variants.push_back(then_variant());
+        if (with_then) variants.back().settings.emplace_back("depth", text);
+        add_case(scene, text + (depth == 1 ? " step" : " steps"), "frame", variants);
     }
 
-    // One picture by the ranks that mpirun starts. They read the files themselves, which must therefore not be packed.
-    void mpi() {
-        std::vector<BenchScene> own = {catalog_.project("thesis/aim_100k")};
-        for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
-        for (BenchScene& scene : own)
-            for (const std::string& file : scene.files)
-                if (scene.missing.empty() && ends_with_gz(file))
-                    scene.missing = scene.name + ": ranks do not read .gz; unpack it and name the file";
-        const std::vector<size_t> scenes = chosen_or(own);
-        limit(120.0 * double(scenes.size()));
-        for (const size_t scene : scenes) {
-            BenchCase& c = add_case("mpi", scene, "ranks", "ranks");
-            c.variants = {{"", "", {}, false}};
-            if (!request_.accels.empty()) c.variants = every_accel();
-            for (Variant& variant : c.variants) {
-                usual(variant, "size", "1920x1080");
-                usual(variant, "spp", "16");
-            }
-        }
+    // How many rays are dropped when each pixel has a ray array of fixed size.
+    void dropped(size_t scene) {
+        BenchCase& c = add_case(scene, "dropped", "dropped");
+        c.timing = Timing::counted_only;
+        for (const char* slots : {"1", "2", "4", "8"})
+            c.variants.push_back({std::string("slots ") + slots, main_accel(), {{"ray_slots", slots}, {"depth", "4"}}, false});
     }
+
+    void thesis(size_t scene) {
+        if (is_own(scene, "spheres21") || is_own(scene, "aim_100k")) return steps(scene, 4, is_own(scene, "spheres21"));
+        for (int depth = 1; depth <= 4; ++depth) steps(scene, depth, true);
+        for (const char* kind : {"primary", "reflection"})
+            add_case(scene, kind, kind, {{"now", main_accel(), {}, false}, then_variant()}).timing = Timing::counted_only;
+        dropped(scene);
+    }
+
+    void packets(size_t scene) {
+        BenchCase& c = add_case(scene, "4 steps", "frame");
+        for (const char* lanes : {"1", "4", "8", "16"})
+            for (const char* packet : {"1x1", "2x2", "4x4", "8x8", "16x16"}) {
+                // A packet with fewer pixels than lanes would leave lanes idle. The ray arrays of 16x16 pixels do not fit into
+                // a GPU's private memory.
+                const int side = std::atoi(packet), count = std::atoi(lanes);
+                if (side * side < count) continue;
+                c.variants.push_back({std::string(packet) + ", lanes " + lanes,
+                                      main_accel(),
+                                      {{"packet", packet}, {"lanes", lanes}, {"depth", "4"}},
+                                      count > 1 || side > 8});
+            }
+    }
+
+    void accel(size_t scene) {
+        add_cases(scene, {"build", "primary", "shadow", "reflection", "diffuse", "frame"}, every_accel(), kAllQualities);
+        if (request_.suites.empty()) dropped(scene);
+    }
+
+    void scale(size_t scene) { add_cases(scene, {"build", "primary", "shadow", "diffuse", "frame"}, every_tree(), {"medium"}); }
+
+    // Memory and speed of models which are larger than the caches.
+    void large(size_t scene) {
+        add_cases(scene, {"build", "primary", "shadow", "diffuse", "frame"},
+                  request_.accels.empty() ? best_on_gpus(2) : every_accel());
+    }
+
+    // SIMD performance of a CPU, compared with the fastest mode of the baselines.
+    void cpu(size_t scene) {
+        std::vector<Variant> variants = asked_or(cpu_accel());
+        std::vector<std::string> like = {"medium"};  // each structure's own quality
+        for (const Variant& variant : variants)
+            if (const std::string quality = like_quality(variant.accel);
+                std::find(like.begin(), like.end(), quality) == like.end())
+                like.push_back(quality);
+        add_cases(scene, {"build"}, variants, like);
+        add_cases(scene, {"primary", "shadow", "diffuse"}, variants, {"medium", "high"});
+        for (Variant& variant : variants) variant.settings.emplace_back("depth", "5");
+        add_cases(scene, {"whitted"}, variants, {"medium", "high"});
+    }
+
+    // Without --accel, the default structure of the devices is used.
+    std::vector<Variant> pictures(const char* size) const {
+        std::vector<Variant> variants = asked_or("");
+        for (Variant& variant : variants) {
+            usual(variant, "size", size);
+            usual(variant, "spp", "16");
+        }
+        return variants;
+    }
+
+    // One picture by one device, by two devices, and so on.
+    void devices(size_t scene) {
+        const std::vector<Variant> variants = pictures("3840x2160");
+        add_case(scene, "picture", "picture", variants);
+        BenchCase& moving = add_case(scene, "moving", "moving");
+        for (Variant variant : variants)
+            for (const bool overlapped : {false, true}) {
+                variant.label = (variant.accel.empty() ? "" : variant.accel + ", ") +
+                                std::string(overlapped ? "copied beside the next" : "one by one");
+                variant.overlapped = overlapped;
+                moving.variants.push_back(variant);
+            }
+    }
+
+    // One picture by the ranks that mpirun starts.
+    void mpi(size_t scene) { add_case(scene, "ranks", "ranks", pictures("1920x1080")); }
 
     // Models whose vertices all move. Structures that do not refit say so in their rows.
-    void moving() {
-        std::vector<BenchScene> own = {catalog_.project("thesis/aim_100k")};
-        for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
-        const std::vector<size_t> scenes = chosen_or(own);
-        limit(240.0 * double(scenes.size()));
-        std::vector<Variant> variants;
-        for (const Variant& variant : every_accel())
-            if (!tests_everything(variant)) variants.push_back(variant);
-        for (const size_t scene : scenes)
-            for (const std::string& motion : motion_names())
-                for (const char* measure : {"refit", "rebuild", "primary", "diffuse", "frame", "object", "clip"}) {
-                    const std::string what = measure;
-                    const bool frames = what == "frame" || what == "object" || what == "clip";
-                    if (frames && motion != "wave") continue;  // the motion that devices compute
-                    if (what == "clip" && request_.files.empty()) continue;
-                    const std::string name = what == "object" ? "one object"
-                                             : what == "clip" ? "its own clip"
-                                                              : motion + " " + what;
-                    BenchCase& c = add_case("moving", scene, name, measure);
-                    c.motion = motion;
-                    const bool rays = c.measure != "refit" && c.measure != "rebuild";
-                    for (Variant variant : variants) {
-                        if (!rays) {
-                            c.variants.push_back(variant);
-                            if (c.measure != "refit") continue;
-                            variant.label += ", on the device";
-                            variant.on_device = true;
-                            c.variants.push_back(variant);
-                            continue;
-                        }
-                        const std::string name = variant.label;
-                        variant.on_device = frames;
-                        variant.label = name + (what == "object" ? ", still" : ", built");
-                        c.variants.push_back(variant);
-                        variant.label = name + (what == "object" ? ", one object moves" : ", refitted");
-                        variant.refitted = true;
-                        c.variants.push_back(variant);
-                        if (what != "clip") continue;
-                        variant.label += ", vertices sent";
-                        variant.sends_vertices = true;
-                        c.variants.push_back(variant);
-                    }
-                    if (request_.baselines && c.measure == "refit") c.baseline_qualities = {"refit"};
-                    if (request_.baselines && c.measure == "rebuild") c.baseline_qualities = {"low", "medium"};
-                }
+    void moving(size_t scene) {
+        for (const std::string& motion : motion_names()) {
+            moving_case(scene, motion, "refit", motion + " refit", {"", ", on the device"}, {"refit"});
+            moving_case(scene, motion, "rebuild", motion + " rebuild", {""}, {"low", "medium"});
+            for (const char* measure : {"primary", "diffuse"})
+                moving_case(scene, motion, measure, motion + " " + measure, {", built", ", refitted"});
+            if (motion != "wave") continue;  // the motion that devices compute
+            moving_case(scene, motion, "frame", motion + " frame", {", built", ", refitted"});
+            moving_case(scene, motion, "object", "one object", {", still", ", one object moves"});
+            if (!request_.files.empty())
+                moving_case(scene, motion, "clip", "its own clip", {", built", ", refitted", ", refitted, vertices sent"});
+        }
+    }
+
+    // ways: what is appended to the label of each structure. Of rays and pictures, all but the first are of refitted
+    // structures.
+    void moving_case(size_t scene, const std::string& motion, const std::string& measure, const std::string& name,
+                     const std::vector<std::string>& ways, const std::vector<std::string>& qualities = {}) {
+        BenchCase& c = add_case(scene, name, measure, {}, qualities);
+        c.motion = motion;
+        for (const Variant& tree : every_tree())
+            for (size_t way = 0; way < ways.size(); ++way) {
+                Variant variant = tree;
+                variant.label += ways[way];
+                if (measure == "refit") variant.on_device = way > 0;
+                if (measure == "frame" || measure == "object" || measure == "clip") variant.on_device = true;
+                variant.refitted = measure != "refit" && way > 0;
+                variant.sends_vertices = way > 1;
+                c.variants.push_back(variant);
+            }
     }
 
     // Animations, by fixed rules for refits and builds and by that of the window. A file plays its own clip besides.
-    void policy() {
-        const std::vector<size_t> scenes = chosen_or({catalog_.project("thesis/models/skull")});
-        limit(600.0 * double(scenes.size()));
+    void policy(size_t scene) {
         Variant variant = {main_accel(), main_accel(), {}, false};
-        const auto is_size = [](const auto& pair) { return pair.first == "size"; };
-        if (std::none_of(request_.settings.begin(), request_.settings.end(), is_size))
-            variant.settings.emplace_back("size", "320x240");
-        for (const size_t scene : scenes) {
-            std::vector<std::string> animations = animation_names();
-            if (!request_.files.empty()) animations.push_back(kOwnClip);
-            for (const std::string& animation : animations) {
-                BenchCase& c = add_case("policy", scene, animation, "play");
-                c.motion = animation;
-                c.variants = {variant};
-            }
-        }
+        usual(variant, "size", "320x240");
+        std::vector<std::string> animations = animation_names();
+        if (!request_.files.empty()) animations.push_back(kOwnClip);
+        for (const std::string& animation : animations) add_case(scene, animation, "play", {variant}).motion = animation;
     }
 
-    void quick() {
-        limit(55);
-        const auto frame_case = [&](size_t scene) {
-            BenchCase& c = add_case("quick", scene, "4 steps", "frame");
-            c.variants = {{"now", main_accel(), {{"depth", "4"}}, false}, then_variant()};
-            c.variants.back().settings.emplace_back("depth", "4");
-        };
-        const auto ray_cases = [&](size_t scene) {
-            for (const char* kind : {"build", "primary", "shadow", "diffuse"}) {
-                BenchCase& c = add_case("quick", scene, kind, kind);
-                c.variants = {{main_accel(), main_accel(), {}, false}};
-                if (request_.baselines) c.baseline_qualities = {"medium"};
-            }
-        };
-        if (!request_.files.empty()) {
-            for (const size_t scene : chosen_or({})) {
-                frame_case(scene);
-                ray_cases(scene);
-            }
-            return;
-        }
-        const std::vector<BenchScene> small = {catalog_.project("thesis/2_two_spheres"),
-                                               catalog_.project("thesis/6_2406_triangles")};
-        for (const size_t scene : chosen_or(small)) frame_case(scene);
-        for (const size_t scene : chosen_or({catalog_.project("thesis/models/skull")})) ray_cases(scene);
+    void quick(size_t scene) {
+        if (!is_own(scene, "skull")) steps(scene, 4, true);
+        if (request_.files.empty() && !is_own(scene, "skull")) return;
+        add_cases(scene, {"build", "primary", "shadow", "diffuse"}, {{main_accel(), main_accel(), {}, false}}, {"medium"});
     }
 
     const BenchRequest& request_;
     const SceneCatalog& catalog_;
     const PluginRegistry& plugins_;
     Suite suite_;
-    int limit_of_accel_added_ = 0;
+    const Row* row_ = nullptr;  // the suite that is being added
 };
+
+const std::vector<Planner::Row>& Planner::rows() {
+    static const std::vector<Row> rows = {
+        {"thesis", 480, 0, {"thesis", "spheres21", "thesis/aim_100k"}, {}, &Planner::thesis},
+        {"packets", 900, 0, {"thesis"}, {}, &Planner::packets},
+        {"accel", 1500, 120, {"thesis", "thesis/aim_100k", "shared"}, {}, &Planner::accel},
+        {"scale",
+         900,
+         0,
+         {"*models/spot"},
+         {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000},
+         &Planner::scale},
+        {"large", 1200, 0, {"dragon_871k", "*skull near"}, {1'000'000, 10'000'000, 100'000'000}, &Planner::large},
+        {"cpu", 1800, 150, {"shared", "views"}, {}, &Planner::cpu},
+        {"devices", 0, 90, {"thesis/aim_100k", "shared"}, {}, &Planner::devices},
+        {"mpi", 0, 120, {"thesis/aim_100k", "shared"}, {}, &Planner::mpi},
+        {"moving", 0, 240, {"thesis/aim_100k", "shared"}, {}, &Planner::moving},
+        {"policy", 0, 600, {"thesis/models/skull"}, {}, &Planner::policy},
+        {"quick", 55, 0, {"thesis/2_two_spheres", "thesis/6_2406_triangles", "thesis/models/skull"}, {}, &Planner::quick}};
+    return rows;
+}
 
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis",  "packets", "accel",  "scale",  "large", "cpu",
-                                                   "devices", "mpi",     "moving", "policy", "quick"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const Planner::Row& row : Planner::rows()) all.emplace_back(row.name);
+        return all;
+    }();
     return names;
 }
 

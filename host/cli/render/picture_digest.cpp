@@ -12,24 +12,13 @@
 namespace clarity {
 namespace {
 
-// Settings that change how a picture is traced, but not the picture. The tracer says itself what its pictures show.
-bool chooses_a_way(const std::string& key) {
-    static const char* const keys[] = {"poses", "tracer", "packet", "lanes", "portable", "debug"};
-    return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
-}
-
-// Settings that act when values become colours of a PNG.
-bool chooses_colors(const std::string& key) {
-    static const char* const keys[] = {"exposure", "tone", "scale_max"};
-    return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
-}
-
 void add_settings_to(Digest& digest, const Settings& settings, bool display) {
     const Aov& aov = find_aov(settings.aov);
     const bool cost = aov.about == Aov::About::cost;
     if (!aov.tracer) digest.add(picture_of_tracer(settings.tracer));
     for (const Setting& row : settings_table()) {
-        if ((!cost && chooses_a_way(row.key)) || (!display && chooses_colors(row.key))) continue;
+        if (!row.changes_picture && !cost) continue;
+        if (row.effect == Effect::display && !display) continue;
         digest.add(row.key);
         digest.add(row.get(settings));
     }

@@ -107,7 +107,7 @@ void SceneBuilder::add_root(const std::string& path) {
     }
 }
 
-void SceneBuilder::set_info(const rt_scene_info& info) {
+void SceneBuilder::set_info(const std::string& path, const rt_scene_info& info) {
     if (open_.size() != 1) return;
     const auto take_color = [](const float* from, std::array<float, 3>& to, bool& known) {
         if (!from || known || !are_usable(from, 3)) return;
@@ -118,7 +118,11 @@ void SceneBuilder::set_info(const rt_scene_info& info) {
     take_color(info.ambient, scene_.ambient, knows_ambient_);
     if (knows_axes_) return;
     knows_axes_ = true;
-    scene_.up_axis = info.up_axis <= 2 ? info.up_axis : 1;
+    scene_.up_axis = info.up_axis;
+    if (info.up_axis > 2) {
+        warn(path, "its importer says up axis " + std::to_string(info.up_axis) + " of 0, 1 and 2 (X, Y, Z): Y is taken");
+        scene_.up_axis = 1;
+    }
     scene_.unit_scale = std::isfinite(info.unit_scale) && info.unit_scale > 0 ? info.unit_scale : 0;
 }
 

@@ -42,7 +42,7 @@ class SceneBuilder {
     const FileAccess& access() const { return access_; }
     void warn(const std::string& file, const std::string& text);
     // Background, axes and units come from the first file that states them.
-    void set_info(const rt_scene_info& info);
+    void set_info(const std::string& path, const rt_scene_info& info);
     // Loads another file and places it into `into`. Returns an empty text on success, otherwise why it failed. Throws
     // Cancelled.
     std::string include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);

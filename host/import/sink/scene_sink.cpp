@@ -374,7 +374,7 @@ rt_u32 SceneSink::camera(const rt_camera& d) {
 }
 
 void SceneSink::info(const rt_scene_info& d) {
-    builder_.set_info(d);
+    builder_.set_info(path_, d);
 }
 
 int32_t SceneSink::load(const rt_load& d) {

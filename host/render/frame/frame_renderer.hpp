@@ -12,7 +12,7 @@
 #include "render/frame/frame_stats.hpp"
 #include "render/launch/prepared.hpp"
 #include "render/settings/false_color_scale.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 

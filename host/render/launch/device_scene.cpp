@@ -93,14 +93,19 @@ class Uploader {
 };
 
 // Returns the vertex normals in the space of their triangles. Normals of flattened meshes are transformed by the inverse
-// transpose, as kernels do for instances. A factor keeps their lengths near the original for any scale.
+// transpose, as kernels do for instances. A factor keeps their lengths near the original for any scale. Each mesh is
+// transformed once: place() in build_scene.cpp flattens a mesh of several instances only where one has no volume, and that has
+// no inverse.
 std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
     std::vector<float> normals = scene.normals.copy();
+    std::vector<bool> done(scene.meshes.size());
     for (const uint32_t i : build.flattened) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
         Affine inverse;
         if (!invert(instance.world_from_object, inverse)) continue;
+        if (done[instance.mesh]) throw std::logic_error("the normals of a mesh would be transformed twice");
+        done[instance.mesh] = true;
         const Affine& m = inverse;
         const double volume = m[0] * (double(m[5]) * m[10] - double(m[6]) * m[9]) +
                               m[1] * (double(m[6]) * m[8] - double(m[4]) * m[10]) +

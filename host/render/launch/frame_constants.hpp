@@ -3,7 +3,7 @@
 #include "render/accel/accel_build.hpp"
 #include "render/kernels/layout.hpp"
 #include "render/settings/settings.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "render/film/growing_buffer.hpp"
 #include "render/launch/device_scene.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {

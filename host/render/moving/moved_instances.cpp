@@ -3,13 +3,10 @@
 #include <algorithm>
 
 namespace clarity {
-namespace {
 
 std::string name_of(const Instance& instance, size_t number) {
     return "instance " + (instance.name.empty() ? std::to_string(number) : "`" + instance.name + "`");
 }
-
-}  // namespace
 
 void find_moved_instances(const Scene& scene, const BuildScene& build, const std::vector<PosedInstance>& now, const Pose& pose,
                           MovedInstances& moved) {

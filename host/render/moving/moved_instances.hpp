@@ -15,6 +15,9 @@ struct MovedInstances {
     std::vector<Affine> inverses;  // object_from_world of each; of those that are not visible, anything
 };
 
+// "instance `door`", or by its number if it has no name.
+std::string name_of(const Instance& instance, size_t number);
+
 // now: where the instances of `scene` are. build: the scene as its structure was built. moved: receives the result; its memory
 // is used again.
 void find_moved_instances(const Scene& scene, const BuildScene& build, const std::vector<PosedInstance>& now, const Pose& pose,

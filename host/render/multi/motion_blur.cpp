@@ -4,8 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "render/edit/edit.hpp"
 #include "render/launch/device_scene.hpp"
-#include "render/settings/edit.hpp"
 #include "scene/camera.hpp"
 
 namespace clarity {

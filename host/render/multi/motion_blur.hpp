@@ -19,7 +19,7 @@
 
 #include "render/moving/on_host/moving_accel.hpp"
 #include "render/multi/multi_preparer.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/motion/shutter.hpp"
 

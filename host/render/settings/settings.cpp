@@ -1,5 +1,7 @@
 #include "render/settings/settings.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/settings/aov.hpp"
@@ -8,17 +10,43 @@
 namespace clarity {
 namespace {
 
-// Lets a setting compare and copy its values, which these members hold.
+// What all kinds have in common. The values are held in these members.
 template <class... Member>
-void hold_in(Setting& s, Member Settings::*... members) {
+Setting row_of(const std::string& key, std::string label, std::string help, Effect effect, Member Settings::*... members) {
+    Setting s;
+    s.key = key;
+    s.label = std::move(label);
+    s.help = std::move(help);
+    s.effect = effect;
     s.equal = [=](const Settings& a, const Settings& b) { return (... && (a.*members == b.*members)); };
     s.copy = [=](Settings& to, const Settings& from) { (..., (to.*members = from.*members)); };
+    return s;
+}
+
+Setting with_range(Setting s, Setting::Kind kind, double min, double max) {
+    s.kind = kind;
+    s.min = min;
+    s.max = max;
+    return s;
+}
+
+// Gives a row its choices. `read` gets one of them.
+template <class Read>
+Setting with_choices(Setting s, const std::vector<std::string>& choices, Read read) {
+    s.kind = Setting::Kind::choice;
+    s.choices = choices;
+    s.set = [key = s.key, choices, read](Settings& settings, const std::string& text) {
+        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return read(settings, text);
+        std::string known;
+        for (const std::string& c : choices) known += (known.empty() ? "" : ", ") + c;
+        refuse_value(key, text, "one of " + known);
+    };
+    return s;
 }
 
 Setting integer(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
                 int Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::integer, min, max);
     s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         int value = 0;
@@ -31,8 +59,7 @@ Setting integer(const std::string& key, std::string label, std::string help, dou
 
 Setting real(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
              double Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::real, min, max);
     s.get = [member](const Settings& settings) { return exact_text(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         double value = 0;
@@ -44,8 +71,7 @@ Setting real(const std::string& key, std::string label, std::string help, double
 }
 
 Setting boolean(const std::string& key, std::string label, std::string help, Effect effect, bool Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::boolean, 0, 1, {}, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::boolean, 0, 1);
     s.get = [member](const Settings& settings) { return std::string(settings.*member ? "true" : "false"); };
     s.set = [=](Settings& settings, const std::string& text) {
         if (text == "1" || text == "true" || text == "on" || text == "yes")
@@ -60,28 +86,16 @@ Setting boolean(const std::string& key, std::string label, std::string help, Eff
 
 Setting choice(const std::string& key, std::string label, std::string help, const std::vector<std::string>& choices,
                Effect effect, std::string Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::choice, 0, 0, choices, effect, {}, {}, {}, {}};
-    hold_in(s, member);
+    Setting s = with_choices(row_of(key, std::move(label), std::move(help), effect, member), choices,
+                             [member](Settings& settings, const std::string& text) { settings.*member = text; });
     s.get = [member](const Settings& settings) { return settings.*member; };
-    s.set = [=](Settings& settings, const std::string& text) {
-        std::string known;
-        for (const std::string& c : choices) {
-            if (c == text) {
-                settings.*member = text;
-                return;
-            }
-            known += (known.empty() ? "" : ", ") + c;
-        }
-        refuse_value(key, text, "one of " + known);
-    };
     return s;
 }
 
 Setting size(const std::string& key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
              int Settings::*width, int Settings::*height) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::size, double(min), double(max), {}, effect, {}, {}, {},
-              {}};
-    hold_in(s, width, height);
+    Setting s =
+        with_range(row_of(key, std::move(label), std::move(help), effect, width, height), Setting::Kind::size, min, max);
     s.get = [=](const Settings& settings) {
         if (automatic && settings.*width == 0) return std::string("auto");
         return std::to_string(settings.*width) + "x" + std::to_string(settings.*height);
@@ -104,19 +118,12 @@ Setting size(const std::string& key, std::string label, std::string help, int mi
 
 Setting lanes_setting() {
     Setting s =
-        choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
-               {"auto", "1", "4", "8", "16"}, Effect::recompile, &Settings::tracer);
-    hold_in(s, &Settings::lanes);
-    const auto choices = s.choices;
+        row_of("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
+               Effect::recompile, &Settings::lanes);
+    s = with_choices(std::move(s), {"auto", "1", "4", "8", "16"}, [](Settings& settings, const std::string& text) {
+        settings.lanes = text == "auto" ? 0 : std::stoi(text);
+    });
     s.get = [](const Settings& settings) { return settings.lanes == 0 ? std::string("auto") : std::to_string(settings.lanes); };
-    s.set = [choices](Settings& settings, const std::string& text) {
-        for (const std::string& c : choices)
-            if (c == text) {
-                settings.lanes = text == "auto" ? 0 : std::stoi(text);
-                return;
-            }
-        refuse_value("lanes", text, "auto, 1, 4, 8 or 16");
-    };
     return s;
 }
 
@@ -134,48 +141,75 @@ std::vector<std::string> tone_names() {
     return {"linear", "reinhard", "aces", "agx"};
 }
 
+Setting Setting::in(SettingGroup of) const {
+    Setting s = *this;
+    s.group = of;
+    return s;
+}
+
+Setting Setting::only_ways() const {
+    Setting s = *this;
+    s.changes_picture = false;
+    return s;
+}
+
 const std::vector<Setting>& settings_table() {
+    constexpr auto kTracing = SettingGroup::tracing, kPicture = SettingGroup::picture;
     static const std::vector<Setting> table = {
-        choice("poses", "Each pose",
-               "how the structure follows a scene that plays in the window. refit: its boxes are fitted to what moved; build: "
-               "a new "
-               "tree; auto: refits until a build pays; clip: as auto, from the best of five trees. `render` always builds; the "
-               "samples of a blurred picture are refitted, unless this is build",
-               {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses),
-        choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer),
-        integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
+        choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer)
+            .in(kTracing)
+            .only_ways(),  // what a tracer's pictures show: TracerChoice::picture
+        integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth)
+            .in(kTracing),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,
-             Effect::recompile, &Settings::packet_w, &Settings::packet_h),
-        lanes_setting(),
+             Effect::recompile, &Settings::packet_w, &Settings::packet_h)
+            .in(kTracing)
+            .only_ways(),
+        lanes_setting().in(kTracing).only_ways(),
         integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
-                Effect::recompile, &Settings::ray_slots),
-        size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height),
-        integer("spp", "Samples", "samples a pixel", 1, 65536, Effect::frame, &Settings::spp),
-        real("shutter", "Shutter",
-             "motion blur: share of a frame's time that the shutter is open; 0: none. The samples of a pixel are spread over "
-             "this time, half of it before the frame's time and half after; each shows the scene at a time of its own. So it "
-             "takes several samples, 16 and more, and a scene that is shown at a time. While the window plays, pictures are "
-             "not blurred",
-             0, 1, Effect::frame, &Settings::shutter),
-        boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
+                Effect::recompile, &Settings::ray_slots)
+            .in(kTracing),
+        boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows).in(kTracing),
         real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
-             &Settings::min_weight),
-        choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov),
+             &Settings::min_weight)
+            .in(kTracing),
+        choice("poses", "Each pose",
+               "how the structure follows a scene that plays. refit: its boxes are fitted to what moved; build: a new tree; "
+               "auto: refits until a build pays; clip: as auto, from the best of five trees. `render` builds each frame, and "
+               "refits between the samples of a blurred one, unless this is build",
+               {"auto", "refit", "build", "clip"}, Effect::rebuild, &Settings::poses)
+            .in(kTracing)
+            .only_ways(),
+        size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height)
+            .in(kPicture),
+        integer("spp", "Samples", "samples a pixel", 1, 65536, Effect::samples, &Settings::spp).in(kPicture),
+        real("shutter", "Shutter",
+             "motion blur: the share of a frame's time that the shutter is open, half of it before the frame's time; 0: none. "
+             "Each sample shows the scene at a time of its own, so take 16 samples or more. While the window plays, pictures "
+             "are not blurred",
+             0, 1, Effect::frame, &Settings::shutter)
+            .in(kPicture),
+        choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov).in(kPicture),
         real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
-             Effect::frame, &Settings::scale_max),
-        real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::frame, &Settings::exposure),
-        choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::frame, &Settings::tone),
+             Effect::display, &Settings::scale_max)
+            .in(kPicture),
+        real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::display, &Settings::exposure).in(kPicture),
+        choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::display, &Settings::tone)
+            .in(kPicture),
         boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
                 Effect::recompile, &Settings::fast_math),
         boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks",
-                Effect::recompile, &Settings::portable),
+                Effect::recompile, &Settings::portable)
+            .only_ways(),
         boolean("debug", "Debug kernels", "bounds every traversal stack and counts what would overflow", Effect::recompile,
-                &Settings::debug),
+                &Settings::debug)
+            .only_ways(),
         choice("trial", "Try kernels",
                "kernels that were edited, and those of plugins that did not come with the program, run in a worker process "
                "first, on a small scene; auto: on CPUs; off: never, for measurements",
-               {"auto", "on", "off"}, Effect::recompile, &Settings::trial),
+               {"auto", "on", "off"}, Effect::recompile, &Settings::trial)
+            .only_ways(),
     };
     return table;
 }

@@ -6,8 +6,12 @@
 
 namespace clarity {
 
-// What the host must redo after a change of this setting.
-enum class Effect { frame, recompile, rebuild };
+// What the host must redo after a change of this setting, cheapest first. display: only how a traced film is shown. samples:
+// nothing, more samples follow or fewer are asked for. frame: the next frame is traced anew.
+enum class Effect { display, samples, frame, recompile, rebuild };
+
+// Where the Render tab has the row. Both sides of a comparison share the rows of `picture`: their pictures must be comparable.
+enum class SettingGroup { more, tracing, picture };
 
 // The values of all settings.
 struct Settings {
@@ -46,15 +50,25 @@ bool blurs(const Settings& settings);
 struct Setting {
     enum class Kind { integer, real, boolean, choice, size };  // size: "WxH"
     std::string key, label, help;                              // help states the unit
-    Kind kind;
+    Kind kind = Kind::integer;
     double min = 0, max = 0;
     std::vector<std::string> choices;
-    Effect effect;
+    Effect effect = Effect::rebuild;
+    SettingGroup group = SettingGroup::more;
+    // Whether another value gives another picture. Otherwise it says only how the picture is traced, so that a finished frame
+    // stays valid. Pictures of costs always differ.
+    bool changes_picture = true;
     std::function<std::string(const Settings&)> get;
     std::function<void(Settings&, const std::string&)>
         set;  // throws Error(usage), which says what was read and what is allowed
     std::function<bool(const Settings&, const Settings&)> equal;  // whether both have the same value
     std::function<void(Settings& to, const Settings& from)> copy;
+
+    bool shared() const { return group == SettingGroup::picture; }
+    bool at_once() const { return effect <= Effect::frame; }  // nothing must be prepared
+    // For the table.
+    Setting in(SettingGroup of) const;
+    Setting only_ways() const;  // changes_picture is false
 };
 
 // All settings but accel and its parameters, which come from the plugins (see parameters.hpp).

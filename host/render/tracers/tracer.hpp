@@ -14,7 +14,7 @@
 #include "render/launch/prepared.hpp"
 #include "render/launch/view_buffers.hpp"
 #include "render/settings/tracer_choice.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 
@@ -22,7 +22,7 @@ namespace clarity {
 // counts those of all, and `film` has a layer for each.
 struct FrameLaunch {
     const Prepared& prepared;
-    const Settings& settings;  // the frame's size and depth, and others of Effect::frame
+    const Settings& settings;  // the frame's size and depth, and others that act at once
     const View& view;
     const ViewBuffers& buffers;  // with an rt_frame for each sample
     cl::CommandQueue& queue;

@@ -56,7 +56,8 @@ std::string in_our_words(const std::string& message) {
     const size_t expected = out.rfind("; expected ");
     const std::string rest = expected == out.npos ? ", expected JSON" : ", " + out.substr(expected + 2);
     out.resize(std::min(expected, out.size()));
-    return "found " + (out.size() > 120 ? out.substr(0, 120) + "..." : out) + rest.substr(0, 120);
+    if (out.size() > 120) out = out.substr(0, 120) + (out.back() == '\'' ? "...'" : "...");  // what was read ends with a quote
+    return "found " + out + rest.substr(0, 120);
 }
 
 // The required extensions that this importer obeys. Those of materials and textures are not listed: without them only the

@@ -1,6 +1,6 @@
-/* sound_again.c -- another build of ../../bad_plugins/libraries/sound.c, with one more parameter in front. */
+/* sound_again.c -- another build of the sound plugin of bad_plugins, with one more parameter in front. */
 #define PARAMS \
     { "depth", "Depth", "levels, at most", RT_PARAM_INT, RT_EFFECT_REBUILD, 1, 64, 32, NULL }, \
     { "max_leaf", "Max leaf size", "primitives in a leaf, at most", RT_PARAM_INT, RT_EFFECT_REBUILD, 1, 8, 4, NULL }
-#include "../../bad_plugins/libraries/sound.h"
-PLUGIN
+#define DEFECT_sound
+#include "../../bad_plugins/libraries/defects.c"

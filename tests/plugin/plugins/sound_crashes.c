@@ -1,4 +1,4 @@
-/* sound_crashes.c -- another build of ../../bad_plugins/libraries/sound.c, whose builder crashes. */
+/* sound_crashes.c -- another build of the sound plugin of bad_plugins, whose builder crashes. */
 #include "rt_plugin.h"
 
 static int32_t crash(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
@@ -7,5 +7,5 @@ static int32_t crash(const rt_host* host, const rt_build_input* in, const rt_bui
     return RT_OK;
 }
 #define BUILD crash
-#include "../../bad_plugins/libraries/sound.h"
-PLUGIN
+#define DEFECT_sound
+#include "../../bad_plugins/libraries/defects.c"

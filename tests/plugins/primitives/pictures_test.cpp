@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "reference.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 using namespace clarity;
 using namespace clarity::test;

@@ -2,35 +2,13 @@
 
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "import/import.hpp"
 #include "support/scratch.hpp"
 
 namespace clarity::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
-Vec operator+(const Vec& a, const Vec& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec operator*(double s, const Vec& a) {
-    return {s * a[0], s * a[1], s * a[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Vec& a) {
-    return std::sqrt(dot(a, a));
-}
-Vec unit(const Vec& a) {
-    return 1 / length(a) * a;
-}
 bool everywhere(const Vec&) {
     return true;
 }
@@ -48,12 +26,12 @@ std::string text(const Vec& v) {
 struct Axis {
     Vec from, along, x, y;
     double length;
-    Axis(const Vec& a, const Vec& b) : from(a), along(unit(b - a)), length(test::length(b - a)) {
-        x = unit(cross(along, std::fabs(along[0]) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0}));
+    Axis(const Vec& a, const Vec& b) : from(a), along(normalized(b - a)), length(clarity::length(b - a)) {
+        x = normalized(cross(along, std::fabs(along[0]) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0}));
         y = cross(along, x);
     }
     double z(const Vec& p) const { return dot(p - from, along); }
-    double away(const Vec& p) const { return test::length(p - from - z(p) * along); }
+    double away(const Vec& p) const { return clarity::length(p - from - z(p) * along); }
     Vec point(double radius, double turns, double height) const {
         return from + height * along + radius * std::cos(2 * kPi * turns) * x + radius * std::sin(2 * kPi * turns) * y;
     }
@@ -174,7 +152,7 @@ ShapeCase hills_case() {
 }
 
 std::array<double, 12> placement(const Vec& translate, const Vec& axis, double degrees, const Vec& scale) {
-    const Vec a = unit(axis);
+    const Vec a = normalized(axis);
     const double c = std::cos(degrees * kPi / 180), s = std::sin(degrees * kPi / 180);
     std::array<double, 12> m{};
     const double cross_of[3][3] = {{0, -a[2], a[1]}, {a[2], 0, -a[0]}, {-a[1], a[0], 0}};

@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "scene/vec.hpp"
 #include "support/generated.hpp"
 
 namespace clarity::test {
-
-using Vec = std::array<double, 3>;
 
 // A surface as the points where `side` changes its sign, as far as they are `valid`.
 struct Sheet {

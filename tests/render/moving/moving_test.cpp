@@ -306,6 +306,24 @@ TEST(MovingAccel, SaysWhenABuildIsNeeded) {
     EXPECT_NE(linear.move(pose_of(*rings()), progress).why.find("does not offer `refit`"), std::string::npos);
 }
 
+// An instance without depth is moved into the world's tree, while its mesh has a tree of its own for the others. Their vertices
+// are in two spaces, so poses need builds.
+TEST(MovingAccel, RefusesAMeshThatIsPlacedFlatAndRound) {
+    Progress progress;
+    Scene pressed = *rings();
+    for (int row = 0; row < 3; ++row) pressed.instances[3].world_from_object[4 * row + 2] = 0;
+    const ScenePtr scene = shared_scene(std::move(pressed));
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
+    MovingAccel moving(scene, build(scene, plugin));
+    EXPECT_NE(moving.cannot().find("`placed 3` has no volume"), std::string::npos) << moving.cannot();
+    EXPECT_FALSE(moving.move(pose_of(*scene), progress).accel);
+
+    Scene once = *rings();  // a mesh that is placed once may be pressed flat
+    for (int row = 0; row < 3; ++row) once.instances[1].world_from_object[4 * row + 2] = 0;
+    const ScenePtr flat = shared_scene(std::move(once));
+    EXPECT_EQ(MovingAccel(flat, build(flat, plugin)).cannot(), "");
+}
+
 TEST(MovingAccel, VerticesMayBeWrittenInPlace) {
     Progress progress;
     MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));

@@ -49,8 +49,24 @@ struct MovingAccel::Buffer {
 MovingAccel::MovingAccel(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built)
     : scene_(std::move(scene)), built_(std::move(built)), plugin_(refit_of(*built_->layout)) {
     if (!plugin_.refit) cannot_ = std::string("accel ") + built_->layout->id + " does not offer `refit`";
+    find_flat_instances();
 }
 MovingAccel::~MovingAccel() = default;
+
+// The vertices of a mesh are kept once, in the space of its only tree. So a mesh that is flattened must be placed once. An
+// instance without volume, which is always flattened, may break that.
+void MovingAccel::find_flat_instances() {
+    const BuildScene& build = built_->scene;
+    flat_instance_.assign(scene_->meshes.size(), RT_NONE);
+    for (rt_u32 i = 0; i < scene_->instances.size(); ++i) {
+        const Instance& instance = scene_->instances[i];
+        if (!instance.visible || build.number_of_instance[i] != RT_NONE) continue;
+        rt_u32& flat = flat_instance_[instance.mesh];
+        if (cannot_.empty() && (flat != RT_NONE || build.group_of_mesh[instance.mesh] != 0))
+            cannot_ = name_of(instance, i) + " has no volume, and its mesh is placed elsewhere, too";
+        flat = i;
+    }
+}
 
 // Sets everything up for the pose of the scene, and refits all of it once, to know the costs of the build.
 void MovingAccel::start(Progress& progress) {
@@ -68,7 +84,6 @@ void MovingAccel::start(Progress& progress) {
     }
 
     instances_.clear();
-    flat_instance_.assign(scene_->meshes.size(), RT_NONE);
     object_from_world_.assign(build.instances.size(), kIdentity);
     world_from_object_ = build.world_from_object;
     hidden_.assign(build.instances.size(), 0);
@@ -76,11 +91,9 @@ void MovingAccel::start(Progress& progress) {
         const Instance& instance = scene_->instances[i];
         instances_.push_back({instance.mesh, instance.world_from_object, instance.visible});
         const rt_u32 number = build.number_of_instance[i];
-        if (number != RT_NONE) std::copy_n(build.instances[number].object_from_world, 12, object_from_world_[number].begin());
-        if (number != RT_NONE)
-            hidden_[number] = build.instances[number].hidden;
-        else if (instance.visible)
-            flat_instance_[instance.mesh] = static_cast<rt_u32>(i);
+        if (number == RT_NONE) continue;
+        std::copy_n(build.instances[number].object_from_world, 12, object_from_world_[number].begin());
+        hidden_[number] = build.instances[number].hidden;
     }
     positions_.resize(scene_->positions.size() + 1);
     positions_.back() = 0;

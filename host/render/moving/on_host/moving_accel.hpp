@@ -66,6 +66,7 @@ class MovingAccel {
     struct Buffer;
     struct Move;
 
+    void find_flat_instances();
     void start(Progress& progress);
     std::string place(const Pose& pose);
     const float* vertices_at_rest(rt_u32 mesh) const;

@@ -7,7 +7,7 @@
 #include "device/device.hpp"
 #include "render/launch/prepared.hpp"
 #include "render/settings/settings.hpp"
-#include "render/settings/view.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 

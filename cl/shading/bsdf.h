@@ -1,0 +1,228 @@
+/* bsdf.h -- what the path tracer takes a surface for: its values, its densities, and directions drawn from it.
+ *
+ * A surface is a sum of lobes with shares: diffuse (Lambert), mirror, metal and glass. Lambert has one of them, Whitted's mixture has
+ * three. All directions are in the frame of the shading normal, z, and point away from the surface; wo.z > 0. Light is a radiance,
+ * so what a surface lets through is divided by eta^2 (Veach 1997, Robust Monte Carlo Methods, section 5.2). */
+#ifndef RT_BSDF_H
+#define RT_BSDF_H
+
+typedef struct rt_bsdf {
+    rt_vec color;
+    vfloat diffuse, mirror, metal, glass; /* shares */
+    vfloat alpha;                         /* of metal and glass; 0: smooth */
+    vfloat eta;                           /* ior of the other side / ior of this side */
+    vmask compensate;                     /* light may meet several facets */
+} rt_bsdf;
+
+typedef struct rt_bsdf_sample {
+    rt_vec wi, weight; /* weight: f |cos| / pdf */
+    vfloat pdf;        /* per solid angle; of a delta lobe the probability of the lobe */
+    vmask valid, delta, transmitted;
+} rt_bsdf_sample;
+
+/* The probabilities with which rt_bsdf_draw() picks a lobe. */
+typedef struct rt_bsdf_lobes {
+    vfloat diffuse, mirror, metal, glass; /* their sum is 1, or 0 of a black surface */
+    vfloat again;                         /* of light that meets several facets, among that of metal or glass */
+} rt_bsdf_lobes;
+
+/* The lanes with facets. */
+RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(share > rt_vfloat(0.0f)) & RT_MASK(b->alpha > rt_vfloat(0.0f)); }
+
+RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, vfloat mu)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_bsdf_lobes p;
+    const vfloat diffuse = b->diffuse * rt_largest(b->color);
+    const vfloat sum = diffuse + b->mirror + b->metal + b->glass;
+    const vfloat scale = one / rt_max(sum, rt_vfloat(1e-20f));
+    p.diffuse = diffuse * scale;
+    p.mirror = b->mirror * scale;
+    p.metal = b->metal * scale;
+    p.glass = b->glass * scale;
+    p.again = zero;
+    const vmask metal = rt_is_rough(b, b->metal) & b->compensate, glass = rt_is_rough(b, b->glass) & b->compensate;
+    if (rt_any(metal)) p.again = rt_select(metal, rt_lost_by_metal(mu, b->alpha), zero);
+    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_glass(mu, b->alpha, b->eta), p.again);
+    return p;
+}
+
+/* Light that meets several facets of a dielectric: the share that goes through, and the mean losses of both sides. The shares of both
+ * sides keep light reciprocal: through mean_here = eta^2 through' mean_there, as 1 - mean reflectance of the two sides do. */
+typedef struct rt_glass_again {
+    vfloat through, mean_here, mean_there;
+} rt_glass_again;
+RT_INLINE rt_glass_again rt_glass_again_of(const rt_bsdf *b)
+{
+    const vfloat one = rt_vfloat(1.0f), least = rt_vfloat(1e-9f);
+    rt_glass_again g;
+    g.mean_here = rt_max(rt_lost_by_glass_mean(b->alpha, b->eta), least);
+    g.mean_there = rt_max(rt_lost_by_glass_mean(b->alpha, one / b->eta), least);
+    /* The mean reflectance of the outside is a fit of Kulla and Conty 2017. */
+    const vfloat n = rt_max(b->eta, one / b->eta);
+    const vfloat let_in = one - (n - one) / fma(n, rt_vfloat(1.00071f), rt_vfloat(4.08567f));
+    g.through = rt_select(RT_MASK(b->eta < one), let_in * b->eta * b->eta, let_in) * rt_min(one, g.mean_there / g.mean_here);
+    return g;
+}
+
+/* The same as rt_bsdf_eval() of a rough dielectric alone (Walter et al. 2007; Kulla and Conty 2017). */
+RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_vec wo, rt_vec wi, vfloat *density)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), two = rt_vfloat(2.0f);
+    const vfloat alpha = rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA)), eta = b->eta, mu_i = fabs(wi.z);
+    const vmask through = RT_MASK(wi.z < zero);
+    /* The facet's normal halves the angle of mirrored light; of refracted light it is along wo + eta wi. */
+    rt_vec along = rt_along(rt_select(through, eta, one), wi, wo);
+    along = rt_scale(rt_select(RT_MASK(along.z < zero), -one, one), along);
+    const vfloat scale = rt_inverse_length(along);
+    const vfloat to_facet = scale * rt_dot(wo, along), from_facet = scale * rt_dot(wi, along);
+    vfloat cos_out;
+    const vfloat reflected = rt_fresnel_dielectric(rt_max(to_facet, zero), eta, &cos_out);
+    const vfloat smith_o = rt_smith(wo.z, alpha), smith_i = rt_smith(mu_i, alpha);
+    const vfloat facets = rt_facets_along(along, alpha) / wo.z;
+    /* D / (4 cos wo) times G, and D |wo.h| |wi.h| / ((wo.h + eta wi.h)^2 cos wo) times G, without and with the eta^2 of a density. */
+    const vfloat bent = facets * to_facet * -from_facet * scale * scale;
+    vfloat mirrored = reflected * facets / (two * (smith_o + smith_i)), passed = (one - reflected) * bent * rt_vfloat(4.0f) / ((one + smith_o) * (one + smith_i));
+    vfloat mirrored_density = reflected * facets / (two * (one + smith_o)), passed_density = (one - reflected) * bent * eta * eta * two / (one + smith_o);
+    const vmask meets = RT_MASK(to_facet > zero) & (~through | RT_MASK(from_facet < zero));
+    vfloat value = rt_select(meets, rt_select(through, passed, mirrored), zero);
+    *density = (one - p->again) * rt_select(meets, rt_select(through, passed_density, mirrored_density), zero);
+    if (rt_any(b->compensate & rt_is_rough(b, b->glass))) {
+        const rt_glass_again g = rt_glass_again_of(b);
+        const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * mu_i;
+        const vfloat lost_i = rt_lost_by_glass(mu_i, alpha, rt_select(through, one / eta, eta));
+        const vfloat share = rt_select(through, g.through / (g.mean_there * eta * eta), (one - g.through) / g.mean_here);
+        value = fma(rt_select(b->compensate, p->again, zero), cosine * lost_i * share, value);
+        *density = fma(p->again, cosine * rt_select(through, g.through, one - g.through), *density);
+    }
+    return rt_choose(through, rt_scale(value, b->color), rt_vec_of(value, value, value));
+}
+
+/* f(wo, wi) |cos wi| of the lobes that are no deltas. *pdf: the density with which rt_bsdf_draw() gives wi. Both are 0 in other lanes. */
+RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lanes, vfloat *pdf)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo.z);
+    const vmask above = lanes & RT_MASK(wi.z > zero) & RT_MASK(wo.z > zero);
+    const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * wi.z;
+    rt_vec f = rt_scale(rt_select(above, b->diffuse * cosine, zero), b->color);
+    *pdf = rt_select(above, p.diffuse * cosine, zero);
+
+    const vmask rough = above & rt_is_rough(b, b->metal);
+    if (rt_any(rough)) {
+        const vfloat alpha = rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA));
+        const rt_vec along = rt_add(wo, wi);
+        const vfloat to_facet = rt_dot(wo, rt_normalize(along));
+        const vfloat smith_o = rt_smith(wo.z, alpha), smith_i = rt_smith(wi.z, alpha);
+        const vfloat seen = rt_facets_along(along, alpha) / (rt_vfloat(2.0f) * wo.z); /* D / (4 cos wo), times G */
+        const rt_vec fresnel = rt_fresnel_metal(b->color, to_facet);
+        rt_vec value = rt_scale(seen / (smith_o + smith_i), fresnel);
+        vfloat density = (one - p.again) * seen / (one + smith_o);
+        if (rt_any(rough & b->compensate)) {
+            /* Kulla and Conty 2017. The metal's mean reflectance is Schlick's; each further facet reflects it once more. */
+            const vfloat mean = rt_max(rt_lost_by_metal_mean(alpha), rt_vfloat(1e-9f));
+            const vfloat share = cosine * p.again * rt_lost_by_metal(wi.z, alpha) / mean;
+            const rt_vec average = rt_along(rt_vfloat(20.0f / 21.0f), b->color, rt_splat(1.0f / 21.0f, 1.0f / 21.0f, 1.0f / 21.0f));
+            const vfloat kept = one - mean;
+            const rt_vec several = rt_vec_of(average.x * average.x * kept / (one - average.x * mean), average.y * average.y * kept / (one - average.y * mean),
+                                             average.z * average.z * kept / (one - average.z * mean));
+            value = rt_along(rt_select(b->compensate, share, zero), several, value);
+            density = fma(p.again, cosine, density);
+        }
+        f = rt_choose(rough, rt_along(b->metal, value, f), f);
+        *pdf = rt_select(rough, fma(p.metal, density, *pdf), *pdf);
+    }
+    const vmask frosted = lanes & RT_MASK(wo.z > zero) & RT_MASK(wi.z != zero) & rt_is_rough(b, b->glass);
+    if (rt_any(frosted)) {
+        vfloat density;
+        const rt_vec value = rt_frosted_eval(b, &p, wo, wi, &density);
+        f = rt_choose(frosted, rt_along(b->glass, value, f), f);
+        *pdf = rt_select(frosted, fma(p.glass, density, *pdf), *pdf);
+    }
+    return f;
+}
+
+/* The lanes of `of` in which a lobe of probability p is picked. Their u, in [0, 1), becomes the rest of the choice, in [0, 1) again. What
+ * happens in a lane must not depend on others, so theirs stay. */
+RT_INLINE vmask rt_pick(vmask of, vfloat p, vfloat *u)
+{
+    const vfloat one = rt_vfloat(1.0f);
+    const vmask picked = RT_MASK(*u < p);
+    const vfloat rest = rt_select(picked, *u / rt_max(p, rt_vfloat(1e-20f)), (*u - p) / rt_max(one - p, rt_vfloat(1e-20f)));
+    *u = rt_select(of, rt_min(rest, rt_vfloat(0.99999994f)), *u);
+    return of & picked;
+}
+
+/* Draws a direction. u_lobe, u1, u2: in [0, 1). Lanes that get none, or are not in `lanes`, are not valid. */
+RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe, vfloat u1, vfloat u2, vmask lanes)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const vmask smooth = RT_MASK(b->alpha <= zero);
+    const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo.z);
+    rt_bsdf_sample s;
+    /* The diffuse lobe comes first, then mirror, metal, glass. */
+    vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + p.mirror + p.metal + p.glass > zero);
+    const vmask diffuse = rt_pick(left, p.diffuse, &u_lobe);
+    left &= ~diffuse;
+    const vmask mirror = rt_pick(left, p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
+    left &= ~mirror;
+    const vmask metal = left & RT_MASK(p.metal > zero), glass = left & ~metal; /* no surface is both */
+
+    s.wi = rt_vec_of(-wo.x, -wo.y, wo.z);
+    s.weight = rt_splat(0.0f, 0.0f, 0.0f);
+    s.pdf = zero;
+    s.delta = mirror | (smooth & (metal | glass));
+    s.transmitted = rt_vint(0);
+    if (rt_any(s.delta)) {
+        const vfloat share = rt_select(mirror, b->mirror / rt_max(p.mirror, rt_vfloat(1e-20f)), b->metal / rt_max(p.metal, rt_vfloat(1e-20f)));
+        s.weight = rt_scale(share, rt_choose(mirror, rt_splat(1.0f, 1.0f, 1.0f), rt_fresnel_metal(b->color, wo.z)));
+        s.pdf = rt_select(mirror, p.mirror, p.metal);
+        if (rt_any(glass & smooth)) {
+            vfloat cos_out;
+            const vfloat reflected = rt_fresnel_dielectric(wo.z, b->eta, &cos_out);
+            const vfloat glass_share = b->glass / rt_max(p.glass, rt_vfloat(1e-20f));
+            const vmask back = rt_pick(glass & smooth, reflected, &u_lobe), through = glass & smooth & ~back;
+            s.transmitted |= through;
+            s.pdf = rt_select(back, p.glass * reflected, rt_select(through, p.glass * (one - reflected), s.pdf));
+            s.weight = rt_choose(back, rt_vec_of(glass_share, glass_share, glass_share), s.weight);
+            s.weight = rt_choose(through, rt_scale(glass_share / (b->eta * b->eta), b->color), s.weight);
+            s.wi = rt_choose(through, rt_vec_of(-wo.x / b->eta, -wo.y / b->eta, -cos_out), s.wi);
+        }
+    }
+
+    const vmask spread = (diffuse | metal | glass) & ~s.delta;
+    s.valid = s.delta;
+    if (rt_any(spread)) {
+        const vmask facets = spread & ~diffuse & ~rt_pick(spread & ~diffuse, p.again, &u_lobe), frosted = spread & glass;
+        rt_vec wi = rt_warp_cosine(u1, u2);
+        vmask through = rt_vint(0);
+        if (rt_any(frosted & ~facets)) {
+            through = rt_pick(frosted & ~facets, rt_glass_again_of(b).through, &u_lobe);
+            wi.z = rt_select(through, -wi.z, wi.z);
+        }
+        if (rt_any(facets)) {
+            const rt_vec h = rt_warp_visible_normal(wo, rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA)), u1, u2);
+            const vfloat to_facet = rt_max(rt_dot(wo, h), zero);
+            rt_vec along = rt_sub(rt_scale(to_facet + to_facet, h), wo);
+            if (rt_any(frosted & facets)) {
+                vfloat cos_out;
+                const vfloat reflected = rt_fresnel_dielectric(to_facet, b->eta, &cos_out);
+                const vmask bent = frosted & facets & ~rt_pick(frosted & facets, reflected, &u_lobe);
+                through |= bent;
+                const rt_vec refracted = rt_along(to_facet / b->eta - cos_out, h, rt_scale(-one / b->eta, wo));
+                along = rt_choose(bent, refracted, along);
+            }
+            wi = rt_choose(facets, along, wi);
+        }
+        vfloat pdf;
+        const rt_vec f = rt_bsdf_eval(b, wo, wi, spread, &pdf);
+        s.valid |= spread & RT_MASK(pdf > zero) & RT_MASK(rt_select(through, -wi.z, wi.z) > zero);
+        s.transmitted |= through;
+        s.wi = rt_choose(spread, wi, s.wi);
+        s.pdf = rt_select(spread, pdf, s.pdf);
+        s.weight = rt_choose(spread, rt_scale(one / rt_max(pdf, rt_vfloat(1e-30f)), f), s.weight);
+    }
+    return s;
+}
+
+#endif

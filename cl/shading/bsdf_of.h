@@ -1,0 +1,46 @@
+/* bsdf_of.h -- loads the surfaces of all lanes for the path tracer. */
+#ifndef RT_BSDF_OF_H
+#define RT_BSDF_OF_H
+
+/* The surfaces of the lanes in `bits`. entering: the ray comes from the side that the normal points to. at: the points, world. */
+RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask entering, uint bits, rt_vec at)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_bsdf out;
+    out.color = rt_splat(0.0f, 0.0f, 0.0f);
+    out.diffuse = out.mirror = out.metal = out.glass = out.alpha = zero;
+    out.eta = one;
+    out.compensate = rt_vint(-1);
+    int material[RT_LANES];
+    rt_store(s->material, material);
+    uint left = bits;
+    while (left != 0u) {
+        const int id = material[rt_lowest(left)];
+        const vmask mine = RT_MASK(s->material == rt_vint(id));
+        left &= ~rt_bits(mine);
+        const global rt_material *m = ctx->materials + id;
+        float diffuse = 0.0f, mirror = 0.0f, metal = 0.0f, glass = 0.0f, alpha = 0.0f;
+        if (m->model == RT_MODEL_LAMBERT) {
+            diffuse = 1.0f;
+        } else if (m->model == RT_MODEL_WHITTED) {
+            diffuse = max(1.0f - m->reflect - m->refract, 0.0f);
+            mirror = m->reflect;
+            glass = m->refract;
+        } else {
+            alpha = m->roughness * m->roughness;
+            if (m->model == RT_MODEL_CONDUCTOR) metal = 1.0f;
+            else glass = 1.0f;
+        }
+        out.color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out.color);
+        out.diffuse = rt_select(mine, rt_vfloat(diffuse), out.diffuse);
+        out.mirror = rt_select(mine, rt_vfloat(mirror), out.mirror);
+        out.metal = rt_select(mine, rt_vfloat(metal), out.metal);
+        out.glass = rt_select(mine, rt_vfloat(glass), out.glass);
+        out.alpha = rt_select(mine, rt_vfloat(alpha > 0.0f ? max(alpha, RT_LEAST_ALPHA) : 0.0f), out.alpha);
+        out.eta = rt_select(mine, rt_select(entering, rt_vfloat(m->ior), rt_vfloat(1.0f / m->ior)), out.eta);
+        if (m->flags & RT_MATERIAL_SINGLE_SCATTER) out.compensate &= ~mine;
+    }
+    return out;
+}
+
+#endif

@@ -1,0 +1,53 @@
+// edit.hpp -- changes to a scene's view as text. Presets, command lines and the window use the same words.
+//
+//   camera       ex,ey,ez,tx,ty,tz,fov_deg,ux,uy,uz      background, ambient   r,g,b
+//   light.N      off | point,x,y,z,r,g,b | directional,x,y,z,r,g,b             N counts the view's lights from 0; N = their
+//                                                                              number adds one
+//   camera_path  t:camera;t:camera;...: the camera at times of the clip; see camera_path.hpp
+//   material.N.M where M is color, emission or specular (r,g,b), reflect, refract, ior or shininess (a number)
+//   hide         instances that the picture leaves out: 3,5-9
+//   instance.N.M where M is translate (x,y,z), rotate (degrees about x, then y, then z) or scale (x,y,z, or one number): moves
+//                instance N from where its file or pose has it; see instance_edit.hpp. hidden (0 or 1): as in `hide`
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/view/camera_path.hpp"
+#include "render/view/view.hpp"
+#include "scene/instance_edit.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// One edit: "light.0", "off".
+struct Word {
+    std::string key, value;
+};
+
+// A view, the lights that are switched off in it, and what was done to the scene's instances.
+struct EditedView {
+    View view;                    // with all lights, including those that are off
+    std::vector<bool> lights_on;  // one for each light; missing ones are on
+    InstanceEdits instances;
+    CameraPath camera_path{};
+    bool follows_path = false;  // the camera was not set after the path
+};
+
+// Whether `key` is an edit. Other keys belong to the settings table.
+bool is_edit(const std::string& key);
+// Applies an edit. Throws Error(usage), which says what was read and what is allowed.
+void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value);
+// Returns the edits that turn `base` into `edited`. Numbers have all their digits. The camera is always included, or
+// its path if it follows one.
+std::vector<Word> edits_between(const Scene& scene, const EditedView& base, const EditedView& edited);
+// Returns the view to trace: without the lights that are off.
+View visible_view(const EditedView& edited);
+// Puts the edits in force that the scene's files make. Throws Error(import_failed), which names the file and the line.
+void apply_scene_edits(const Scene& scene, EditedView& edited);
+// A scene in which they are in force, for those who trace or describe it without a view. Shares all that is large.
+Scene with_scene_edits(Scene scene);
+// Returns what the scene's files, and then these edits, do to instances. Edits of other kinds are skipped.
+InstanceEdits instance_edits(const Scene& scene, const std::vector<Word>& edits);
+
+}  // namespace clarity

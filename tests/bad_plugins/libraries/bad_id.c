@@ -1,3 +1,0 @@
-#define ID "Sound-1"
-#include "sound.h"
-PLUGIN

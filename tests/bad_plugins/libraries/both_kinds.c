@@ -1,3 +1,0 @@
-#define IMPORTER &importer
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define NAME "sound\033[2J"
-#include "sound.h"
-PLUGIN

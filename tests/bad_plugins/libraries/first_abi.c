@@ -1,3 +1,0 @@
-#define ABI 1
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define CONTRACT (RT_KERNEL_CONTRACT + 1)
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define TREE NULL, "bvh2", NULL
-#include "sound.h"
-PLUGIN

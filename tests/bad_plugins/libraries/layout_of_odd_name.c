@@ -1,3 +1,0 @@
-#define TREE NULL, "BVH 2", NULL
-#include "sound.h"
-PLUGIN

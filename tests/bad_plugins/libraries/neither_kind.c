@@ -1,3 +1,0 @@
-#define ACCEL NULL
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define BUILD NULL
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define CONTRACT 0
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define PARAM_BYTES 0
-#include "sound.h"
-PLUGIN

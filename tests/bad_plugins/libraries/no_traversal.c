@@ -1,3 +1,0 @@
-#define TRAVERSE "sound.cl", NULL
-#include "sound.h"
-PLUGIN

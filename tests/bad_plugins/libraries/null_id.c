@@ -1,3 +1,0 @@
-#define ID NULL
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define ABI 0
-#include "sound.h"
-PLUGIN

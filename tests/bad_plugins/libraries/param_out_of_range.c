@@ -1,4 +1,0 @@
-#define PARAMS \
-    { "leaf", "Leaf", "primitives", RT_PARAM_INT, RT_EFFECT_REBUILD, 1, 16, 17, NULL }
-#include "sound.h"
-PLUGIN

@@ -1,4 +1,0 @@
-#define SLOTS \
-    { "nodes; }", "uint", 4, 0 }
-#include "sound.h"
-PLUGIN

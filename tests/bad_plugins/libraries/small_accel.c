@@ -1,3 +1,0 @@
-#define ACCEL_BYTES (sizeof(rt_accel) - 8)
-#include "sound.h"
-PLUGIN

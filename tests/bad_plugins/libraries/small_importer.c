@@ -1,5 +1,0 @@
-#define ACCEL NULL
-#define IMPORTER &importer
-#define IMPORTER_BYTES 8
-#include "sound.h"
-PLUGIN

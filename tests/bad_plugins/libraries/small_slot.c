@@ -1,3 +1,0 @@
-#define SLOT_BYTES (sizeof(rt_slot) - 8)
-#include "sound.h"
-PLUGIN

@@ -1,2 +1,0 @@
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define TRAITS 0, 1, 1, 7
-#include "sound.h"
-PLUGIN

@@ -1,3 +1,0 @@
-#define ABI (RT_ABI_VERSION + 1)
-#include "sound.h"
-PLUGIN

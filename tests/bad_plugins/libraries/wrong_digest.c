@@ -1,3 +1,0 @@
-#define DIGEST (RT_TYPES_DIGEST ^ 1u)
-#include "sound.h"
-PLUGIN

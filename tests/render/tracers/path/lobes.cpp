@@ -1,0 +1,108 @@
+#include "render/tracers/path/lobes.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <memory>
+
+#include "render/tracers/path/lane_kernel.hpp"
+
+namespace clarity::test {
+namespace {
+
+constexpr unsigned kReads = 19, kWrites = 16;
+static_assert(sizeof(LobeQuery) == 4 * 9 && sizeof(LobeAnswer) == 4 * kWrites);
+
+const char* const kBody = R"(
+    rt_bsdf b;
+    b.color = rt_vec_of(in[0], in[1], in[2]);
+    b.diffuse = in[3]; b.mirror = in[4]; b.metal = in[5]; b.glass = in[6]; b.alpha = in[7]; b.eta = in[8];
+    b.compensate = RT_MASK(in[9] > 0.5f);
+    const rt_vec wo = rt_vec_of(in[10], in[11], in[12]), wi = rt_vec_of(in[16], in[17], in[18]);
+    const vmask all = RT_MASK(in[9] > -1.0f);
+    const rt_bsdf_sample s = rt_bsdf_draw(&b, wo, in[13], in[14], in[15], all);
+    out[0] = s.wi.x; out[1] = s.wi.y; out[2] = s.wi.z;
+    out[3] = s.weight.x; out[4] = s.weight.y; out[5] = s.weight.z; out[6] = s.pdf;
+    out[7] = rt_select(s.valid, rt_vfloat(1.0f), rt_vfloat(0.0f)) + rt_select(s.delta, rt_vfloat(2.0f), rt_vfloat(0.0f)) +
+             rt_select(s.transmitted, rt_vfloat(4.0f), rt_vfloat(0.0f));
+    rt_vec f = rt_bsdf_eval(&b, wo, wi, all, out + 11);
+    out[8] = f.x; out[9] = f.y; out[10] = f.z;
+    f = rt_bsdf_eval(&b, wo, s.wi, s.valid, out + 15);
+    out[12] = f.x; out[13] = f.y; out[14] = f.z;
+)";
+
+LaneKernel& kernel(unsigned lanes) {
+    static std::map<unsigned, std::unique_ptr<LaneKernel>> compiled;
+    std::unique_ptr<LaneKernel>& found = compiled[lanes];
+    if (!found)
+        found = std::make_unique<LaneKernel>(
+            std::vector<std::string>{"lanes/lanes.h", "lanes/vec.h", "sampling/math.h", "sampling/warps.h",
+                                     "shading/lost_metal.h", "shading/lost_glass_outside.h", "shading/lost_glass_inside.h",
+                                     "shading/microfacets.h", "shading/bsdf.h"},
+            kReads, kWrites, kBody, lanes);
+    return *found;
+}
+
+}  // namespace
+
+Lobe lambert(float r, float g, float b) {
+    Lobe lobe{"Lambert"};
+    lobe.diffuse = 1;
+    lobe.color[0] = r;
+    lobe.color[1] = g;
+    lobe.color[2] = b;
+    return lobe;
+}
+
+Lobe metal(float roughness, bool compensate) {
+    Lobe lobe{"metal of roughness " + std::to_string(roughness)};
+    lobe.metal = 1;
+    lobe.alpha = roughness * roughness;
+    lobe.compensate = compensate;
+    return lobe;
+}
+
+Lobe glass(float roughness, float eta, bool compensate) {
+    Lobe lobe{"glass of roughness " + std::to_string(roughness) + ", eta " + std::to_string(eta)};
+    lobe.glass = 1;
+    lobe.alpha = roughness * roughness;
+    lobe.eta = eta;
+    lobe.compensate = compensate;
+    return lobe;
+}
+
+std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes) {
+    std::vector<float> rows;
+    rows.reserve(queries.size() * kReads);
+    for (const LobeQuery& query : queries) {
+        rows.insert(rows.end(), {lobe.color[0], lobe.color[1], lobe.color[2], lobe.diffuse, lobe.mirror, lobe.metal, lobe.glass,
+                                 lobe.alpha, lobe.eta, float(lobe.compensate)});
+        const float* const numbers = query.wo;
+        rows.insert(rows.end(), numbers, numbers + 9);
+    }
+    const std::vector<float> found = kernel(lanes).run(std::move(rows));
+    std::vector<LobeAnswer> answers(queries.size());
+    std::memcpy(answers.data(), found.data(), found.size() * sizeof(float));
+    return answers;
+}
+
+std::vector<LobeQuery> strata(double mu, unsigned side, unsigned seed) {
+    std::vector<LobeQuery> queries = draws(mu, size_t(side) * side, seed);
+    for (size_t i = 0; i < queries.size(); ++i) {
+        float* const u = queries[i].u;
+        u[1] = std::min((float(i % side) + u[1]) / float(side), 0.99999994f);
+        u[2] = std::min((float(i / side) + u[2]) / float(side), 0.99999994f);
+    }
+    return queries;
+}
+
+std::vector<LobeQuery> draws(double mu, size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    const auto u = [&] { return float(random() >> 8) * 0x1p-24f; };
+    std::vector<LobeQuery> queries(count);
+    const float sine = float(std::sqrt(1 - mu * mu));
+    for (LobeQuery& query : queries) query = {{sine * 0.6f, sine * -0.8f, float(mu)}, {u(), u(), u()}, {0, 0.6f, 0.8f}};
+    return queries;
+}
+
+}  // namespace clarity::test

@@ -1,0 +1,41 @@
+// lobes.hpp -- draws and evaluates surfaces of cl/shading/bsdf.h by themselves, on the default device.
+#pragma once
+#include <random>
+#include <string>
+#include <vector>
+
+namespace clarity::test {
+
+struct Lobe {
+    std::string name;
+    float color[3] = {1, 1, 1};
+    float diffuse = 0, mirror = 0, metal = 0, glass = 0, alpha = 0, eta = 1;
+    bool compensate = true;
+};
+Lobe lambert(float r, float g, float b);
+Lobe metal(float roughness, bool compensate = true);
+Lobe glass(float roughness, float eta, bool compensate = true);
+
+// What is asked of one lane: a direction is drawn for wo by u, and the lobe is evaluated for wi.
+struct LobeQuery {
+    float wo[3], u[3], wi[3];
+};
+struct LobeAnswer {
+    float wi[3], weight[3], pdf, flags;  // drawn; flags: 1 valid, 2 delta, 4 transmitted
+    float f[3], density;                 // for the given wi
+    float drawn_f[3], drawn_density;     // for the drawn wi
+    bool valid() const { return int(flags) & 1; }
+    bool delta() const { return int(flags) & 2; }
+    bool transmitted() const { return int(flags) & 4; }
+};
+
+// Asks `queries` of a lobe, with as many lanes as named. The programs are compiled once. faults: #define lines, for planted
+// faults.
+std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes = 16);
+
+// A direction with a cosine of mu to the normal and `count` triples of random numbers.
+std::vector<LobeQuery> draws(double mu, size_t count, unsigned seed);
+// The same with side x side triples, whose last two numbers are one in each stratum.
+std::vector<LobeQuery> strata(double mu, unsigned side, unsigned seed);
+
+}  // namespace clarity::test
