@@ -58,13 +58,15 @@ typedef struct rt_light {
     rt_f32 color[3];    /* linear RGB, intensity included */
     rt_u32 flags;       /* RT_LIGHT_FALLOFF, ... */
     rt_f32 u[3];        /* rect: from the middle to the middle of an edge */
-    rt_f32 radius;      /* disc, sphere */
+    rt_f32 radius;      /* disc, sphere. sun: sine of the half of its angle, exact where cos_outer is next to 1 */
     rt_f32 v[3];        /* rect: as u, of an edge beside it */
-    rt_f32 area;        /* rect, disc, sphere: of the side, or of both sides, that emits */
+    rt_f32 area;        /* rect, disc, sphere: of the side, or of both sides, that emits. sun: pi sin^2 of the half of its angle:
+                         * color / area is its radiance */
     rt_f32 normal[3];   /* unit: side that a rect (u x v) or a disc emits from; axis of a spot, into which it shines */
     rt_f32 cos_inner;   /* spot: cosine of the half angle within which it has its full intensity */
     rt_f32 cos_outer;   /* spot: beyond this half angle it has none. sun: cosine of the half of its angle */
-    rt_u32 pad[3];
+    rt_f32 inner, angle; /* degrees: whole angles of which the two cosines are, as users write them; the host's */
+    rt_u32 pad;
 } rt_light;
 
 /* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may

@@ -70,7 +70,8 @@ Camera framing_camera(const Scene& scene, float aspect) {
 }
 
 bool same_camera(const Camera& a, const Camera& b) {
-    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad && a.aperture == b.aperture &&
+           a.focus == b.focus;
 }
 
 }  // namespace clarity
