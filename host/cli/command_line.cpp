@@ -125,10 +125,9 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
     add_settings(app, trace.settings, trace.sets);
     app.get_option("--set")->description(
         "A setting as key=value (ray_slots=16), or a change of the view: "
-        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, "
-        "light.N=off|point,x,y,z,r,g,b|directional,..., "
-        "material.N.color=r,g,b (emission, specular, reflect, refract, ior, shininess), hide=3,5-9 (instances); may be "
-        "repeated");
+        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, camera.aperture=f, camera.focus=f, background=r,g,b, ambient=r,g,b, "
+        "light.N=off|point,x,y,z,r,g,b|rect,..., light.N.KEY=value, material.N.KEY=value (keys of text scenes), "
+        "hide=3,5-9 (instances); may be repeated");
 }
 
 void add_pose(CLI::App& app, PoseOptions& pose) {
