@@ -36,6 +36,7 @@
 #include "plugin/library_watch.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/view/size_note.hpp"
 
 namespace clarity {
 namespace {
@@ -94,6 +95,7 @@ class RenderJob {
                 if (todo != Todo::render) continue;
                 const auto begin = Clock::now();
                 if (moving_ || !scene_.placed()) scene_.place(shown);
+                if (rendered == 0) note_sizes();
                 if (moving_ || rendered == 0) prepare(progress);
                 if (!frames) frames.emplace(devices_, mpi_);
                 if (!render(*frames, {number, digest, begin}, progress)) return Exit::interrupted;
@@ -281,6 +283,12 @@ class RenderJob {
                       prepared.accel->build_ms, prepared.upload_ms, prepared.compile_ms,
                       prepared.compile_cached ? " (cached)" : "");
         log(LogLevel::debug, line);
+    }
+
+    // Once for each scene.
+    void note_sizes() const {
+        const std::string note = size_note(scene_.view().lights, settings_.tracer);
+        if (!note.empty() && is_first()) log(LogLevel::warning, note);
     }
 
     struct Frame {
