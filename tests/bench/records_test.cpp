@@ -156,7 +156,7 @@ TEST(Json, BadFilesAreRefusedAndTheRecordIsNamed) {
          {"", "{}", "[1]", "[{\"status\": \"ok\"}, {\"status\": \"splendid\"}]", "[{\"status\": \"ok\", \"lanes\": \"x\"}]",
           "[{\"status\": \"ok\", \"packet\": \"4\"}]", "[[]]", "null", "[{\"status\":"}) {
         SCOPED_TRACE(text);
-        test::expect_error([&] { read_bench_json(text); }, {"record "});
+        expect_error([&] { read_bench_json(text); }, {"record "});
     }
 }
 

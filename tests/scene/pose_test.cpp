@@ -82,7 +82,7 @@ TEST_F(PoseTest, OneClipActsAtATime) {
     key(RT_MOVES_TRANSLATION, 1, 0, 0, 5);
     EXPECT_NEAR(corner(at(1), 0)[0], -5, 1e-5) << "the first one acts where none is named";
     EXPECT_NEAR(corner(at(1, "right"), 0)[0], 5, 1e-5);
-    test::expect_error([&] { evaluate(scene_, "up", 0); }, {"left, right"}, Exit::usage);
+    expect_error([&] { evaluate(scene_, "up", 0); }, {"left, right"}, Exit::usage);
 }
 
 TEST_F(PoseTest, LayersAddAndBlend) {

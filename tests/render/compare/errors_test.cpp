@@ -62,7 +62,7 @@ TEST(PictureErrors, LeaveOutWhatIsNotFinite) {
 }
 
 TEST(PictureErrors, OtherSizesAreRefused) {
-    test::expect_error([&] { picture_errors(filled(8, 4, 0, 0, 0), filled(4, 8, 0, 0, 0)); }, {"8x4 and 4x8"});
+    expect_error([&] { picture_errors(filled(8, 4, 0, 0, 0), filled(4, 8, 0, 0, 0)); }, {"8x4 and 4x8"});
 }
 
 TEST(SignedErrors, AreRedWhereBrighterAndBlueWhereDarker) {

@@ -25,7 +25,7 @@ Checkpoint sample_checkpoint() {
 }
 
 std::string why_refused(const std::string& path) {
-    return test::expect_error([&] { load_checkpoint(path); }, {path}, Exit::failed);
+    return expect_error([&] { load_checkpoint(path); }, {path}, Exit::failed);
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ TEST(KernelArguments, OneThatIsNotDeclaredIsNamed) {
     KernelArguments kernel(cl::Kernel(), {"frame"}, "cl/tracers/x/x.cl: kernel trace_x");
     EXPECT_TRUE(kernel.has("frame"));
     EXPECT_FALSE(kernel.has("fram"));
-    test::expect_error([&] { kernel.set("film", cl_uint(0)); }, {"cl/tracers/x/x.cl: kernel trace_x has no argument `film`"},
+    expect_error([&] { kernel.set("film", cl_uint(0)); }, {"cl/tracers/x/x.cl: kernel trace_x has no argument `film`"},
                  Exit::kernel_build_failed);
 }
 
@@ -130,7 +130,7 @@ TEST(Layout, OnlyCpusTakeSeveralLanes) {
             EXPECT_EQ(settings.lanes, 1);
             continue;
         }
-        test::expect_error([&] { resolve_packet(settings, gpu); }, {"a GPU computes work-items side by side"}, Exit::usage);
+        expect_error([&] { resolve_packet(settings, gpu); }, {"a GPU computes work-items side by side"}, Exit::usage);
     }
 }
 
