@@ -2,9 +2,12 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_output.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -40,14 +43,14 @@ void save_row(Session& session, UiState& state) {
     static std::string path;
     const float width = ImGui::CalcTextSize("Save scene").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
-    ImGui::InputTextWithHint("##scene path", file_name(session.scene_path()).c_str(), &path);
+    ImGui::InputTextWithHint("##scene path", file_name(scene_path(session)).c_str(), &path);
     note_rect("Scene path");
-    tooltip("a path that ends in .scene; empty: " + session.scene_path());
+    tooltip("a path that ends in .scene; empty: " + scene_path(session));
     ImGui::SameLine();
     if (button("Save scene", "a text scene that loads these files and makes the edits of this window (Ctrl+E)", width))
         attempt(session, [&] {
-            const std::string to = path.empty() ? session.scene_path() : path;
-            session.save_scene(to);
+            const std::string to = path.empty() ? scene_path(session) : path;
+            save_scene(session, to);
             state.notify("saved " + to);
         });
 }
@@ -94,16 +97,21 @@ void camera_rows(Session& session, UiState& state) {
             ImGui::EndCombo();
         }
     }
-    const float speed = session.scene_size() * 0.002f;
+    const float speed = scene_size(session) * 0.002f;
     drag3("Eye", "where the camera is, in units of the file", camera.eye.data(), speed);
     drag3("Target", "the point it looks at", camera.target.data(), speed);
     float degrees = camera.fov_y_rad * 57.29578f;
     row_label("Field of view", "vertical, in degrees");
     if (slider("##fov", degrees, 5, 120, "%.1f\u00b0")) camera.fov_y_rad = degrees / 57.29578f;
+    row_label("Aperture", "diameter of the lens, in units of the file; 0: a pinhole. For `path`");
+    const float step = scene_size(session) * 0.0005f;
+    if (ImGui::DragFloat("##aperture", &camera.aperture, step, 0, 0, "%.3g")) camera.aperture = std::max(camera.aperture, 0.0f);
+    row_label("Focus", "distance along the view at which the lens is sharp; 0: that of the target");
+    if (ImGui::DragFloat("##focus", &camera.focus, 10 * step, 0, 0, "%.3g")) camera.focus = std::max(camera.focus, 0.0f);
     row_label("Key speed", "how fast the keys move the camera; 1: a third of the scene a second");
     slider("##speed", state.camera_speed, 0.05f, 10, "%.2f", true);
     const float half = share_of_line(2);
-    if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) session.frame_selection();
+    if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) frame_selection(session);
     ImGui::SameLine();
     if (button("Reset view", "the scene's own camera, lights and materials again (Home)", half)) session.reset_view();
     CameraPath& path = session.desired.camera_path;
@@ -111,7 +119,7 @@ void camera_rows(Session& session, UiState& state) {
                "the camera is here at the time of the timeline; with a key at another time it moves from one to the other. A "
                "scene that does not move gets a timeline of ten seconds",
                half))
-        session.set_camera_key();
+        session.playback().set_camera_key(session.desired);
     ImGui::SameLine();
     const std::string keys = path.empty() ? "no keys" : "Clear " + plural(path.keys.size(), "key");
     if (path.empty())

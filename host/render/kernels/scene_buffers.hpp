@@ -9,10 +9,11 @@
 namespace clarity {
 
 struct SceneBuffer {
-    const char *type, *name;  // in rt_ctx; as an argument of kernels it is called ctx_NAME
-    const char* what;         // for messages
-    size_t checked_bytes;     // if not 0: the size of the type, which is compared with the device's
-    bool of_shapes = false;   // only kernels of scenes with shapes have it
+    const char *type, *name;   // in rt_ctx; as an argument of kernels it is called ctx_NAME
+    const char* what;          // for messages
+    size_t checked_bytes;      // if not 0: the size of the type, which is compared with the device's
+    bool of_shapes = false;    // only kernels of scenes with shapes have it
+    bool of_emitters = false;  // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {
@@ -30,6 +31,11 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"rt_light", "lights", "lights", 0},
     {"rt_shape", "shapes", "shapes", sizeof(rt_shape), true},
     {"float", "shape_numbers", "numbers of shapes", 0, true},
+    {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), false, true},
+    {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, false, true},
+    {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), false, true},
+    {"float", "sky_texels", "picture of the sky", 0, false, true},
+    {"uint", "sky_picks", "tables of the sky", 0, false, true},
 };
 
 }  // namespace clarity

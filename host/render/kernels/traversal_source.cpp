@@ -67,7 +67,7 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
 
 }  // namespace
 
-std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features) {
+std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features, bool picks_lights) {
     out.line("#line 1 \"generated context\"\ntypedef struct rt_ctx {");
     std::string names, params, init;
     std::ostringstream checks;
@@ -84,7 +84,7 @@ std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneF
         init += " ctx." + name + " = ctx_" + name + ";";
     };
     for (const SceneBuffer& buffer : kSceneBuffers) {
-        if (buffer.of_shapes && !features.shapes) continue;
+        if ((buffer.of_shapes && !features.shapes) || (buffer.of_emitters && !picks_lights)) continue;
         add(buffer.type, buffer.name);
         if (buffer.checked_bytes) check(buffer.type, buffer.type, buffer.checked_bytes);
     }

@@ -7,8 +7,8 @@
 namespace clarity {
 
 // Writes rt_ctx: the scene's buffers and the structure's slots, as a struct, as kernel arguments, and as initialisation.
-// Returns the names of the arguments, separated by commas.
-std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features);
+// Returns the names of the arguments, separated by commas. picks_lights: with the buffers of kernels with kPicksLights.
+std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features, bool picks_lights);
 
 // A plugin's traversal as a template. The text is read once; the flags apply to all instances.
 struct TraversalTemplate {

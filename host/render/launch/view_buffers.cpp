@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "render/emitters/emitter_table.hpp"
 
 namespace clarity {
 namespace {
@@ -34,7 +35,31 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
     if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
 }
 
-void ViewBuffers::Part::write(cl::CommandQueue& queue, const void* data, size_t bytes) {
+void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
+                                 const View& view) {
+    const auto same = [](const auto& a, const auto& b) {
+        return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+    };
+    if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
+        same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background)
+        return;
+    const EmitterTable table = make_emitter_table(scene, *accel, view);
+    const auto upload = [&](UploadedBuffer& to, const auto& from) {
+        static const rt_emitter nothing{};  // kernels get no empty buffers
+        if (from.empty())
+            to.write(queue, &nothing, sizeof nothing);
+        else
+            to.write(queue, from.data(), from.size() * sizeof from[0]);
+    };
+    upload(emitters_, table.emitters);
+    upload(emitter_runs_, table.runs);
+    lighting_.write(queue, &table.lighting, sizeof table.lighting);
+    upload(sky_texels_, std::vector<float>());
+    upload(sky_picks_, std::vector<rt_u32>());
+    emitters_of_ = {accel, view.lights, view.materials, view.background};
+}
+
+void UploadedBuffer::write(cl::CommandQueue& queue, const void* data, size_t bytes) {
     const cl::Buffer before = buffer_.get();
     const cl::Buffer& to = buffer_.fit(queue.getInfo<CL_QUEUE_CONTEXT>(), bytes);
     const bool same =
@@ -51,7 +76,7 @@ void ViewBuffers::Part::write(cl::CommandQueue& queue, const void* data, size_t 
     }
 }
 
-ViewBuffers::Part::~Part() {
+UploadedBuffer::~UploadedBuffer() {
     try {
         if (on_its_way_()) on_its_way_.wait();
     } catch (const cl::Error&) {  // the device is lost: nothing reads this memory any more
@@ -61,6 +86,11 @@ ViewBuffers::Part::~Part() {
 void ViewBuffers::bind(const DeviceScene& scene, KernelArguments& kernel) const {
     kernel.set("frame", frame_.get());
     scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr);
+    if (!kernel.has("ctx_emitters")) return;
+    kernel.set("ctx_emitters", emitters_.get())
+        .set("ctx_emitter_runs", emitter_runs_.get())
+        .set("ctx_lighting", lighting_.get());
+    kernel.set("ctx_sky_texels", sky_texels_.get()).set("ctx_sky_picks", sky_picks_.get());
 }
 
 }  // namespace clarity

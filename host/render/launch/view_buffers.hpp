@@ -1,11 +1,26 @@
 // view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
 #pragma once
+#include "render/accel/accel_build.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/launch/device_scene.hpp"
 #include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
+
+// One buffer. Uploads only if the data has changed, and does not wait for the upload: either would cost as much as the kernel
+// of a small frame.
+class UploadedBuffer {
+ public:
+    ~UploadedBuffer();
+    void write(cl::CommandQueue& queue, const void* data, size_t bytes);
+    const cl::Buffer& get() const { return buffer_.get(); }
+
+ private:
+    GrowingBuffer buffer_{CL_MEM_READ_ONLY};
+    std::vector<unsigned char> written_;  // last content; the device may read it until on_its_way_ is complete
+    cl::Event on_its_way_;
+};
 
 // Reused from frame to frame. Uploads only what has changed. Used from one thread.
 class ViewBuffers {
@@ -19,25 +34,24 @@ class ViewBuffers {
     // number.
     void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
                const View& view, const std::vector<rt_u32>& rows = {});
+    // Uploads the table of emitters, for kernels with kPicksLights. The view is that of write(). Makes the table only if the
+    // structure, the lights or the materials have changed.
+    void write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
+                        const View& view);
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets `frame` and the scene's arguments of the kernel.
     void bind(const DeviceScene& scene, KernelArguments& kernel) const;
 
  private:
-    // One buffer. Uploads only if the data has changed, and does not wait for the upload: either would cost as much as the
-    // kernel of a small frame.
-    class Part {
-     public:
-        ~Part();
-        void write(cl::CommandQueue& queue, const void* data, size_t bytes);
-        const cl::Buffer& get() const { return buffer_.get(); }
-
-     private:
-        GrowingBuffer buffer_{CL_MEM_READ_ONLY};
-        std::vector<unsigned char> written_;  // last content; the device may read it until on_its_way_ is complete
-        cl::Event on_its_way_;
+    // What the table of emitters was made from.
+    struct EmittersOf {
+        std::weak_ptr<const AccelData> accel;
+        std::vector<rt_light> lights;
+        std::vector<rt_material> materials;
+        std::array<float, 3> background{};
     };
-    Part frame_, lights_, materials_;
+    UploadedBuffer frame_, lights_, materials_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
+    EmittersOf emitters_of_;
     std::vector<unsigned char> frames_and_rows_;
     bool own_materials_ = false;
 };

@@ -1,0 +1,272 @@
+/* emitters.h -- light for a path tracer: draws a direction towards a light, and tells of a ray what light it found and how likely
+ * the same direction would have been drawn. Both speak of the same densities, so that their results can be weighted.
+ *
+ * Rays must test area lights after the traversal (rt_hit_lights): they are no primitives, hide nothing from shadow rays, and
+ * win against a surface at the same distance. The sky and all suns are one light here: what is drawn towards any of them carries the
+ * light of all of them in that direction.
+ *
+ * Densities are per solid angle as seen from the ray's origin, with the probability of the pick.
+ *   planar      uniform by area; density distance^2 / (area cos)
+ *   sphere      uniform in the cone that it fills; from within, or from its surface, uniform in all directions
+ *   sun         uniform in its cone
+ *   sky         uniform in all directions, or by a picture's radiance (sky.h) */
+#ifndef RT_EMITTERS_H
+#define RT_EMITTERS_H
+
+typedef struct rt_light_sample {
+    rt_vec towards;            /* unit vector */
+    vfloat distance;           /* what a shadow ray must reach: a little less than the way to the light; infinite for sun and sky */
+    rt_vec radiance_over_pdf;  /* times f |cos|: light that comes from there. Of delta lights: their irradiance / probability */
+    vfloat pdf;                /* of the direction; of delta lights the probability of the pick */
+    vmask valid;               /* the light shines to the point, if nothing is between */
+    vmask delta;               /* no other ray finds this light */
+    vint light;                /* number in the frame, RT_LIGHT_OF_SURFACES or RT_LIGHT_OF_SKY */
+} rt_light_sample;
+
+/* A shadow ray ends this share before an emitter, so that it does not hit the emitter itself. */
+#define RT_LIGHT_CLEARANCE 1e-4f
+/* Within this share of its radius^2 a point counts as on a sphere. */
+#define RT_SPHERE_SHELL 1e-5f
+
+/* The squared sine of half the angle of a sun. `radius`: the sine, which says it better than the cosine of a small angle; 0: unknown. */
+RT_INLINE vfloat rt_sun_sin2(vfloat radius, vfloat cosine)
+{
+    return rt_select(RT_MASK(radius > rt_vfloat(0.0f)), radius * radius, (rt_vfloat(1.0f) - cosine) * (rt_vfloat(1.0f) + cosine));
+}
+/* 1 - cos of an angle, given its squared sine; angles up to a right one. */
+RT_INLINE vfloat rt_versine(vfloat sin2) { return sin2 / (rt_vfloat(1.0f) + sqrt(rt_max(rt_vfloat(1.0f) - sin2, rt_vfloat(0.0f)))); }
+RT_INLINE vfloat rt_cone_angle(vfloat versine)
+{
+#ifdef RT_FAULT_9 /* half of the solid angle */
+    return rt_vfloat(RT_PI) * versine;
+#else
+    return rt_vfloat(2.0f * RT_PI) * versine;
+#endif
+}
+
+/* A direction whose cosine to the unit vector `axis` is 1 - height at least. */
+RT_INLINE rt_vec rt_in_cone(rt_vec axis, vfloat u1, vfloat u2, vfloat height)
+{
+    rt_vec x, y;
+    rt_basis(axis, &x, &y);
+    return rt_to_world(x, y, axis, rt_warp_cone(u1, u2, height));
+}
+
+/* ---- spheres. to: from the point to the middle. */
+
+/* The density of rt_draw_sphere() where the direction meets the sphere, without the pick. */
+RT_INLINE vfloat rt_sphere_density(rt_vec to, vfloat radius)
+{
+    const vfloat d2 = rt_dot(to, to), r2 = radius * radius;
+    const vmask outside = RT_MASK(d2 > r2 * rt_vfloat(1.0f + RT_SPHERE_SHELL));
+    return rt_vfloat(1.0f) / (rt_vfloat(2.0f * RT_PI) * rt_select(outside, rt_versine(rt_min(r2 / d2, rt_vfloat(1.0f))), rt_vfloat(2.0f)));
+}
+
+/* The distance at which a unit direction meets a sphere, negative if it does not. *from_within: it meets it from inside. */
+RT_INLINE vfloat rt_meet_sphere(rt_vec to, vfloat radius, rt_vec direction, vmask *from_within)
+{
+    const vfloat zero = rt_vfloat(0.0f), none = rt_vfloat(-1.0f);
+    const vfloat along = rt_dot(to, direction), c = rt_dot(to, to) - radius * radius;
+    const rt_vec beside = rt_sub(to, rt_scale(along, direction));
+    const vfloat room = fma(radius, radius, -rt_dot(beside, beside));
+    const vfloat root = sqrt(rt_max(room, zero));
+    const vmask meets = RT_MASK(room >= zero), near = RT_MASK(c > zero) & RT_MASK(along > zero);
+    *from_within = ~near;
+    const vfloat far_t = along + root;
+    return rt_select(meets, rt_select(near, c / far_t, rt_select(RT_MASK(far_t > zero), far_t, none)), none);
+}
+
+/* Draws a direction towards a sphere. Some miss it, if the point is on its surface. Returns the density, without the pick. */
+RT_INLINE vfloat rt_draw_sphere(rt_vec to, vfloat radius, vfloat u1, vfloat u2, rt_vec *direction)
+{
+    const vfloat d2 = rt_dot(to, to), r2 = radius * radius;
+    const vmask outside = RT_MASK(d2 > r2 * rt_vfloat(1.0f + RT_SPHERE_SHELL));
+    const vfloat height = rt_select(outside, rt_versine(rt_min(r2 / d2, rt_vfloat(1.0f))), rt_vfloat(2.0f));
+    const rt_vec axis = rt_choose(RT_MASK(d2 > rt_vfloat(0.0f)), rt_normalize(to), rt_splat(0.0f, 0.0f, 1.0f));
+    *direction = rt_in_cone(axis, u1, u2, height);
+    return rt_sphere_density(to, radius);
+}
+
+/* ---- flat lights */
+
+/* The density per solid angle of a point that is drawn uniformly from an area. cosine: of the angle at the light. */
+RT_INLINE vfloat rt_flat_density(vfloat distance2, vfloat area, vfloat cosine)
+{
+#ifdef RT_FAULT_5 /* light pdf without distance^2 */
+    distance2 = rt_vfloat(1.0f);
+#endif
+#ifdef RT_FAULT_6 /* light pdf without cosine */
+    cosine = rt_vfloat(1.0f);
+#endif
+    return distance2 / (area * cosine);
+}
+
+/* The area of an emitter that u and v span, in |u x v|. */
+RT_INLINE vfloat rt_flat_factor(vint kind)
+{
+    return rt_select(RT_MASK(kind == rt_vint((int)RT_LIGHT_RECT)), rt_vfloat(4.0f),
+                     rt_select(RT_MASK(kind == rt_vint((int)RT_LIGHT_DISC)), rt_vfloat(RT_PI), rt_vfloat(0.5f)));
+}
+
+RT_INLINE rt_vec rt_cross_vec(rt_vec a, rt_vec b)
+{
+    return rt_vec_of(fma(a.y, b.z, -a.z * b.y), fma(a.z, b.x, -a.x * b.z), fma(a.x, b.y, -a.y * b.x));
+}
+
+/* Draws a point of a rect, a disc or a triangle. *to: from the point `at` to it. *density: without the pick. Returns the lanes that it
+ * shines to. */
+RT_INLINE vmask rt_draw_flat(const rt_lit *lit, rt_vec at, vfloat u1, vfloat u2, rt_vec *to, vfloat *density)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), two = rt_vfloat(2.0f);
+    const vmask rect = RT_MASK(lit->kind == rt_vint((int)RT_LIGHT_RECT)), disc = RT_MASK(lit->kind == rt_vint((int)RT_LIGHT_DISC));
+    vfloat s, t;
+    rt_warp_triangle(u1, u2, &s, &t);
+    s = rt_select(rect, fma(two, u1, -one), s);
+    t = rt_select(rect, fma(two, u2, -one), t);
+    if (rt_any(disc)) {
+        vfloat x, y;
+        rt_warp_disc(u1, u2, &x, &y);
+        s = rt_select(disc, x, s);
+        t = rt_select(disc, y, t);
+    }
+    const rt_vec n = rt_cross_vec(lit->u, lit->v);
+    const vfloat size2 = rt_dot(n, n), size = sqrt(size2);
+    *to = rt_add(rt_sub(lit->p, at), rt_along(s, lit->u, rt_scale(t, lit->v)));
+    const vfloat d2 = rt_dot(*to, *to), facing = -rt_dot(n, *to);
+    const vfloat cosine = rt_select(lit->two_sided, fabs(facing), facing) / (size * sqrt(d2));
+    const vfloat area = rt_select(RT_MASK(lit->area > zero), lit->area, rt_flat_factor(lit->kind) * size);
+    const vmask shines = RT_MASK(cosine > zero) & RT_MASK(size2 > zero) & RT_MASK(d2 > zero);
+    *density = rt_flat_density(d2, area, rt_select(shines, cosine, one));
+    return shines;
+}
+
+/* ---- sky and suns */
+
+/* The light from sun and sky in unit directions, and the density with which rt_light_draw() draws them. */
+RT_INLINE rt_vec rt_sky(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec direction, vmask lanes, vfloat *pdf)
+{
+    const global rt_lighting *lighting = ctx->lighting;
+    const vfloat zero = rt_vfloat(0.0f);
+    vfloat density = zero;
+    rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
+    if (lighting->sky_emitter != RT_NONE) {
+        sum = rt_sky_radiance(ctx, direction, lanes, &density);
+        density *= rt_vfloat(ctx->emitters[lighting->sky_emitter].pick);
+    }
+    if (lighting->sun_count != 0u)
+        for (uint i = 0; i < frame->light_count; ++i) {
+            const global rt_light *sun = ctx->lights + i;
+            if (sun->kind != RT_LIGHT_SUN) continue;
+            const vfloat sin2 = rt_sun_sin2(rt_vfloat(sun->radius), rt_vfloat(sun->cos_outer)), versine = rt_versine(sin2);
+            /* Of two unit vectors the squared difference is twice 1 - cos, which does not cancel as 1 - cos does. */
+            const rt_vec beside = rt_sub(direction, rt_spread(sun->position));
+            const vmask inside = RT_MASK(rt_dot(beside, beside) < rt_vfloat(2.0f) * versine);
+            if (!rt_any(inside)) continue;
+            const vfloat inverse = rt_vfloat(1.0f) / (rt_vfloat(RT_PI) * sin2);
+            sum = rt_choose(inside, rt_along(inverse, rt_spread(sun->color), sum), sum);
+            density = rt_select(inside, density + rt_vfloat(ctx->emitters[i].pick) / rt_cone_angle(versine), density);
+        }
+    *pdf = density;
+    return sum;
+}
+
+/* What camera rays see where they hit nothing. */
+RT_INLINE rt_vec rt_seen_sky(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec direction, vmask lanes)
+{
+    vfloat pdf;
+    if (ctx->lighting->sky_hidden != 0u) return rt_spread(ctx->lighting->background);
+    return rt_sky(ctx, frame, direction, lanes, &pdf);
+}
+
+/* ---- drawing */
+
+/* Draws a light and a direction towards it from the points `at`, by three random numbers of [0, 1). */
+RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec at, vfloat u_pick, vfloat u1, vfloat u2,
+                                        vmask lanes)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_light_sample out;
+    out.towards = rt_splat(0.0f, 0.0f, 1.0f);
+    out.radiance_over_pdf = rt_splat(0.0f, 0.0f, 0.0f);
+    out.distance = RT_INFINITY;
+    out.pdf = zero;
+    out.valid = out.delta = rt_vint(0);
+    out.light = rt_vint(-1);
+    if (ctx->lighting->emitter_count == 0u) return out;
+    const rt_lit lit = rt_pick_emitters(ctx, u_pick, u1);
+    lanes &= RT_MASK(lit.pick > zero);
+    out.light = lit.light;
+    const vfloat legacy = rt_select(lit.falloff, one, rt_vfloat(RT_PI)); /* irradiance of lights without falloff: pi times color */
+#define RT_KIND(k) (lanes & RT_MASK(lit.kind == rt_vint((int)(k))))
+    const vmask spot = RT_KIND(RT_LIGHT_SPOT), point = spot | RT_KIND(RT_LIGHT_POINT);
+    const vmask flat = RT_KIND(RT_LIGHT_RECT) | RT_KIND(RT_LIGHT_DISC) | RT_KIND(RT_EMITTER_SURFACE), sphere = RT_KIND(RT_LIGHT_SPHERE);
+    vmask sun = RT_KIND(RT_LIGHT_SUN), directional = RT_KIND(RT_LIGHT_DIRECTIONAL);
+    const vfloat sun_sin2 = rt_sun_sin2(lit.radius, lit.cos_outer);
+    const vmask sharp = sun & RT_MASK(sun_sin2 <= zero);
+    sun &= ~sharp;
+    const vmask far = sun | RT_KIND(RT_EMITTER_SKY);
+    rt_vec light = lit.color;
+    vfloat density = one;
+    out.delta = point | directional | sharp;
+    out.valid = out.delta;
+    if (rt_any(point)) {
+        const rt_vec to = rt_sub(lit.p, at);
+        const vfloat d2 = rt_dot(to, to), scale = rt_inverse_length(to);
+        const rt_vec towards = rt_scale(scale, to);
+        /* KHR_lights_punctual: the square of a linear ramp between the cosines of both angles. */
+        const vfloat ramp = clamp((-rt_dot(lit.u, towards) - lit.cos_outer) / rt_max(lit.cos_inner - lit.cos_outer, rt_vfloat(1e-3f)), zero, one);
+        const vfloat strength = rt_select(spot, ramp * ramp, one) * rt_select(lit.falloff, one / rt_max(d2, rt_vfloat(1e-30f)), rt_vfloat(RT_PI));
+        out.towards = rt_choose(point, towards, out.towards);
+        out.distance = rt_select(point, sqrt(d2), out.distance);
+        light = rt_choose(point, rt_scale(strength, lit.color), light);
+        out.valid &= ~point | RT_MASK(d2 > zero) & RT_MASK(strength > zero);
+    }
+    if (rt_any(directional | sharp)) {
+        out.towards = rt_choose(directional | sharp, lit.p, out.towards);
+        light = rt_choose(directional, rt_scale(legacy, lit.color), light);
+    }
+    if (rt_any(flat)) {
+        rt_vec to;
+        vfloat by_area;
+        const vmask shines = flat & rt_draw_flat(&lit, at, lit.u1, u2, &to, &by_area);
+        const vfloat scale = rt_inverse_length(to);
+        out.towards = rt_choose(flat, rt_scale(scale, to), out.towards);
+        out.distance = rt_select(flat, rt_vfloat(1.0f - RT_LIGHT_CLEARANCE) / scale, out.distance);
+        density = rt_select(flat, by_area, density);
+        out.valid |= shines;
+    }
+    if (rt_any(sphere)) {
+        const rt_vec to = rt_sub(lit.p, at);
+        rt_vec direction;
+        vmask from_within;
+        const vfloat by_cone = rt_draw_sphere(to, lit.radius, u1, u2, &direction);
+        /* At the rim of the cone rounding decides whether the sphere is met. There the distance is that of the rim. */
+        vfloat distance = rt_meet_sphere(to, lit.radius, direction, &from_within);
+        const vfloat c = rt_dot(to, to) - lit.radius * lit.radius;
+        const vmask outside = RT_MASK(c > lit.radius * lit.radius * rt_vfloat(RT_SPHERE_SHELL));
+        const vmask rim = outside & (RT_MASK(distance < zero) | from_within);
+        distance = rt_select(rim, sqrt(rt_max(c, zero)), distance);
+        out.towards = rt_choose(sphere, direction, out.towards);
+        out.distance = rt_select(sphere, distance * rt_vfloat(1.0f - RT_LIGHT_CLEARANCE), out.distance);
+        density = rt_select(sphere, by_cone, density);
+        out.valid |= sphere & RT_MASK(distance > zero) & (lit.two_sided | ~from_within | rim);
+    }
+    if (rt_any(far)) {
+        rt_vec direction = rt_in_cone(lit.p, u1, u2, rt_versine(sun_sin2));
+        if (rt_any(far & ~sun)) direction = rt_choose(sun, direction, rt_draw_sky(ctx, u1, u2, far & ~sun));
+        vfloat of_all;
+        const rt_vec sky = rt_sky(ctx, frame, direction, far, &of_all);
+        out.towards = rt_choose(far, direction, out.towards);
+        light = rt_choose(far, sky, light);
+        density = rt_select(far, of_all, density * lit.pick);
+        out.valid |= far & RT_MASK(of_all > zero);
+    } else {
+        density *= lit.pick;
+    }
+#undef RT_KIND
+    out.pdf = rt_select(out.valid, density, zero);
+    out.radiance_over_pdf = rt_choose(out.valid, rt_scale(one / rt_select(out.valid, density, one), light), out.radiance_over_pdf);
+    return out;
+}
+
+#endif

@@ -1,0 +1,253 @@
+#include "render/emitters/emitter_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/angle.hpp"
+#include "render/emitters/pick_table.hpp"
+#include "scene/vec.hpp"
+
+namespace clarity {
+namespace {
+
+double mean(const rt_f32* color) {
+    return (double(std::max(color[0], 0.f)) + std::max(color[1], 0.f) + std::max(color[2], 0.f)) / 3;
+}
+
+// The power of a light in a scene of that radius, whatever its unit: that of a light that is far is what falls on the scene.
+double power_of(const rt_light& light, double radius) {
+    const double color = mean(light.color), disc = kPi * radius * radius;
+    const bool falls = (light.flags & RT_LIGHT_FALLOFF) != 0;
+    const double sides = light.flags & RT_LIGHT_TWO_SIDED ? 2 : 1;
+    switch (light.kind) {
+        case RT_LIGHT_POINT:
+            return falls ? 4 * kPi * color : kPi * color * disc;
+        case RT_LIGHT_SPOT:
+            return falls ? 2 * kPi * (1 - 0.5 * (double(light.cos_inner) + light.cos_outer)) * color : kPi * color * disc;
+        case RT_LIGHT_DIRECTIONAL:
+            return (falls ? 1 : kPi) * color * disc;
+        case RT_LIGHT_SUN:
+            return color * disc;
+        case RT_LIGHT_RECT:
+            return 4 * length(cross(to_vec(light.u), to_vec(light.v))) * kPi * sides * color;
+        case RT_LIGHT_DISC:
+            return kPi * light.radius * light.radius * kPi * sides * color;
+        case RT_LIGHT_SPHERE:
+            return 4 * kPi * light.radius * light.radius * kPi * color;
+    }
+    return 0;
+}
+
+// The radius of a sphere around the scene; 1 if it has planes only.
+double scene_radius(const Bounds& bounds) {
+    const double radius = bounds.empty ? 0 : 0.5 * bounds.diagonal();
+    return radius > 0 && std::isfinite(radius) ? radius : 1;
+}
+
+// Collects the emissive primitives, by ascending numbers.
+class Collector {
+ public:
+    Collector(const Scene& scene, const AccelData& accel, const View& view, EmitterTable& out, std::vector<double>& powers)
+        : scene_(scene), accel_(accel), view_(view), out_(out), powers_(powers) {
+        for (size_t i = 0; i < scene.materials.size(); ++i) emits_.push_back(mean(material(i).emission) > 0);
+    }
+
+    void collect() {
+        if (std::find(emits_.begin(), emits_.end(), true) != emits_.end()) {
+            add_triangles();
+            add_spheres();
+            add_polygons();
+            count_others();
+        }
+        if (!out_.runs.empty()) {
+            out_.lighting.run_count = rt_u32(out_.runs.size());
+            out_.runs.push_back({RT_NONE, rt_u32(out_.emitters.size())});
+        }
+    }
+
+ private:
+    const rt_material& material(size_t i) const {
+        return view_.materials.empty() ? scene_.materials[i].values : view_.materials[i];
+    }
+    const rt_packed_prim& leaf(rt_u32 at) const { return static_cast<const rt_packed_prim*>(accel_.leaves.data())[at]; }
+
+    // For each primitive of a kind that emits, by its ref: a leaf that holds it. Of a primitive that was cut there are several,
+    // all alike. instances: primitives of an instance whose own material emits count, too.
+    std::vector<rt_u32> leaves_of(rt_u32 kind, size_t count, bool all) const {
+        std::vector<rt_u32> found(count, RT_NONE);
+        for (uint64_t at = 0; at < accel_.leaf_count; ++at) {
+            const rt_packed_prim& prim = leaf(rt_u32(at));
+            if (RT_REF_KIND(prim.ref) == kind && (all || emits_[prim.material])) found[RT_REF_INDEX(prim.ref)] = rt_u32(at);
+        }
+        return found;
+    }
+
+    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, uint64_t& count) {
+        if (!(area > 0) || !std::isfinite(area)) return;
+        if (out_.emitters.size() >= kMostPicked) {
+            ++out_.counts.too_many;
+            return;
+        }
+        const auto number = rt_u32(out_.emitters.size());
+        if (out_.runs.empty() || prim - out_.runs.back().first_prim != number - out_.runs.back().first_emitter)
+            out_.runs.push_back({prim, number});
+        rt_emitter emitter{};
+        emitter.kind = RT_EMITTER_SURFACE;
+        emitter.at = at;
+        emitter.instance = instance;
+        emitter.prim = prim;
+        emitter.area = static_cast<float>(area);
+        out_.emitters.push_back(emitter);
+        const rt_material& m = material(of_material);
+        powers_.push_back(area * kPi * mean(m.emission) * (m.flags & RT_MATERIAL_ONE_SIDED ? 1 : 2));
+        ++count;
+    }
+
+    static double triangle_area(const rt_packed_prim& prim, const Affine* placed) {
+        Vec edge[2];
+        for (int e = 0; e < 2; ++e) {
+            const rt_f32* const end = e == 0 ? prim.b : prim.c;
+            const Vec in_mesh = to_vec(end) - to_vec(prim.a);
+            edge[e] = in_mesh;
+            if (placed)
+                for (int k = 0; k < 3; ++k) {
+                    const float* const row = placed->data() + 4 * k;
+                    edge[e][k] = row[0] * in_mesh[0] + row[1] * in_mesh[1] + row[2] * in_mesh[2];
+                }
+        }
+        return 0.5 * length(cross(edge[0], edge[1]));
+    }
+
+    // A triangle of the world or of an instance, before they are in order.
+    struct Found {
+        rt_u32 prim, at, instance, material;
+        double area;
+    };
+
+    void add_triangles() {
+        const BuildScene& build = accel_.scene;
+        const bool by_instance = std::any_of(accel_.instances.begin(), accel_.instances.end(),
+                                             [&](const rt_instance& i) { return i.material != RT_NONE && emits_[i.material]; });
+        const std::vector<rt_u32> leaves = leaves_of(RT_REF_TRIANGLE, build.attribute_triangle.size(), by_instance);
+        std::vector<Found> found;
+        const auto add_group = [&](rt_u32 group, rt_u32 instance) {
+            const rt_u32 first = build.first_ref_of_group[group],
+                         end = group == 0 ? rt_u32(leaves.size()) : first + build.groups[group].count;
+            const rt_instance* const placed = instance == RT_NONE ? nullptr : &accel_.instances[instance];
+            const Affine* const world = placed ? &build.world_from_object[instance] : nullptr;
+            for (rt_u32 ref = first; ref < end; ++ref) {
+                if (leaves[ref] == RT_NONE) continue;
+                const rt_packed_prim& prim = leaf(leaves[ref]);
+                const rt_u32 of = placed && placed->material != RT_NONE ? placed->material : prim.material;
+                if (!emits_[of]) continue;
+                found.push_back(
+                    {(placed ? placed->first_prim : 0) + prim.prim, leaves[ref], instance, of, triangle_area(prim, world)});
+            }
+        };
+        add_group(0, RT_NONE);
+        for (rt_u32 i = 0; i < accel_.instances.size(); ++i)
+            if (!accel_.instances[i].hidden) add_group(build.group_of_instance[i], i);
+        std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.prim < b.prim; });
+        for (const Found& f : found) add(f.at, f.instance, f.prim, f.material, f.area, out_.counts.triangles);
+    }
+
+    void add_spheres() {
+        const std::vector<rt_u32> leaves = leaves_of(RT_REF_SPHERE, accel_.scene.spheres.size(), false);
+        for (const rt_u32 at : leaves)
+            if (at != RT_NONE)
+                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * kPi * double(leaf(at).b[0]) * leaf(at).b[0],
+                    out_.counts.spheres);
+    }
+
+    void add_polygons() {
+        const BuildScene& build = accel_.scene;
+        const std::vector<rt_u32> leaves = leaves_of(RT_REF_POLYGON, build.polygons.size(), false);
+        for (size_t i = 0; i < leaves.size(); ++i) {
+            if (leaves[i] == RT_NONE) continue;
+            const rt_polygon& polygon = build.polygon_table[i];
+            const float* const corners = &build.polygon_corners[3 * size_t(polygon.first)];
+            if (!is_convex(corners, polygon.count)) {
+                ++out_.counts.bent_polygons;
+                continue;
+            }
+            double area = 0;
+            for (rt_u32 c = 2; c < polygon.count; ++c)
+                area += 0.5 * length(cross(to_vec(corners + 3 * (c - 1)) - to_vec(corners),
+                                           to_vec(corners + 3 * c) - to_vec(corners)));
+            add(leaves[i], RT_NONE, leaf(leaves[i]).prim, leaf(leaves[i]).material, area, out_.counts.polygons);
+        }
+    }
+
+    void count_others() {
+        for (const rt_plane& plane : accel_.scene.planes) out_.counts.planes += emits_[plane.material];
+        for (const Shape& shape : scene_.shapes) out_.counts.shapes += emits_[shape.material];
+    }
+
+    const Scene& scene_;
+    const AccelData& accel_;
+    const View& view_;
+    EmitterTable& out_;
+    std::vector<double>& powers_;
+    std::vector<bool> emits_;
+};
+
+}  // namespace
+
+const std::vector<const char*>& emitter_headers() {
+    static const std::vector<const char*> headers = {"shading/emitter_table.h", "shading/sky.h", "shading/emitters.h",
+                                                     "shading/emission.h"};
+    return headers;
+}
+
+bool is_convex(const float* corners, size_t count) {
+    Vec normal{};
+    const auto at = [&](size_t i) { return to_vec(corners + 3 * (i % count)); };
+    for (size_t i = 2; i < count; ++i) normal = normal + cross(at(i - 1) - at(0), at(i) - at(0));
+    const double size = length(normal);
+    if (!(size > 0)) return false;
+    normal = (1 / size) * normal;
+    // Every corner turns the same way, once around, and is in the plane.
+    double turned = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const Vec before = at(i + count - 1), here = at(i), after = at(i + 1), in = here - before, out = after - here;
+        if (std::fabs(dot(normal, here - at(0))) > 1e-4 * std::sqrt(size)) return false;
+        const double sine = dot(normal, cross(in, out));
+        if (sine < -1e-6 * length(in) * length(out)) return false;
+        turned += std::atan2(sine, dot(in, out));
+    }
+    return turned < 3 * kPi;
+}
+
+EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view) {
+    EmitterTable out;
+    std::vector<double> powers;
+    const double radius = scene_radius(accel.scene.bounds);
+    for (const rt_light& light : view.lights) {
+        rt_emitter emitter{};
+        emitter.kind = light.kind;
+        emitter.at = rt_u32(out.emitters.size());
+        emitter.instance = emitter.prim = RT_NONE;
+        out.emitters.push_back(emitter);
+        powers.push_back(power_of(light, radius));
+        out.lighting.sun_count += light.kind == RT_LIGHT_SUN;
+    }
+    rt_lighting& lighting = out.lighting;
+    lighting.sky_emitter = RT_NONE;
+    lighting.sky_kind = RT_SKY_CONSTANT;
+    for (int k = 0; k < 3; ++k) lighting.sky_color[k] = lighting.background[k] = view.background[k];
+    if (const double sky = 4 * kPi * mean(lighting.sky_color); sky > 0) {
+        lighting.sky_emitter = rt_u32(out.emitters.size());
+        rt_emitter emitter{};
+        emitter.kind = RT_EMITTER_SKY;
+        emitter.instance = emitter.prim = RT_NONE;
+        out.emitters.push_back(emitter);
+        powers.push_back(sky * kPi * radius * radius);
+    }
+    Collector(scene, accel, view, out, powers).collect();
+    const bool any = std::any_of(powers.begin(), powers.end(), [](double power) { return power > 0; });
+    lighting.emitter_count = any ? rt_u32(powers.size()) : 0;
+    lighting.cell_bits = fill_pick_table(powers, out.emitters);
+    return out;
+}
+
+}  // namespace clarity

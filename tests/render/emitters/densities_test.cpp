@@ -1,0 +1,191 @@
+// densities_test.cpp -- what is drawn and what rays find speak of the same densities, and these are those of the draws.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/angle.hpp"
+#include "render/emitters/light_bench.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+constexpr double kFullSphere = 4 * kPi;
+
+rt_material emitting(float radiance, rt_u32 flags = 0) {
+    rt_material material = diffuse(0, 0, 0);
+    for (float& channel : material.emission) channel = radiance;
+    material.flags = flags;
+    return material;
+}
+
+TriangleMesh square() {
+    TriangleMesh mesh;
+    const rt_u32 a = mesh.add_vertex(-1, 0, -1), b = mesh.add_vertex(1, 0, -1), c = mesh.add_vertex(1, 0, 1),
+                 d = mesh.add_vertex(-1, 0, 1);
+    mesh.add_triangle(a, b, c);
+    mesh.add_triangle(a, c, d);
+    return mesh;
+}
+
+Instance placed(const Affine& world_from_object, rt_u32 material = RT_NONE) {
+    Instance instance;
+    instance.world_from_object = world_from_object;
+    instance.material = material;
+    return instance;
+}
+
+void add_polygon(Scene& scene, rt_u32 material, const std::vector<float>& corners) {
+    Polygon polygon;
+    polygon.first_corner = rt_u32(scene.polygon_corners.size() / 3);
+    polygon.corner_count = rt_u32(corners.size() / 3);
+    polygon.material = material;
+    scene.polygons.push_back(polygon);
+    scene.polygon_corners.insert(scene.polygon_corners.end(), corners.begin(), corners.end());
+}
+
+// Everything that emits, around the origin: instances that scale, shear and mirror, an emitting sphere, a polygon, all lights.
+Scene full_scene() {
+    Scene scene = scene_of(square());
+    const rt_u32 two = add_material(scene, emitting(2)), one = add_material(scene, emitting(3, RT_MATERIAL_ONE_SIDED));
+    scene.instances.clear();
+    scene.instances.push_back(placed({2, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1, 0}, two));        // above, 4 x 2
+    scene.instances.push_back(placed({-1, 0.5f, 0, 0, 0, 1, 0, -3, 0, 0, 1, 0}, one));   // mirrored: faces up or down
+    scene.instances.push_back(placed({0, 1, 0, 3, 1, 0, 0, 0, 0.3f, 0, 0.7f, 0}, one));  // to the right
+    scene.instances.push_back(placed({0, 1, 0, 3.5f, 1, 0, 0, 0, 0, 0, 1, 0}));          // dark, behind it
+    Sphere ball;
+    ball.center = {-3, 0, 0};
+    ball.radius = 1.2f;
+    ball.material = two;
+    scene.spheres.push_back(ball);
+    add_polygon(scene, two, {-1, -1, -3, 1, -1, -3, 1.5f, 0.5f, -3, 0, 1.5f, -3, -1.5f, 0.5f, -3});
+    return scene;
+}
+
+View full_view() {
+    View view = dark_view();
+    view.background = {0.2f, 0.1f, 0.05f};
+    view.lights = {rect_light({0, 0, 4}, {1, 0, 0.2f}, {0.3f, 1, 0}, 2), disc_light({2, 2, 2}, {-1, -1, -1}, 0.7f, 5),
+                   sphere_light({-2, 2, 2}, 0.5f, 4), sun_light({1, 2, -3}, 20, 0.5f)};
+    view.lights[0].flags |= RT_LIGHT_TWO_SIDED;
+    return view;
+}
+
+// Without light that has no size. Each drawn ray meets what was drawn, unless something is before it, and finds its radiance
+// and its density.
+TEST(Lights, RaysFindWhatWasDrawn) {
+    LightBench bench(full_scene(), full_view());
+    size_t seen = 0, of_surfaces = 0, of_sky = 0, of_lights = 0;
+    for (const LightDraw& draw : bench.draw({0.1f, 0.05f, -0.2f}, even_numbers(1 << 16, 1))) {
+        if (!draw.valid || draw.occluded) continue;
+        ASSERT_FALSE(draw.delta);
+        if (draw.found_distance < draw.distance * 0.9999f) continue;  // an area light is before it
+        ASSERT_GT(draw.pdf, 0);
+        const bool rim = draw.found_distance > draw.distance * 1.001f && std::isfinite(draw.distance);
+        if (rim) continue;  // counted below
+        ++seen;
+        of_surfaces += draw.number == 0x40000000;
+        of_sky += draw.number == 0x40000001 || draw.number == 3;
+        of_lights += draw.number < 3;
+        ASSERT_NEAR(draw.found_pdf / draw.pdf, 1, 2e-4) << draw.number << " at " << draw.distance;
+        for (int k = 0; k < 3; ++k)
+            ASSERT_NEAR(draw.found[k] / draw.found_pdf, draw.light[k], 3e-4 * draw.light[k]) << draw.number;
+    }
+    EXPECT_GT(seen, 20000u);
+    EXPECT_GT(of_surfaces, 4000u);
+    EXPECT_GT(of_sky, 2000u);
+    EXPECT_GT(of_lights, 500u);
+}
+
+// Pearson's chi-square of drawn directions in 8 x 16 cells of equal solid angle, against the integral of the density that rays
+// find, which itself integrates to the share of draws that shine.
+TEST(Lights, DrawsAreDistributedAsTheirDensitySays) {
+    LightBench bench(full_scene(), full_view());
+    const Point at = {0.1f, 0.05f, -0.2f};
+    for (unsigned seed = 1;; ++seed) {
+        constexpr int kRows = 8, kColumns = 16;
+        std::vector<double> drawn(kRows * kColumns, 0), expected(kRows * kColumns, 0);
+        const auto cell = [&](const std::array<float, 3>& d) {
+            const int row = std::min(kRows - 1, int((1 - d[1]) / 2 * kRows));
+            const double turn = std::atan2(d[2], d[0]) / (2 * kPi) + 0.5;
+            return row * kColumns + std::min(kColumns - 1, int(turn * kColumns));
+        };
+        const size_t draws = 1 << 17, rays = 1 << 20;
+        size_t hidden = 0;
+        for (const LightDraw& draw : bench.draw(at, random_numbers(draws, seed))) {
+            // A ray finds the nearest light only, so draws of what is behind are left out on both sides.
+            const bool nearest = draw.valid && !draw.occluded && draw.found_distance >= draw.distance * 0.9999f;
+            if (nearest)
+                ++drawn[size_t(cell(draw.towards))];
+            else
+                ++hidden;
+        }
+        double total = 0;
+        for (const LightDraw& ray : bench.find(at, even_numbers(rays, seed))) {
+            const double share = ray.found_pdf * kFullSphere / double(rays);
+            expected[size_t(cell(ray.towards))] += share * double(draws);
+            total += share;
+        }
+        EXPECT_NEAR(total, 1 - double(hidden) / double(draws), 5e-3);
+        double chi2 = 0;
+        int cells = 0;
+        for (size_t i = 0; i < drawn.size(); ++i)
+            if (expected[i] > 20) {
+                chi2 += (drawn[i] - expected[i]) * (drawn[i] - expected[i]) / expected[i];
+                ++cells;
+            }
+        ASSERT_GT(cells, 100);
+        // 4 standard deviations of a chi-square, and what the quadrature is off.
+        const double most = cells + 4 * std::sqrt(2.0 * cells) + 0.1 * cells;
+        if (chi2 < most || seed == 2) {
+            EXPECT_LT(chi2, most) << cells << " cells, seed " << seed;
+            return;
+        }
+    }
+}
+
+TEST(Lights, AllLanesDrawTheSame) {
+    const Numbers numbers = even_numbers(4096, 2);
+    std::vector<LightDraw> first;
+    for (const int lanes : lane_counts()) {
+        LightBench bench(full_scene(), full_view(), lanes);
+        const std::vector<LightDraw> draws = bench.draw({0.1f, 0.05f, -0.2f}, numbers);
+        if (first.empty()) first = draws;
+        for (size_t i = 0; i < draws.size(); ++i) {
+            const auto &a = first[i], &b = draws[i];
+            ASSERT_EQ(std::memcmp(&a.towards, &b.towards, sizeof a.towards), 0) << lanes << " lanes, draw " << i;
+            ASSERT_EQ(std::memcmp(&a.light, &b.light, sizeof a.light), 0) << lanes << " lanes, draw " << i;
+            ASSERT_EQ(a.pdf, b.pdf) << lanes << " lanes, draw " << i;
+            ASSERT_EQ(a.distance, b.distance) << lanes << " lanes, draw " << i;
+            ASSERT_EQ(a.found_pdf, b.found_pdf) << lanes << " lanes, draw " << i;
+        }
+    }
+}
+
+// Points at which a density could be infinite or no number.
+TEST(Lights, NothingIsInfiniteNearLights) {
+    LightBench bench(full_scene(), full_view());
+    const std::vector<Point> points = {{-2, 2, 2},    {-2, 2.5f, 2}, {-2, 2.500001f, 2}, {0, 0, 4},   {0, 3, 0},
+                                       {-3, 1.2f, 0}, {-3, 0, 0},    {2, 2, 2},          {1, -1, -3}, {1e6f, 1e6f, -1e6f}};
+    for (const Point& at : points)
+        for (const LightDraw& draw : bench.draw(at, even_numbers(4096, 3))) {
+            if (!draw.valid) continue;
+            ASSERT_TRUE(std::isfinite(draw.pdf) && draw.pdf > 0) << at[0] << " " << at[1] << " " << at[2] << ": " << draw.pdf;
+            for (int k = 0; k < 3; ++k)
+                ASSERT_TRUE(std::isfinite(draw.light[k]) && draw.light[k] >= 0) << at[0] << " " << at[1];
+            ASSERT_NEAR(length(to_vec(draw.towards)), 1, 1e-5);
+            ASSERT_GT(draw.distance, 0);
+        }
+}
+
+TEST(Lights, WithoutAnyNothingIsDrawn) {
+    LightBench bench(empty_scene(), dark_view());
+    for (const LightDraw& draw : bench.draw({0, 0, 0}, even_numbers(64, 1))) {
+        EXPECT_FALSE(draw.valid);
+        EXPECT_EQ(draw.found[0], 0);
+    }
+}
+
+}  // namespace

@@ -1,0 +1,330 @@
+#include "render/emitters/light_bench.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "base/angle.hpp"
+#include "device/cl_errors.hpp"
+#include "render/emitters/emitter_table.hpp"
+#include "render/launch/device_scene.hpp"
+#include "render/launch/frame_constants.hpp"
+#include "render/launch/view_buffers.hpp"
+#include "render/tracers/rays/query_scene.hpp"
+
+namespace clarity::test {
+namespace {
+
+constexpr unsigned kIn = 3, kOut = 15;
+
+// Numbers of all samples follow each other field by field.
+constexpr const char* kKernel = R"(
+RT_INLINE vfloat rt_test_load(const global float *from, uint first)
+{
+    float values[RT_LANES];
+    for (uint l = 0; l < RT_LANES; ++l) values[l] = from[first + l];
+    return rt_load(values);
+}
+RT_INLINE void rt_test_store(global float *to, uint first, vfloat value)
+{
+    float values[RT_LANES];
+    rt_store(value, values);
+    for (uint l = 0; l < RT_LANES; ++l) to[first + l] = values[l];
+}
+kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
+try_lights(const constant rt_frame *frame, const uint count, const uint draws, const float x, const float y, const float z,
+                       const global float *numbers, global float *answers, RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    const uint first = (uint)get_global_id(0) * RT_LANES;
+    const vfloat pick = rt_test_load(numbers, first), u1 = rt_test_load(numbers, count + first), u2 = rt_test_load(numbers, 2u * count + first);
+    const vmask all = rt_vint(-1);
+    const rt_vec at = rt_splat(x, y, z);
+    rt_light_sample s;
+    if (draws != 0u) {
+        s = rt_light_draw(&ctx, frame, at, pick, u1, u2, all);
+    } else {
+        s.towards = rt_warp_cone(u1, u2, rt_vfloat(2.0f));
+        s.radiance_over_pdf = rt_splat(0.0f, 0.0f, 0.0f);
+        s.distance = RT_INFINITY;
+        s.pdf = rt_vfloat(0.0f);
+        s.valid = all;
+        s.delta = s.light = rt_vint(0);
+    }
+    rt_rays ray;
+    rt_hits hit;
+    ray.ox = at.x, ray.oy = at.y, ray.oz = at.z;
+    ray.dx = s.towards.x, ray.dy = s.towards.y, ray.dz = s.towards.z;
+    ray.t_min = rt_vfloat(0.0f);
+    rt_prepare(&ray, RT_ALL_LANES);
+    rt_clear_hits(&hit, all);
+    hit.t = s.distance;
+    rt_trace_any(&ctx, frame, &ray, &hit);
+    const vmask occluded = RT_MASK(hit.t < rt_vfloat(0.0f));
+    rt_clear_hits(&hit, all);
+    rt_trace_closest(&ctx, frame, &ray, &hit);
+    const rt_surface surface = rt_resolve(&ctx, &ray, &hit, RT_ALL_LANES);
+    vfloat t = rt_select(surface.hit, hit.t, RT_INFINITY), pdf = rt_vfloat(0.0f), other;
+    vint light;
+    rt_hit_lights(&ctx, frame, &ray, &t, &light);
+    const vmask lit = RT_MASK(light >= rt_vint(0)), on = surface.hit & ~lit, off = ~surface.hit & ~lit;
+    rt_vec found = rt_emission_of_light(&ctx, &ray, t, light, all, &pdf);
+    const rt_vec of_surface = rt_emission_of_hit(&ctx, &ray, &hit, &surface, on, &other);
+    found = rt_choose(on, of_surface, found);
+    pdf = rt_select(on, other, pdf);
+    const rt_vec of_sky = rt_sky(&ctx, frame, s.towards, off, &other);
+    found = rt_choose(off, of_sky, found);
+    pdf = rt_select(off, other, pdf);
+    const vint flags = (s.valid & rt_vint(1)) | (s.delta & rt_vint(2)) | (occluded & rt_vint(4));
+    const vfloat fields[15] = {s.towards.x, s.towards.y, s.towards.z, s.radiance_over_pdf.x, s.radiance_over_pdf.y, s.radiance_over_pdf.z,
+                               s.distance, s.pdf, rt_to_float(flags), rt_as_vfloat(s.light), found.x, found.y, found.z, pdf, t};
+    for (uint i = 0; i < 15u; ++i) rt_test_store(answers, i * count + first, fields[i]);
+}
+)";
+
+const KernelRow& row_with(const std::vector<std::string>& defines) {
+    static std::vector<std::unique_ptr<KernelRow>> rows;  // programs keep references
+    rows.push_back(std::make_unique<KernelRow>());
+    KernelRow& row = *rows.back();
+    row.tracer = "rays";
+    row.what = "light test";
+    row.file = emitter_headers().back();
+    row.entry = "try_lights";
+    row.headers = {"sampling/math.h", "sampling/warps.h"};
+    row.headers.insert(row.headers.end(), emitter_headers().begin(), emitter_headers().end() - 1);
+    row.defines = defines;
+    row.traits = kPicksLights;
+    return row;
+}
+
+void put(rt_f32* to, const Point& from) {
+    std::copy(from.begin(), from.end(), to);
+}
+
+rt_light light_of(rt_u32 kind, const Point& position, float color) {
+    rt_light light = whitted_light(kind, position, {color, 0.5f * color, 0.25f * color});
+    light.flags = RT_LIGHT_FALLOFF;
+    return light;
+}
+
+Point unit(const Point& p) {
+    return to_floats(normalized(to_vec(p)));
+}
+
+// Adds something tiny and dark of each kind, far away, so that all scenes have one kernel: compiling takes most of the time.
+Scene with_all_kinds(Scene scene) {
+    constexpr float kAway = -50, kSize = 1e-3f;
+    Sphere ball;
+    ball.center = {0, kAway, 0};
+    ball.radius = kSize;
+    scene.spheres.push_back(ball);
+    Polygon polygon;
+    polygon.first_corner = rt_u32(scene.polygon_corners.size() / 3);
+    polygon.corner_count = 3;
+    scene.polygons.push_back(polygon);
+    Mesh mesh;
+    mesh.first_vertex = scene.vertex_count();
+    mesh.vertex_count = 3;
+    mesh.first_triangle = scene.triangle_count();
+    mesh.triangle_count = mesh.polygon_count = 1;
+    for (const Point& corner : {Point{0, kAway, 0}, Point{kSize, kAway, 0}, Point{0, kAway, kSize}}) {
+        scene.polygon_corners.insert(scene.polygon_corners.end(), corner.begin(), corner.end());
+        for (const float x : corner) scene.positions.push_back(x);
+    }
+    for (const rt_u32 v : {0u, 1u, 2u}) scene.triangles.push_back(mesh.first_vertex + v);
+    scene.triangle_materials.push_back(add_material(scene, diffuse(0, 0, 0)));
+    scene.spheres.back().material = scene.polygons.back().material = scene.triangle_materials[scene.triangle_count() - 1];
+    Instance instance;
+    instance.mesh = rt_u32(scene.meshes.size());
+    scene.meshes.push_back(mesh);
+    for (const float x : {0.0f, 1.0f}) {
+        instance.world_from_object[3] = x;
+        scene.instances.push_back(instance);
+    }
+    return scene;
+}
+
+}  // namespace
+
+struct LightBench::Impl {
+    ScenePtr scene;
+    View view;
+    std::shared_ptr<Device> device;
+    std::shared_ptr<const Prepared> prepared;
+    std::shared_ptr<TraceProgram> program;
+    ViewBuffers buffers;
+};
+
+LightBench::LightBench(const Scene& scene, const View& view, int lanes, const std::vector<std::string>& defines)
+    : impl_(std::make_unique<Impl>()) {
+    Impl& im = *impl_;
+    im.scene = shared_scene(with_all_kinds(scene));
+    im.view = view;
+    im.device = Workbench::get().shared_device();
+    Settings settings = make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}});
+    Progress progress;
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
+    auto accel = std::make_shared<AccelData>(build_accel(*im.scene, plugin, default_parameters(plugin), progress));
+    im.prepared = prepare_queries(*im.device, im.scene, std::move(accel), settings, progress);
+    KernelSource source = kernel_for(*im.prepared, row_with(defines));
+    source.text += kKernel;
+    source.declarations = kKernel;
+    static ProgramCache programs(im.device);
+    im.program = programs.get(source);
+}
+
+LightBench::~LightBench() = default;
+
+std::vector<LightDraw> LightBench::run(const Point& at, const Numbers& numbers, bool draws) {
+    Impl& im = *impl_;
+    return wrap_cl_errors(*im.device, "drawing lights", [&] {
+        const unsigned lanes = im.prepared->layout.lanes;
+        const size_t count = (numbers.size() + lanes - 1) / lanes * lanes;
+        std::vector<float> in(kIn * count, 0.5f), out(kOut * count);
+        for (size_t i = 0; i < numbers.size(); ++i)
+            for (unsigned k = 0; k < kIn; ++k) in[k * count + i] = numbers[i][k];
+        cl::CommandQueue& queue = im.device->queue();
+        Settings settings = im.prepared->settings;
+        im.buffers.write(queue, *im.scene, *im.prepared->on_device,
+                         {make_frame(im.view, settings, im.prepared->layout, *im.prepared->accel, 0)}, im.view);
+        im.buffers.write_emitters(queue, *im.scene, im.prepared->accel, im.view);
+        const cl::Context& context = im.device->context();
+        const cl::Buffer from(context, CL_MEM_READ_ONLY, in.size() * sizeof(float)),
+            to(context, CL_MEM_READ_WRITE, out.size() * sizeof(float));
+        queue.enqueueWriteBuffer(from, CL_TRUE, 0, in.size() * sizeof(float), in.data());
+        KernelArguments kernel = im.program->kernel("try_lights");
+        kernel.set("count", cl_uint(count)).set("draws", cl_uint(draws)).set("x", at[0]).set("y", at[1]).set("z", at[2]);
+        kernel.set("numbers", from).set("answers", to);
+        im.buffers.bind(*im.prepared->on_device, kernel);
+        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(count / lanes), cl::NDRange(1));
+        queue.enqueueReadBuffer(to, CL_TRUE, 0, out.size() * sizeof(float), out.data());
+        std::vector<LightDraw> results(numbers.size());
+        for (size_t i = 0; i < results.size(); ++i) {
+            const auto field = [&](unsigned f) { return out[f * count + i]; };
+            LightDraw& r = results[i];
+            const auto flags = static_cast<unsigned>(field(8));
+            r = {{field(0), field(1), field(2)},
+                 {field(3), field(4), field(5)},
+                 field(6),
+                 field(7),
+                 (flags & 1) != 0,
+                 (flags & 2) != 0,
+                 (flags & 4) != 0,
+                 0,
+                 {field(10), field(11), field(12)},
+                 field(13),
+                 field(14)};
+            const float number = field(9);
+            std::memcpy(&r.number, &number, sizeof number);
+        }
+        return results;
+    });
+}
+
+std::vector<LightDraw> LightBench::draw(const Point& at, const Numbers& numbers) {
+    return run(at, numbers, true);
+}
+
+std::vector<LightDraw> LightBench::find(const Point& at, const Numbers& numbers) {
+    return run(at, numbers, false);
+}
+
+double LightBench::irradiance(const Point& at, const Vec& normal, const Numbers& numbers, double* error) {
+    double sum = 0, squares = 0;
+    for (const LightDraw& draw : run(at, numbers, true)) {
+        if (!draw.valid || draw.occluded) continue;
+        const double brought = draw.light[0] * std::max(0.0, dot(normal, to_vec(draw.towards)));
+        sum += brought;
+        squares += brought * brought;
+    }
+    const double count = double(numbers.size()), mean = sum / count;
+    if (error) *error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
+    return mean;
+}
+
+double LightBench::irradiance_by_rays(const Point& at, const Vec& normal, const Numbers& numbers) {
+    double sum = 0;
+    for (const LightDraw& ray : run(at, numbers, false)) sum += ray.found[0] * std::max(0.0, dot(normal, to_vec(ray.towards)));
+    return sum * 4 * kPi / double(numbers.size());
+}
+
+Numbers even_numbers(size_t count, unsigned seed) {
+    // 1 / g, 1 / g^2, 1 / g^3 of the root g of g^4 = g + 1.
+    constexpr std::array<double, 3> kSteps = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    Numbers numbers(count);
+    for (size_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double x = 0.37 * (k + 1) * (seed + 1) + kSteps[k] * double(i + 1);
+            numbers[i][k] = std::min(static_cast<float>(x - std::floor(x)), 0x0.ffffffp0f);
+        }
+    return numbers;
+}
+
+Numbers random_numbers(size_t count, unsigned seed) {
+    std::mt19937 generator(seed);
+    Numbers numbers(count);
+    for (auto& three : numbers)
+        for (float& number : three) number = static_cast<float>(generator() >> 8) * 0x1p-24f;
+    return numbers;
+}
+
+Scene empty_scene() {
+    Scene scene;
+    scene.materials.push_back({"default", diffuse(1, 1, 1)});
+    return scene;
+}
+
+View dark_view() {
+    View view = view_from({0, 0, 5}, {0, 0, 0}, 45);
+    view.background = view.ambient = {0, 0, 0};
+    return view;
+}
+
+rt_light rect_light(const Point& center, const Point& u, const Point& v, float radiance) {
+    rt_light light = light_of(RT_LIGHT_RECT, center, radiance);
+    put(light.u, u);
+    put(light.v, v);
+    const Vec n = cross(to_vec(u), to_vec(v));
+    put(light.normal, to_floats(normalized(n)));
+    light.area = static_cast<float>(4 * length(n));
+    return light;
+}
+
+rt_light disc_light(const Point& center, const Point& normal, float radius, float radiance) {
+    rt_light light = light_of(RT_LIGHT_DISC, center, radiance);
+    put(light.normal, unit(normal));
+    light.radius = radius;
+    light.area = float(kPi) * radius * radius;
+    return light;
+}
+
+rt_light sphere_light(const Point& center, float radius, float radiance) {
+    rt_light light = light_of(RT_LIGHT_SPHERE, center, radiance);
+    light.radius = radius;
+    light.area = 4 * float(kPi) * radius * radius;
+    return light;
+}
+
+rt_light sun_light(const Point& towards, double full_angle_deg, float irradiance) {
+    rt_light light = light_of(RT_LIGHT_SUN, unit(towards), irradiance);
+    light.cos_outer = static_cast<float>(std::cos(full_angle_deg * kPi / 360));
+    light.radius = static_cast<float>(std::sin(full_angle_deg * kPi / 360));
+    return light;
+}
+
+rt_light far_light(const Point& towards, float irradiance) {
+    return light_of(RT_LIGHT_DIRECTIONAL, unit(towards), irradiance);
+}
+
+rt_light point_light(const Point& at, float intensity) {
+    return light_of(RT_LIGHT_POINT, at, intensity);
+}
+
+rt_light spot_light(const Point& at, const Point& axis, float intensity, double inner_deg, double outer_deg) {
+    rt_light light = light_of(RT_LIGHT_SPOT, at, intensity);
+    put(light.normal, unit(axis));
+    light.cos_inner = static_cast<float>(std::cos(inner_deg * kPi / 180));
+    light.cos_outer = static_cast<float>(std::cos(outer_deg * kPi / 180));
+    return light;
+}
+
+}  // namespace clarity::test
