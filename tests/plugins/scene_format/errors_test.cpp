@@ -64,7 +64,7 @@ const Case kCases[] = {
     {"material m compensate maybe", "1:23: `maybe` is no value of `compensate` (expected: false, true)"},
     {"material m roughness 2",
      "1:22: `2` is out of range; expected `roughness` (of a conductor or dielectric) between 0 and 1"},
-    {"camera a aperture -1", "1:19: `-1` is out of range; expected `aperture` (radius of the lens) of 0 at least"},
+    {"camera a aperture -1", "1:19: `-1` is out of range; expected `aperture` (diameter of the lens) of 0 at least"},
     {"light point color 1 -1 1", "1:21: `-1` is out of range; expected `color` (r g b) in linear light, 0 or more"},
     {"background 0.2 0.3", "1:19: the line ends here; expected number 3 of 3 for `background` (r g b)"},
     {"background 0 0 0 0", "1:18: `0` is one word too many; expected the line's end"},
