@@ -58,13 +58,15 @@ typedef struct rt_light {
     rt_f32 color[3];    /* linear RGB, intensity included */
     rt_u32 flags;       /* RT_LIGHT_FALLOFF, ... */
     rt_f32 u[3];        /* rect: from the middle to the middle of an edge */
-    rt_f32 radius;      /* disc, sphere */
+    rt_f32 radius;      /* disc, sphere. sun: sine of the half of its angle, exact where cos_outer is next to 1 */
     rt_f32 v[3];        /* rect: as u, of an edge beside it */
-    rt_f32 area;        /* rect, disc, sphere: of the side, or of both sides, that emits */
+    rt_f32 area;        /* rect, disc, sphere: of the side, or of both sides, that emits. sun: pi sin^2 of the half of its angle:
+                         * color / area is its radiance */
     rt_f32 normal[3];   /* unit: side that a rect (u x v) or a disc emits from; axis of a spot, into which it shines */
     rt_f32 cos_inner;   /* spot: cosine of the half angle within which it has its full intensity */
     rt_f32 cos_outer;   /* spot: beyond this half angle it has none. sun: cosine of the half of its angle */
-    rt_u32 pad[3];
+    rt_f32 inner, angle; /* degrees: whole angles of which the two cosines are, as users write them; the host's */
+    rt_u32 pad;
 } rt_light;
 
 /* What emits light, for `path`: a light, an emissive primitive or the sky. The lights of the frame come first, then the sky if it
@@ -116,7 +118,7 @@ typedef struct rt_texture {
 } rt_texture;
 #define RT_WRAP_ALONG_V 4u
 
-/* Values that may change from frame to frame while program and scene stay the same. 176 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 228 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
     rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
@@ -144,7 +146,29 @@ typedef struct rt_frame {
     rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
     rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
+    rt_u32 samples;    /* `path`: of this launch, this one first; they are added to the film in their order */
+    rt_u32 seed;       /* `path`: pictures of two seeds have independent noise */
+    rt_u32 path_flags; /* RT_PATH_* */
+    rt_f32 focus;          /* thin lens: distance along `forward` that is sharp */
+    rt_f32 lens_x, lens_y; /* radius of the lens by the lengths of right and up; 0: a pinhole */
+    /* The paths that count (--only-paths); RT_NONE: all. */
+    rt_u32 only_bounce; /* number of events between light and camera */
+    rt_u32 only_by;     /* RT_BY_* */
+    rt_u32 only_first;  /* RT_FIRST_*, of the first event */
+    rt_u32 only_light;  /* number of a light */
 } rt_frame;
+/* How a path came to its light: by a point that was drawn on it, or by the ray of a surface or the camera. */
+#define RT_BY_NEE 0u
+#define RT_BY_BSDF 1u
+/* How the first surface scattered. A smooth or rough mirror is glossy. */
+#define RT_FIRST_DIFFUSE 0u
+#define RT_FIRST_GLOSSY 1u
+#define RT_FIRST_TRANSMISSION 2u
+#define RT_PATH_SOBOL 1u          /* samples are Sobol's points, scrambled; else independent */
+#define RT_PATH_DRAWS_LIGHTS 2u   /* points of lights that have a size are drawn: strategies nee and mis */
+#define RT_PATH_FINDS_LIGHTS 4u   /* rays of rough surfaces count lights that they find: strategies bsdf and mis */
+#define RT_PATH_POWER_WEIGHTS 8u  /* of both: weights of squared densities */
+#define RT_PATH_GAUSSIAN 16u      /* pixels are weighted by a Gaussian; else all points of a pixel count alike */
 
 /* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of
  * RT_LANES of them, field by field: cl/tracers/rays/ray_blocks.h. */

@@ -16,6 +16,7 @@ RT_INLINE rt_vec rt_vec_of(vfloat x, vfloat y, vfloat z)
 }
 RT_INLINE rt_vec rt_splat(float x, float y, float z) { return rt_vec_of(rt_vfloat(x), rt_vfloat(y), rt_vfloat(z)); }
 RT_INLINE rt_vec rt_spread(const global float *p) { return rt_splat(p[0], p[1], p[2]); }
+RT_INLINE rt_vec rt_spread_constant(const constant float *p) { return rt_splat(p[0], p[1], p[2]); }
 RT_INLINE rt_vec rt_add(rt_vec a, rt_vec b) { return rt_vec_of(a.x + b.x, a.y + b.y, a.z + b.z); }
 RT_INLINE rt_vec rt_sub(rt_vec a, rt_vec b) { return rt_vec_of(a.x - b.x, a.y - b.y, a.z - b.z); }
 RT_INLINE rt_vec rt_mul(rt_vec a, rt_vec b) { return rt_vec_of(a.x * b.x, a.y * b.y, a.z * b.z); }

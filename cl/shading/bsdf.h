@@ -144,7 +144,7 @@ RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
 
 /* The lanes of `of` in which a lobe of probability p is picked. Their u, in [0, 1), becomes the rest of the choice, in [0, 1) again. What
  * happens in a lane must not depend on others, so theirs stay. */
-RT_INLINE vmask rt_pick(vmask of, vfloat p, vfloat *u)
+RT_INLINE vmask rt_takes_lobe(vmask of, vfloat p, vfloat *u)
 {
     const vfloat one = rt_vfloat(1.0f);
     const vmask picked = RT_MASK(*u < p);
@@ -162,9 +162,9 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
     rt_bsdf_sample s;
     /* The diffuse lobe comes first, then mirror, metal, glass. */
     vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + p.mirror + p.metal + p.glass > zero);
-    const vmask diffuse = rt_pick(left, p.diffuse, &u_lobe);
+    const vmask diffuse = rt_takes_lobe(left, p.diffuse, &u_lobe);
     left &= ~diffuse;
-    const vmask mirror = rt_pick(left, p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
+    const vmask mirror = rt_takes_lobe(left, p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
     left &= ~mirror;
     const vmask metal = left & RT_MASK(p.metal > zero), glass = left & ~metal; /* no surface is both */
 
@@ -181,7 +181,7 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
             vfloat cos_out;
             const vfloat reflected = rt_fresnel_dielectric(wo.z, b->eta, &cos_out);
             const vfloat glass_share = b->glass / rt_max(p.glass, rt_vfloat(1e-20f));
-            const vmask back = rt_pick(glass & smooth, reflected, &u_lobe), through = glass & smooth & ~back;
+            const vmask back = rt_takes_lobe(glass & smooth, reflected, &u_lobe), through = glass & smooth & ~back;
             s.transmitted |= through;
             s.pdf = rt_select(back, p.glass * reflected, rt_select(through, p.glass * (one - reflected), s.pdf));
             s.weight = rt_choose(back, rt_vec_of(glass_share, glass_share, glass_share), s.weight);
@@ -193,11 +193,11 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
     const vmask spread = (diffuse | metal | glass) & ~s.delta;
     s.valid = s.delta;
     if (rt_any(spread)) {
-        const vmask facets = spread & ~diffuse & ~rt_pick(spread & ~diffuse, p.again, &u_lobe), frosted = spread & glass;
+        const vmask facets = spread & ~diffuse & ~rt_takes_lobe(spread & ~diffuse, p.again, &u_lobe), frosted = spread & glass;
         rt_vec wi = rt_warp_cosine(u1, u2);
         vmask through = rt_vint(0);
         if (rt_any(frosted & ~facets)) {
-            through = rt_pick(frosted & ~facets, rt_glass_again_of(b).through, &u_lobe);
+            through = rt_takes_lobe(frosted & ~facets, rt_glass_again_of(b).through, &u_lobe);
             wi.z = rt_select(through, -wi.z, wi.z);
         }
         if (rt_any(facets)) {
@@ -207,7 +207,7 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
             if (rt_any(frosted & facets)) {
                 vfloat cos_out;
                 const vfloat reflected = rt_fresnel_dielectric(to_facet, b->eta, &cos_out);
-                const vmask bent = frosted & facets & ~rt_pick(frosted & facets, reflected, &u_lobe);
+                const vmask bent = frosted & facets & ~rt_takes_lobe(frosted & facets, reflected, &u_lobe);
                 through |= bent;
                 const rt_vec refracted = rt_along(to_facet / b->eta - cos_out, h, rt_scale(-one / b->eta, wo));
                 along = rt_choose(bent, refracted, along);

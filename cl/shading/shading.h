@@ -11,43 +11,29 @@ typedef struct rt_tally {
     RT_RECORD(rt_recorder recorder)
 } rt_tally;
 
-/* Where the ray of each lane meets a surface. Normals are on the side that the ray comes from. */
-typedef struct rt_point {
-    vmask hits;
-    vmask leaving;    /* the ray comes from inside, so the normals were reversed */
-    rt_vec at;        /* the hit point, world */
-    rt_vec incoming;  /* unit direction of the ray */
-    rt_vec geometric; /* unit geometric normal */
-    rt_vec normal;    /* unit shading normal */
-    vfloat cos_in;    /* cosine of the angle between normal and reversed ray, positive */
-#ifdef RT_SPLITS_INCOHERENT
-    vfloat area;      /* rt_surface.area */
-#endif
-    vfloat outward;   /* rays that stay on this side start at: at + outward geometric */
-    vfloat inward;    /* rays that go through the surface start at: at + inward geometric */
-} rt_point;
-
-RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hits)
+/* By what the colour of a light is multiplied for a surface at `at` that faces it. towards: unit vector to the light. Whitted's colour
+ * is an irradiance divided by pi. A light with a size is taken for a point at its middle: its strength is exact on the axis of a
+ * disc and outside of a sphere. */
+RT_INLINE vfloat rt_light_strength(const global rt_light *light, rt_vec at, rt_vec towards)
 {
-    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    rt_point p;
-    p.hits = hits;
-#ifdef RT_SPLITS_INCOHERENT
-    p.area = s->area;
-#endif
-    p.incoming = rt_vec_of(ray->dx, ray->dy, ray->dz);
-    p.at = s->at;
-    p.leaving = RT_MASK(rt_dot(s->geometric, p.incoming) > zero);
-    const vfloat side = rt_select(p.leaving, -one, one);
-    p.geometric = rt_scale(side, s->geometric);
-    p.normal = rt_scale(side, s->normal);
-    /* At silhouettes an interpolated normal may point away from the viewer. Then the geometric normal replaces it. */
-    p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
-    p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
-    const vfloat height = side * s->height;
-    p.outward = rt_max(s->error - height, zero);
-    p.inward = -s->error - height;
-    return p;
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), least = rt_vfloat(1e-30f);
+    const float by_pi = 0.31830989f;
+    const uint kind = light->kind;
+    const bool fades = (light->flags & RT_LIGHT_FALLOFF) != 0u, two_sided = (light->flags & RT_LIGHT_TWO_SIDED) != 0u;
+    if (kind == RT_LIGHT_DIRECTIONAL || kind == RT_LIGHT_SUN) return rt_vfloat(kind == RT_LIGHT_SUN || fades ? by_pi : 1.0f);
+    const rt_vec to = rt_sub(rt_spread(light->position), at);
+    const vfloat squared = rt_dot(to, to), cosine = -rt_dot(rt_spread(light->normal), towards);
+    if (kind == RT_LIGHT_POINT || kind == RT_LIGHT_SPOT) {
+        /* KHR_lights_punctual: the square of a linear ramp between the cosines of both angles. */
+        const float width = max(light->cos_inner - light->cos_outer, 1e-3f);
+        const vfloat ramp = clamp((cosine - rt_vfloat(light->cos_outer)) / rt_vfloat(width), zero, one);
+        const vfloat cone = kind == RT_LIGHT_SPOT ? ramp * ramp : one;
+        return fades ? cone * rt_vfloat(by_pi) / rt_max(squared, least) : cone;
+    }
+    const float radius2 = light->radius * light->radius;
+    if (kind == RT_LIGHT_SPHERE) return rt_vfloat(radius2) / rt_max(squared, rt_vfloat(radius2));
+    const vfloat side = rt_vfloat(light->area * by_pi * (two_sided ? 0.5f : 1.0f));
+    return side * rt_max(two_sided ? fabs(cosine) : cosine, zero) / rt_max(squared + side, least);
 }
 
 /* Computes the light that the points of `count` blocks send back along their rays: emission, ambient light, and every light that
@@ -77,7 +63,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             const rt_vec above = rt_along(p->outward, p->geometric, p->at);
             rt_vec towards = rt_spread(light->position);
             vfloat distance = RT_INFINITY;
-            if (light->kind == RT_LIGHT_POINT) {
+            if (light->kind != RT_LIGHT_DIRECTIONAL && light->kind != RT_LIGHT_SUN) {
                 towards = rt_sub(towards, above);
                 const vfloat scale = rt_inverse_length(towards);
                 distance = one / scale;
@@ -123,7 +109,9 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
                 const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
                 highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
             }
-            const rt_vec color = rt_spread(light->color);
+            rt_vec color = rt_spread(light->color);
+            if (light->kind > RT_LIGHT_DIRECTIONAL || light->flags != 0u)
+                color = rt_scale(rt_light_strength(light, rt_vec_of(rays[b].ox, rays[b].oy, rays[b].oz), towards), color);
             diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
             shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);
             RT_RECORD(rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, asked[b], rt_bits(lit), rays + b, hits + b, distances[b],

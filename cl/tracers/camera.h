@@ -88,11 +88,9 @@ RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, ui
 #endif
 }
 
-/* Computes the camera rays through pixels (x, y) of the picture. A sample's rays go through the same point of every pixel, which
- * the frame holds. So a picture does not depend on which device renders which pixel when, and packets stay coherent. */
-RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
+/* Computes the camera rays through points of the picture, in pixels. */
+RT_INLINE void rt_camera_rays_through(const constant rt_frame *frame, vfloat px, vfloat py, rt_rays *r)
 {
-    const vfloat px = rt_to_float(x) + rt_vfloat(frame->within_x), py = rt_to_float(y) + rt_vfloat(frame->within_y);
     const vfloat sx = fma(px, rt_vfloat(2.0f * frame->pixel_x), rt_vfloat(-1.0f));
     const vfloat sy = fma(py, rt_vfloat(-2.0f * frame->pixel_y), rt_vfloat(1.0f));
     const vfloat dx = fma(sx, rt_vfloat(frame->right[0]), fma(sy, rt_vfloat(frame->up[0]), rt_vfloat(frame->forward[0])));
@@ -106,6 +104,13 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
     r->dy = dy * scale;
     r->dz = dz * scale;
     r->t_min = rt_vfloat(0.0f);
+}
+
+/* Computes the camera rays through pixels (x, y) of the picture. A sample's rays go through the same point of every pixel, which
+ * the frame holds. So a picture does not depend on which device renders which pixel when, and packets stay coherent. */
+RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
+{
+    rt_camera_rays_through(frame, rt_to_float(x) + rt_vfloat(frame->within_x), rt_to_float(y) + rt_vfloat(frame->within_y), r);
 }
 
 #if RT_STREAM > 1 && !RT_HAS_PLANES

@@ -1,11 +1,8 @@
 #include "check/check.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -17,119 +14,79 @@
 #include "base/files/library_files.hpp"
 #include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
-#include "base/printable.hpp"
 #include "check/oclgrind.hpp"
-#include "import/wire.hpp"
 #include "worker/child.hpp"
-#include "worker/supervisor.hpp"
+#include "worker/job.hpp"
 
 namespace clarity::check {
 namespace {
 
 constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;  // of a worker; the scenes are small
-constexpr const char* kWorker = "check-worker";
 // After so many deaths of its worker a phase ends: each endless loop costs its time limit.
 constexpr unsigned kMostDeaths = 3;
 // oclgrind takes seconds to minutes for the same rays, as the kernels are: it is cut after this processor time.
 constexpr double kAccesses_s = 60;
 constexpr const char* kAccessesCut = "cut after 60 s";
 
-// The worker died in a check.
-struct Died {
-    std::string how;
-    bool endless;
-};
-
 // The checks were told to stop.
 struct Stopped {
     std::string why;
 };
 
-// Follows one worker through checks of one phase.
-class CheckSupervisor : public worker::Supervisor {
+// One worker that runs checks of one phase.
+class CheckRun : public worker::Job {
  public:
     // stop: asked often; says why the worker must stop, or nothing.
-    CheckSupervisor(worker::WorkerProcess& process, const std::string& plugin, Progress& progress,
-                    const std::function<std::string()>& stop, const std::function<void(CheckResult)>& on_result)
-        : Supervisor(process, {worker::kCheckGreeting, "a check worker", worker::worker_program(), Exit::failed}, progress),
-          plugin_(plugin),
-          stop_(stop),
-          on_result_(on_result) {}
+    CheckRun(const std::string& plugin, const std::function<std::string(const worker::WorkerProcess&)>& stop,
+             const std::function<void(CheckResult)>& on_result)
+        : Job(kCheckJob, plugin, {10, 0, kMemoryBytes}), stop_(stop), on_result_(on_result) {
+        current_.plugin = plugin;
+    }
     // The check that runs, as far as it is known.
     CheckResult current() const {
-        CheckResult result;
-        result.plugin = plugin_;
-        result.name = name_;
-        result.tried = tried_;
+        CheckResult result = current_;
         result.seconds = seconds_since(begin_);
         return result;
     }
     const std::string& step() const { return step_; }
 
  private:
-    void handle(const worker::Message& message) override {
-        if (message.kind == worker::MessageKind::running) {
-            const size_t a = message.text.find('\n'), b = message.text.find('\n', a + 1);
-            if (a == std::string::npos || b == std::string::npos) return;
-            if (name_ != message.text.substr(0, a)) begin_ = std::chrono::steady_clock::now();
-            name_ = message.text.substr(0, a);
-            tried_ = message.text.substr(a + 1, b - a - 1);
-            step_ = message.text.substr(b + 1);
-            limit_s_ = message.fraction > 0 && message.fraction < 1000 ? double(message.fraction) : 10;
-            made_progress();
-        } else if (message.kind == worker::MessageKind::report) {
-            const nlohmann::json json = nlohmann::json::parse(message.text, nullptr, false);
-            if (!json.is_object()) return;
-            CheckResult result;
-            result.plugin = plugin_;
-            result.name = json.value("name", "");
-            result.tried = json.value("tried", "");
-            const std::string kind = json.value("kind", "failed");
-            result.outcome.kind = kind == "passed"    ? Outcome::Kind::passed
-                                  : kind == "skipped" ? Outcome::Kind::skipped
-                                                      : Outcome::Kind::failed;
-            result.outcome.found = json.value("found", "");
-            result.outcome.repeat = json.value("repeat", "");
-            result.seconds = json.value("seconds", 0.0);
-            made_progress();
-            on_result_(result);
-        }
+    void on_step(const std::string& text) override {
+        const size_t a = text.find('\n'), b = text.find('\n', a + 1);
+        if (a == std::string::npos || b == std::string::npos) return;
+        if (current_.name != text.substr(0, a)) begin_ = std::chrono::steady_clock::now();
+        current_.name = text.substr(0, a);
+        current_.tried = text.substr(a + 1, b - a - 1);
+        step_ = text.substr(b + 1);
     }
-    void watched() override {
-        if (std::string why = stop_(); !why.empty()) throw Stopped{std::move(why)};
+    void on_report(const std::string& text) override {
+        const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+        if (!json.is_object()) return;
+        CheckResult result;
+        result.plugin = who_;
+        result.name = json.value("name", "");
+        result.tried = json.value("tried", "");
+        const std::string kind = json.value("kind", "failed");
+        result.outcome.kind = kind == "passed"    ? Outcome::Kind::passed
+                              : kind == "skipped" ? Outcome::Kind::skipped
+                                                  : Outcome::Kind::failed;
+        result.outcome.found = json.value("found", "");
+        result.outcome.repeat = json.value("repeat", "");
+        result.seconds = json.value("seconds", 0.0);
+        on_result_(result);
     }
-    double idle_limit_s() const override { return limit_s_; }
-    bool counts_processor_time() const override { return true; }
-    uint64_t processor_limit_s() const override { return 0; }
-    uint64_t memory_limit_bytes() const override { return kMemoryBytes; }
-    std::string speaker() const override { return plugin_; }
-    void printed(const std::string& line) override {
+    void watch() override {
+        if (std::string why = stop_(process()); !why.empty()) throw Stopped{std::move(why)};
+    }
+    void on_output(const std::string& line) override {
         // The OpenCL compiler counts its warnings about our own kernels.
         if (line.find("warnings generated.") == std::string::npos && line.find("warning generated.") == std::string::npos)
-            log(LogLevel::info, plugin_ + " printed: " + printable_line(line));
-    }
-    void ended(const worker::Ending& ending) const override {
-        using End = worker::Ending::Kind;
-        const std::string during = " while " + step_;
-        switch (ending.kind) {
-            case End::crashed:
-                throw Died{"crashed (" + ending.how + ")" + during, false};
-            case End::exited:
-                throw Died{"ended the process (" + ending.how + ")" + during + ": a plugin must return instead", false};
-            case End::no_progress:
-                throw Died{"did not come to an end within " + ending.how + during + ": a loop without end", true};
-            case End::memory:
-                throw Died{"took more than " + ending.how + " of memory" + during, false};
-            default:
-                throw Died{"was killed" + during, false};
-        }
+            Job::on_output(line);
     }
 
-    const std::string plugin_;
-    const std::function<std::string()>& stop_;
+    const std::function<std::string(const worker::WorkerProcess&)>& stop_;
     const std::function<void(CheckResult)>& on_result_;
-    std::string name_, tried_, step_ = "the library was loaded";
-    double limit_s_ = 60;
+    CheckResult current_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
@@ -191,11 +148,8 @@ class Run {
             return take(result);
         }
         const std::string log = folder() + "/oclgrind.log";
-        const Launch launch =
-            in_oclgrind({worker::worker_program() == worker::kThisProgram ? program_file().string() : worker::worker_program(),
-                         kWorker,
-                         {}},
-                        log);
+        const std::string program = worker::worker_program();
+        const Launch launch = in_oclgrind(program == worker::kThisProgram ? program_file().string() : program, log);
         if (!launch.program.empty()) {
             phase("accesses", launch, log);
             return;
@@ -245,73 +199,60 @@ class Run {
 
     // Runs the checks of one phase, each until its end or its worker's death. log: of oclgrind; empty: the worker runs by
     // itself. Returns whether none failed.
-    bool phase(const std::string& name, const Launch& launch = {worker::worker_program(), kWorker, {}},
-               const std::string& log = {}) {
-        std::vector<std::string> done;
+    bool phase(const std::string& name, const Launch& launch = {worker::worker_program(), {}}, const std::string& log = {}) {
+        CheckJob job;
+        job.library = record_.path, job.phase = name, job.device = options_.device, job.report = options_.report_folder;
+        job.truth = options_.truth_folder, job.beside = beside_, job.samples = options_.samples, job.only = options_.only;
+        job.lanes = options_.lanes, job.quick = options_.quick, job.large = options_.large, job.list = options_.list;
+        job.stop_at_first = options_.stop_at_first, job.seed = options_.seed;
+        if (name == "imports" || name == "keys") job.scratch = folder();
+        if (options_.scene && name == "hits") {
+            job.rays = options_.rays_file;
+            job.scene.push_back({*options_.scene});
+        }
         bool passed = true;
         const auto finish = [&](const CheckResult& result) {
-            done.push_back(result.name);
+            job.done.insert(result.name);
             if (result.outcome.kind == Outcome::Kind::failed) passed = false;
             take(result);
         };
         for (unsigned deaths = 0;;) {
             if (!stop().empty()) return passed;
-            std::vector<std::string> arguments = {"--library", record_.path,
-                                                  "--phase",   name,
-                                                  "--quick",   options_.quick ? "1" : "0",
-                                                  "--list",    options_.list ? "1" : "0",
-                                                  "--stop",    options_.stop_at_first ? "1" : "0",
-                                                  "--seed",    std::to_string(options_.seed),
-                                                  "--parent",  std::to_string(getpid())};
-            for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});
-            for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
-            if (!options_.truth_folder.empty()) arguments.insert(arguments.end(), {"--truth", options_.truth_folder});
-            if (name == "imports" || name == "keys") arguments.insert(arguments.end(), {"--scratch", folder()});
-            if (options_.large) arguments.insert(arguments.end(), {"--large", "1"});
-            if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
-            if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
-            for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
-            for (const std::string& only : options_.only) arguments.insert(arguments.end(), {"--only", only});
-            for (const std::string& other : done) arguments.insert(arguments.end(), {"--done", other});
-            arguments.insert(arguments.begin(), launch.before.begin(), launch.before.end());
-            const bool takes_scene = options_.scene && name == "hits";
-            if (takes_scene) arguments.insert(arguments.end(), {"--rays", options_.rays_file});
-            worker::WorkerProcess process(launch.program, launch.command, arguments, Exit::failed);
-            if (takes_scene)
-                if (const std::string why = import::write_scene(process.result(), *options_.scene); !why.empty())
-                    throw Error(Exit::failed, "the scene cannot be given to the worker: " + why);
             const std::function<void(CheckResult)> on_result = [&](CheckResult result) {
                 if (!log.empty()) result.outcome = with_findings(result.outcome, log);
                 finish(result);
             };
             const auto begin = std::chrono::steady_clock::now();
-            const std::function<std::string()> stop_worker = [&] {
-                std::string why = stop();
-                // On a busy machine its processor time grows slowly: then it has three times as long.
-                if (why.empty() && !log.empty() &&
-                    (process.processor_s() > kAccesses_s || seconds_since(begin) > 3 * kAccesses_s))
-                    why = kAccessesCut;
-                return why;
-            };
-            CheckSupervisor supervisor(process, record_.plugin->id, progress_, stop_worker, on_result);
+            const std::function<std::string(const worker::WorkerProcess&)> stop_worker =
+                [&](const worker::WorkerProcess& process) {
+                    std::string why = stop();
+                    // On a busy machine its processor time grows slowly: then it has three times as long.
+                    if (why.empty() && !log.empty() &&
+                        (process.processor_s() > kAccesses_s || seconds_since(begin) > 3 * kAccesses_s))
+                        why = kAccessesCut;
+                    return why;
+                };
+            CheckRun run(record_.plugin->id, stop_worker, on_result);
+            run.program = launch.program, run.words_before = launch.words, run.subject = record_.path;
             try {
-                supervisor.follow();
+                run.run(job, progress_);
                 return passed;
             } catch (const Stopped& stopped) {
-                CheckResult result = supervisor.current();
-                if (result.name.empty() || std::count(done.begin(), done.end(), result.name)) return passed;
-                const std::string during = stopped.why + ", while " + supervisor.step();
+                CheckResult result = run.current();
+                if (result.name.empty() || job.done.count(result.name)) return passed;
+                const std::string during = stopped.why + ", while " + run.step();
                 result.outcome = stopped.why == kAccessesCut
                                      ? with_findings(Outcome::passed("no access outside of a buffer so far; " + during), log)
                                      : Outcome::skipped("cut by " + during);
                 finish(result);
                 return passed;
-            } catch (const Died& died) {
-                CheckResult result = supervisor.current();
+            } catch (const worker::JobDied& died) {
+                CheckResult result = run.current();
                 if (result.name.empty()) result.name = name + ".start";
-                result.outcome = Outcome::failed(died.how);
+                result.outcome = Outcome::failed(died.what());
                 finish(result);
-                if (died.endless || ++deaths >= kMostDeaths || result.name == "builds.sound" || result.name == name + ".start")
+                if (died.cause == worker::Cause::no_progress || ++deaths >= kMostDeaths || result.name == "builds.sound" ||
+                    result.name == name + ".start")
                     return passed;
             }
         }
@@ -333,6 +274,17 @@ class Run {
 
 }  // namespace
 
+const worker::JobKind kCheckJob = {
+    "check",
+    "to check a plugin, run `clarity check PLUGIN`",
+    Exit::failed,
+    true,
+    LogLevel::info,
+    {"crashed ({how}) while {step}", "ended the process ({how}) while {step}: a plugin must return instead",
+     "did not come to an end within {how} while {step}: a loop without end", "was killed while {step}",
+     "took more than {how} of memory while {step}", "was killed while {step}"},
+    check_job};
+
 bool is_wanted(const std::string& check, const std::vector<std::string>& only) {
     return only.empty() || std::any_of(only.begin(), only.end(),
                                        [&](const std::string& begin) { return check.compare(0, begin.size(), begin) == 0; });
@@ -340,7 +292,7 @@ bool is_wanted(const std::string& check, const std::vector<std::string>& only) {
 
 CheckEnd check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
                               Progress& progress, const std::function<void(const CheckResult&)>& on_result) {
-    if (std::getenv(worker::kWorkerVariable))
+    if (worker::in_worker())
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
     return Run(record, beside, options, progress, on_result).all();

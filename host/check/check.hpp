@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "check/steps.hpp"
+#include "check/check_job.hpp"
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
 
@@ -31,12 +31,6 @@ struct CheckOptions {
     std::string rays_file;
 };
 
-struct CheckResult {
-    std::string plugin, name, tried;
-    Outcome outcome;
-    double seconds = 0;
-};
-
 // Whether the names, or beginnings of names, in `only` name a check; all do if there is none.
 bool is_wanted(const std::string& check, const std::vector<std::string>& only);
 
@@ -51,8 +45,5 @@ struct CheckEnd {
 // in which checks end. Throws Cancelled, and Error if no worker can be started or `only` names nothing.
 CheckEnd check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
                               Progress& progress, const std::function<void(const CheckResult&)>& on_result);
-
-// Main function of the worker (`clarity check-worker ...`, which people do not call).
-int check_worker_main(int argc, char** argv);
 
 }  // namespace clarity::check

@@ -10,13 +10,12 @@
 
 namespace clarity::check {
 
-Launch in_oclgrind(const Launch& worker, const std::string& log) {
+Launch in_oclgrind(const std::string& worker, const std::string& log) {
     const char* const path = std::getenv("PATH");
     std::istringstream folders(path ? path : "");
     for (std::string folder; std::getline(folders, folder, ':');) {
         const std::string program = folder + "/oclgrind";
-        if (access(program.c_str(), X_OK) == 0)
-            return {program, "--data-races", {"--log", log, worker.program, worker.command}};
+        if (access(program.c_str(), X_OK) == 0) return {program, {"--data-races", "--log", log, worker}};
     }
     return {};
 }

@@ -11,13 +11,13 @@ namespace clarity::check {
 inline constexpr const char* kAccessCheck = "accesses.oclgrind";
 inline constexpr const char* kAccessTried = "every access to memory, looked at by oclgrind";
 
-// How a worker is started.
+// How a worker is started: `program WORDS... check-worker ...`.
 struct Launch {
-    std::string program, command;
-    std::vector<std::string> before;  // words before those of the worker
+    std::string program;
+    std::vector<std::string> words;
 };
-// `program command ...` in oclgrind, which writes what it finds into `log`. The program is empty if oclgrind is not installed.
-Launch in_oclgrind(const Launch& worker, const std::string& log);
+// A worker's program in oclgrind, which writes what it finds into `log`. The program is empty if oclgrind is not installed.
+Launch in_oclgrind(const std::string& worker, const std::string& log);
 
 // The outcome of a worker in oclgrind: failed if oclgrind wrote anything.
 Outcome with_findings(const Outcome& outcome, const std::string& log);

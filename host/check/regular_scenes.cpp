@@ -159,12 +159,13 @@ Scene regular_scene(uint64_t seed) {
         make.place(make.mesh());
         make.scene.instances.back().apart = true;
     }
+    add_common_part(make, {0, 60, 60});
     return std::move(make.scene);
 }
 
 Scene bent(Scene regular) {
     std::vector<float>& positions = regular.positions.own();
-    for (size_t m = 0; m < regular.meshes.size(); ++m) {
+    for (size_t m = 0; m < std::size(kPatchRows); ++m) {
         const float size = kPatchRows[m].patch.size;
         for (rt_u32 v = 0; v < regular.meshes[m].vertex_count; ++v) {
             float* const p = &positions[3 * size_t(regular.meshes[m].first_vertex + v)];
@@ -181,6 +182,7 @@ Scene floor_scene() {
     Maker make;
     kPatchRows[0].fill(make);
     make.place(make.mesh());
+    add_common_part(make, {5.05f, 0, 5.03f});
     return std::move(make.scene);
 }
 

@@ -107,4 +107,25 @@ inline Affine placed(const Point& at, float angle, const Point& scale) {
     return m;
 }
 
+// Shells around the origin of sizes from 8 down to 1e-7: a tree that is deeper than any other of the checks' scenes, in a group
+// of its own.
+inline Instance& place_shells(Maker& make, const Affine& world_from_object) {
+    for (int i = 0; i < 100; ++i) {
+        const float s = 8 * std::pow(1.2f, -float(i));
+        make.box({-s, -s, -s}, {s, s, s});
+    }
+    make.place(make.mesh(), world_from_object);
+    make.scene.instances.back().apart = true;
+    return make.scene.instances.back();
+}
+
+// What other scenes hold so that their programs are those of the mixed scene: a sphere, a polygon, and the shells, because
+// structures define the size of their stack by the deepest tree. No ray sees these shells; hits.nested sees those of the mixed
+// scene. All lie within 1e-4 of the point `at`, in its plane across y, and rays are not aimed there.
+inline void add_common_part(Maker& make, const Point& at) {
+    place_shells(make, placed(at, 0, {1e-7f, 1e-7f, 1e-7f})).visible = false;
+    make.sphere(at, 1e-7f);
+    make.polygon({at, {at[0] + 1e-4f, at[1], at[2]}, {at[0], at[1], at[2] + 1e-4f}});
+}
+
 }  // namespace clarity::check

@@ -10,7 +10,7 @@ namespace {
 
 constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{-40, 0, 0}, kTiny{0, 0, 40},
     kFar{9000, 2000, -7000}, kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40},
-    kInstancesFar{-3000, 500, 4000}, kSpheres{-40, 40, 0}, kPolygons{-40, 0, 40};
+    kInstancesFar{-3000, 500, 4000}, kSpheres{-40, 40, 0}, kPolygons{-40, 0, 40}, kShellsInstanced{-40, -40, 0};
 
 // Flat faces in front of slanted ones, nearer by a share of 4e-4 of the distance: a traversal that culls a little too much
 // loses them. The slanted faces' boxes begin well before.
@@ -61,6 +61,7 @@ const std::vector<Region>& mixed_regions() {
         {"tiny", kTiny, 0.02f},
         {"far away", kFar, 12},
         {"nested", kShells, 8},
+        {"nested, instanced", kShellsInstanced, 8},
         {"copies", kCopies, 2},
         {"instanced", kInstances, 8},
         {"instanced, tiny", kInstancesTiny, 0.05f},
@@ -125,6 +126,8 @@ Scene mixed_scene(uint64_t seed) {
     }
     for (int k = 0; k < 12; ++k)
         make.place(single, placed({i[0] - 5 + float(k), i[1] + 5, i[2]}, 0.5f * float(k), {0.7f, 0.7f, 1}));
+
+    place_shells(make, placed(kShellsInstanced, 0, {1, 1, 1}));
 
     for (int k = 0; k < 12; ++k) make.sphere(make.around(kSpheres, 3), 0.05f + make.random());
     make.sphere(kSpheres, 3.5f);  // around most of them

@@ -21,7 +21,7 @@ struct Region {
 
 // Every kind of primitive, in regions far from each other: a soup, boxes that touch, slanted and flat faces at nearly one
 // distance, degenerate triangles, tiny, huge and far-away ones, nested shells, copies at one place, and instances that are
-// turned, mirrored, stretched, tiny, large and within each other. About 3000 triangles. One scene, so that one program of each
+// turned, mirrored, stretched, tiny, large and within each other. About 4000 triangles. One scene, so that one program of each
 // lane count does.
 Scene mixed_scene(uint64_t seed = 0);
 const std::vector<Region>& mixed_regions();

@@ -105,6 +105,19 @@ void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>
         ->group("Settings");
 }
 
+// From "bounce=2,by=nee" to the settings only_bounce and only_by.
+void add_only_paths(const std::string& text, std::vector<std::pair<std::string, std::string>>& settings) {
+    for (size_t at = 0; at <= text.size();) {
+        const size_t end = std::min(text.find(',', at), text.size()), equals = text.find('=', at);
+        const std::string key = equals < end ? "only_" + text.substr(at, equals - at) : "";
+        if (key.empty() || !find_setting(key))
+            throw Error(Exit::usage, "--only-paths " + text + ": `" + text.substr(at, end - at) +
+                                         "` is not bounce=K, by=nee|bsdf, first=diffuse|glossy|transmission or light=N");
+        settings.emplace_back(key, text.substr(equals + 1, end - equals - 1));
+        at = end + 1;
+    }
+}
+
 void add_device(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--device", trace.device,
                           "Numbers as `clarity devices` lists them, P:D, cpu, gpu, part of a name; several share the picture: "
@@ -120,15 +133,19 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or its position and target"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
+    single(app.add_option_function<std::string>(
+               "--only-paths", [&trace](const std::string& text) { add_only_paths(text, trace.settings); },
+               "Of the tracer path: only light of these paths. bounce: number of events; by: nee, bsdf; first: diffuse, "
+               "glossy, transmission; light: number of a lamp"))
+        ->type_name("bounce=K,by=B,first=F,light=N");
     single(app.add_option("--preset", trace.preset, "Settings and view saved from the window; other options override it"))
         ->type_name("FILE");
     add_settings(app, trace.settings, trace.sets);
     app.get_option("--set")->description(
         "A setting as key=value (ray_slots=16), or a change of the view: "
-        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, "
-        "light.N=off|point,x,y,z,r,g,b|directional,..., "
-        "material.N.color=r,g,b (emission, specular, reflect, refract, ior, shininess), hide=3,5-9 (instances); may be "
-        "repeated");
+        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, camera.aperture=f, camera.focus=f, background=r,g,b, ambient=r,g,b, "
+        "light.N=off|point,x,y,z,r,g,b|rect,..., light.N.KEY=value, material.N.KEY=value (keys of text scenes), "
+        "hide=3,5-9 (instances); may be repeated");
 }
 
 void add_pose(CLI::App& app, PoseOptions& pose) {
@@ -168,6 +185,10 @@ void add_render(CLI::App& app, RenderOptions& render) {
         ->check(CLI::Range(1e-3, 1e6));
     add_pose(app, render.pose);
     single(app.add_option("--repeat", render.repeat, "Trace each frame N times for timing, after one warm-up"))->type_name("N");
+    single(app.add_option("--reference", render.reference,
+                          "A picture of what should come out, .pfm, .exr or .png: --stats has the errors against it, and how "
+                          "they fall with the samples"))
+        ->type_name("FILE");
     single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
         ->type_name("FILE");
     app.add_flag("--watch", render.watch,

@@ -47,11 +47,13 @@ std::map<std::string, uint64_t> shape_counts(const Scene& scene) {
 }
 
 Json camera_json(const Camera& camera, const Scene& scene) {
-    return {{"name", camera.name},
-            {"eye", point_json(camera.eye, scene)},
-            {"target", point_json(camera.target, scene)},
-            {"up", vector_json(camera.up)},
-            {"fov_deg", short_double(camera.fov_y_rad * 57.29578f)}};
+    Json json = {{"name", camera.name},
+                 {"eye", point_json(camera.eye, scene)},
+                 {"target", point_json(camera.target, scene)},
+                 {"up", vector_json(camera.up)},
+                 {"fov_deg", short_double(camera.fov_y_rad * 57.29578f)}};
+    if (camera.aperture > 0) json["aperture"] = short_double(camera.aperture), json["focus"] = short_double(camera.focus);
+    return json;
 }
 
 Json clip_json(const ClipInfo& clip) {

@@ -12,12 +12,13 @@
 #include "check/check.hpp"
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
-#include "compile/compile.hpp"
+#include "compile/compile_in_worker.hpp"
 #include "device/device_loss.hpp"
-#include "import/import.hpp"
+#include "import/import_in_worker.hpp"
 #include "plugin/load_trial.hpp"
 #include "render/accel/build_in_worker.hpp"
 #include "render/trial/trial.hpp"
+#include "worker/child.hpp"
 
 namespace clarity {
 namespace {
@@ -69,17 +70,17 @@ int run_and_report(int argc, char** argv) {
     }
 }
 
+// All that this program does in workers.
+const std::vector<const worker::JobKind*> kJobs = {&import::kImportJob, &check::kCheckJob, &kBuildJob,
+                                                   &kCompileJob,        &kTrialJob,        &kLoadJob};
+
 }  // namespace
 }  // namespace clarity
 
 int main(int argc, char** argv) {
     // Workers must set their resource limits before anything else runs.
-    if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import::import_worker_main(argc, argv);
-    if (argc > 1 && std::strcmp(argv[1], "check-worker") == 0) return clarity::check::check_worker_main(argc, argv);
-    if (argc > 1 && std::strcmp(argv[1], "build-worker") == 0) return clarity::build_worker_main(argc, argv);
-    if (argc > 1 && std::strcmp(argv[1], "compile-worker") == 0) return clarity::compile_worker_main(argc, argv);
-    if (argc > 1 && std::strcmp(argv[1], "trial-worker") == 0) return clarity::trial_worker_main(argc, argv);
-    if (argc > 1 && std::strcmp(argv[1], "load-worker") == 0) return clarity::load_worker_main(argc, argv);
+    if (const clarity::worker::JobKind* job = clarity::worker::kind_of_worker(argc, argv, clarity::kJobs))
+        return clarity::worker::worker_main(*job, argc, argv);
     const int code = clarity::run_and_report(argc, argv);
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {

@@ -30,7 +30,4 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
 // thread, for a program that is needed later. Throws Cancelled; all other failures are left to compile_program().
 void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress);
 
-// The main function of the worker: `clarity compile-worker`.
-int compile_worker_main(int argc, char** argv);
-
 }  // namespace clarity

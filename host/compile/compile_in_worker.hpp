@@ -1,13 +1,16 @@
 // compile_in_worker.hpp -- compiles one program in a worker process, and watches it.
 #pragma once
 #include "base/progress.hpp"
-#include "compile/compile_wire.hpp"
+#include "compile/compile_job.hpp"
 #include "device/device.hpp"
+#include "worker/job.hpp"
 
 namespace clarity {
 
 // Seconds after which the user is told what still compiles: CLARITY_COMPILE_PATIENCE, or 60.
 double compile_patience_s();
+
+extern const worker::JobKind kCompileJob;
 
 // Runs the job. what: for messages. Throws Error(kernel_build_failed) if the worker does not end as it should, with what the
 // compiler printed in details(), and Cancelled. Compiler errors are no failure: they are in the result.

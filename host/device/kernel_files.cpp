@@ -70,14 +70,14 @@ Places places() {
 }
 
 // The file of a plugin's library, as its user knows it; `plugin` may be the host's copy, whose texts are still the library's.
-fs::path library_of(const rt_plugin& plugin) {
+fs::path original_library(const rt_plugin& plugin) {
     return original_of(loaded_file_of(plugin.id));
 }
 
 // The folder of the sources that a library was built from. clarity_add_plugin() notes it beside the library, in ID.sources.
 // Empty if there is no note, as for installed plugins.
 fs::path source_folder(const rt_plugin& plugin) {
-    fs::path note = library_of(plugin);
+    fs::path note = original_library(plugin);
     if (note.empty()) return {};
     std::string folder;
     try {
@@ -104,7 +104,7 @@ std::vector<PluginPlace> plugin_places(const rt_plugin& plugin, const char* name
     }
     if (const fs::path folder = source_folder(plugin); !folder.empty()) all.push_back({PluginPlace::sources, folder / name});
     if (!where.kernels.empty()) all.push_back({PluginPlace::checkout, where.plugin(plugin) / name});
-    if (const fs::path library = library_of(plugin); !library.empty())
+    if (const fs::path library = original_library(plugin); !library.empty())
         all.push_back({PluginPlace::beside, library.parent_path() / name});
     return all;
 }
@@ -112,7 +112,7 @@ std::vector<PluginPlace> plugin_places(const rt_plugin& plugin, const char* name
 // True for a file that was saved after the plugin's library was built.
 bool is_newer_than_library(const fs::path& path, const rt_plugin& plugin) {
     std::error_code error;
-    const auto built = fs::last_write_time(library_of(plugin), error);
+    const auto built = fs::last_write_time(original_library(plugin), error);
     if (error) return true;
     const auto saved = fs::last_write_time(path, error);
     return !error && saved >= built;
@@ -275,7 +275,7 @@ std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file) 
         }
         if (beside && !as_built && !is_newer_than_library(path, plugin)) {
             say_once(LogLevel::warning, path, text,
-                     path + ": is not used, because it is older than " + library_of(plugin).string() +
+                     path + ": is not used, because it is older than " + original_library(plugin).string() +
                          ", which has another text built in; delete it, or save it again to use it");
             continue;
         }
@@ -286,7 +286,7 @@ std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file) 
                              "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
         if (!as_built && (beside || place.kind == PluginPlace::sources))
             say_once(LogLevel::info, path, text,
-                     path + ": is used; it differs from the text built into " + library_of(plugin).string());
+                     path + ": is used; it differs from the text built into " + original_library(plugin).string());
         // What is built in has its parts in it, so that a line can be named only for a file without parts.
         if (as_built)
             remember(shown, path, std::move(text));
@@ -295,7 +295,7 @@ std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file) 
         used = path;
         result = whole;
     }
-    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "", library_of(plugin));
+    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "", original_library(plugin));
     return with_kernels(result);
 }
 

@@ -108,7 +108,7 @@ std::string use_writable_folder() {
 }  // namespace
 
 bool compiles_in_worker() {
-    if (std::getenv(worker::kWorkerVariable)) return false;
+    if (worker::in_worker()) return false;
     const char* place = std::getenv("CLARITY_COMPILE");
     return !place || std::strcmp(place, "here") != 0;
 }

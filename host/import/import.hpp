@@ -29,8 +29,4 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
 // otherwise what the scene has or is ("is not sound: ...").
 std::string complete_scene(const PluginRegistry& plugins, Scene& scene);
 
-// Main function of the worker process (`clarity import-worker ...`, which people do not call). Returns only if its arguments
-// are wrong.
-int import_worker_main(int argc, char** argv);
-
 }  // namespace clarity::import

@@ -1,20 +1,15 @@
 #include "import/import_in_worker.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/files/packed_file.hpp"
 #include "base/log.hpp"
 #include "base/physical_memory.hpp"
 #include "base/printable.hpp"
+#include "import/import_job.hpp"
 #include "import/wire.hpp"
-#include "worker/child.hpp"
-#include "worker/supervisor.hpp"
 
 namespace clarity::import {
 namespace {
@@ -42,97 +37,75 @@ class Limits {
     uint64_t file_bytes_ = 0;
 };
 
-// Supervises one import.
-class ImportSupervisor : public worker::Supervisor {
+class Import : public worker::Job {
  public:
-    ImportSupervisor(worker::WorkerProcess& process, Limits limits, std::string first_file, const std::string& program,
-                     Progress& progress)
-        : Supervisor(process, {worker::kImportGreeting, "an import worker", program, Exit::import_failed}, progress),
-          limits_(limits),
-          file_(std::move(first_file)) {}
+    Import(Limits limits, const std::string& first_file) : Job(kImportJob, "the importer", {}), import_limits_(limits) {
+        what_ = subject = first_file;
+        take_limits();
+    }
 
  private:
-    using End = worker::Ending::Kind;
-    void handle(const worker::Message& message) override {
-        if (message.kind != worker::MessageKind::running) return;
-        const size_t end = message.text.find('\n');
-        file_ = message.text.substr(0, end);
-        importer_ = end == std::string::npos ? "" : message.text.substr(end + 1);
-        made_progress();
-        const uint64_t before = limits_.memory_bytes();
-        limits_.add_file(file_);
-        worker_.raise_memory_limit(limits_.memory_bytes() - before);
-        worker::send_message(worker_.channel(), {worker::MessageKind::proceed, 0, 0, {}});
+    void take_limits() { limits_ = {import_limits_.idle_s(), import_limits_.cpu_s(), import_limits_.memory_bytes()}; }
+    void on_step(const std::string& text) override {
+        const size_t end = text.find('\n');
+        what_ = text.substr(0, end);
+        importer_ = end == std::string::npos ? "" : text.substr(end + 1);
+        who_ = "the importer" + (importer_.empty() ? "" : " " + importer_);
+        const uint64_t before = limits_.memory_bytes;
+        import_limits_.add_file(what_);
+        take_limits();
+        process().raise_memory_limit(limits_.memory_bytes - before);
+        worker::send_message(process().channel(), {worker::MessageKind::proceed, 0, 0, {}});
     }
-    void printed(const std::string& line) override {
+    void on_output(const std::string& line) override {
         log(LogLevel::info,
             (importer_.empty() ? "an importer" : "importer " + importer_) + " printed: " + printable_line(line));
     }
-    double idle_limit_s() const override { return limits_.idle_s(); }
-    uint64_t processor_limit_s() const override { return limits_.cpu_s(); }
-    uint64_t memory_limit_bytes() const override { return limits_.memory_bytes(); }
-    std::string speaker() const override { return importer_.empty() ? "the importer" : "the importer " + importer_; }
 
-    void ended(const worker::Ending& ending) const override {
-        const std::string advice = "; the file is damaged or uses something that the library cannot handle";
-        switch (ending.kind) {
-            case End::no_progress:
-                fail(speaker() + " made no progress for " + ending.how +
-                     " and was stopped; the file is damaged, or too complex for the library that reads it");
-            case End::memory:
-                fail(speaker() + " needs more than " + ending.how +
-                     " of memory; the file is damaged, or larger than this machine can import");
-            case End::exited:
-                fail(speaker() + " ended the worker process (" + ending.how + ") without a result" + advice);
-            case End::processor_time:
-                fail(speaker() + " used more than " + ending.how + " of processor time and was stopped" + advice);
-            case End::killed:
-                fail(speaker() +
-                     "'s worker process was killed from outside, as the system does when memory runs out; close other "
-                     "programs or take a smaller file");
-            case End::crashed:
-                break;
-        }
-        fail(speaker() + " crashed (" + ending.how + ") while reading" + advice);
-    }
-    [[noreturn]] void fail(const std::string& why) const { throw Error(Exit::import_failed, file_ + ": " + why); }
-
-    Limits limits_;
-    std::string file_, importer_;
+    Limits import_limits_;
+    std::string importer_;
 };
 
 }  // namespace
 
+const worker::JobKind kImportJob = {
+    "import",
+    "to import a file, run `clarity info FILE`",
+    Exit::import_failed,
+    false,
+    LogLevel::info,
+    {"{what}: {who} crashed ({how}) while reading; the file is damaged or uses something that the library cannot handle",
+     "{what}: {who} ended the worker process ({how}) without a result; the file is damaged or uses something that the library "
+     "cannot handle",
+     "{what}: {who} made no progress for {how} and was stopped; the file is damaged, or too complex for the library that reads "
+     "it",
+     "{what}: {who} used more than {how} of processor time and was stopped; the file is damaged or uses something that the "
+     "library cannot handle",
+     "{what}: {who} needs more than {how} of memory; the file is damaged, or larger than this machine can import",
+     "{what}: {who}'s worker process was killed from outside, as the system does when memory runs out; close other programs or "
+     "take a smaller file"},
+    import_job};
+
 Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                        Progress& progress) {
-    if (std::getenv(worker::kWorkerVariable)) {
+    if (worker::in_worker()) {
         throw Error(Exit::import_failed, files.front() +
                                              ": this process is an import worker itself and starts no other; set "
                                              "CLARITY_WORKER to the program `clarity`");
     }
     const Limits limits(options);
-    const std::string program = options.worker.empty() ? worker::worker_program() : options.worker;
-    std::vector<std::string> arguments;
-    const std::pair<const char*, uint64_t> numbers[] = {{"--memory", limits.memory_bytes()},
-                                                        {"--most-memory", limits.most_memory_bytes()},
-                                                        {"--cpu", limits.cpu_s()},
-                                                        {"--parent", static_cast<uint64_t>(getpid())}};
-    for (const auto& [key, value] : numbers) arguments.insert(arguments.end(), {key, std::to_string(value)});
-    for (const PluginRecord& record : plugins.records()) {
-        if (!record.plugin || record.shadowed || record.plugin->accel) continue;
-        arguments.insert(arguments.end(), {"--plugin", record.loaded});
-    }
-    for (const std::string& folder : options.search_paths) arguments.insert(arguments.end(), {"--search", folder});
-    for (const std::string& importer : options.importers) arguments.insert(arguments.end(), {"--importer", importer});
-    arguments.push_back("--");
-    arguments.insert(arguments.end(), files.begin(), files.end());
-
-    worker::WorkerProcess process(program, "import-worker", arguments, Exit::import_failed);
-    ImportSupervisor(process, limits, files.front(), program, progress).follow();
-    Scene scene;
-    const std::string why = read_scene(process.result(), scene);
-    if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the import worker's result cannot be used: " + why);
-    return scene;
+    ImportJob job{{limits.memory_bytes(), limits.most_memory_bytes(), limits.cpu_s()},
+                  {},
+                  options.search_paths,
+                  options.importers,
+                  files};
+    for (const PluginRecord& record : plugins.records())
+        if (record.plugin && !record.shadowed && !record.plugin->accel) job.plugins.push_back(record.loaded);
+    Import import(limits, files.front());
+    if (!options.worker.empty()) import.program = options.worker;
+    SentScene result;
+    import.run(job, result, progress);
+    return std::move(result.scene);
 }
 
 }  // namespace clarity::import

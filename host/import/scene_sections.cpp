@@ -22,7 +22,8 @@ Converted convert(const Scene& s) {
     for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values});
     for (const Light& l : s.lights) c.lights.push_back({name(l.name), l.node, l.values, l.at_node});
     for (const Camera& k : s.cameras)
-        c.cameras.push_back({name(k.name), k.node, k.eye, k.target, k.up, k.node_eye, k.node_target, k.node_up, k.fov_y_rad});
+        c.cameras.push_back({name(k.name), k.node, k.eye, k.target, k.up, k.node_eye, k.node_target, k.node_up, k.fov_y_rad,
+                             k.aperture, k.focus});
     for (const Node& n : s.motion.nodes) c.nodes.push_back({name(n.name), 0, n.values});
     for (const Clip& k : s.motion.clips)
         c.clips.push_back({name(k.name), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
@@ -63,8 +64,8 @@ bool convert_back(const Converted& c, Scene& s) {
     for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values});
     for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values, l.node, l.at_node, 0});
     for (const WireCamera& k : c.cameras)
-        s.cameras.push_back(
-            {name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.node, k.node_eye, k.node_target, k.node_up, 0});
+        s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.aperture, k.focus, k.node, k.node_eye,
+                             k.node_target, k.node_up, 0});
     for (const WireNode& n : c.nodes) {
         s.motion.nodes.push_back({name(n.name_bytes), n.values});
         s.motion.nodes.back().values.name = nullptr;

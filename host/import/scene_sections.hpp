@@ -27,13 +27,12 @@ struct WireMaterial {
 };
 struct WireLight {
     uint32_t name_bytes, node;
-    rt_light values;
-    std::array<float, 3> at_node;
+    rt_light values, at_node;
 };
 struct WireCamera {
     uint32_t name_bytes, node;
     std::array<float, 3> eye, target, up, node_eye, node_target, node_up;
-    float fov_y_rad;
+    float fov_y_rad, aperture, focus;
 };
 struct WireNode {
     uint32_t name_bytes, pad;
@@ -68,7 +67,6 @@ struct Converted {
     std::vector<char> names;
 };
 
-constexpr uint32_t kSectionCount = 50;
 // The one list of all sections: whoever writes, reads or compares scenes uses it, so that they always agree.
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {

@@ -1,25 +1,36 @@
-// wire.hpp -- passes a Scene from the worker process to its parent, as one flat file in memory.
+// wire.hpp -- passes a Scene from one process to another, in a file in memory (base/files/packet.hpp).
 #pragma once
-#include <string>
-
-#include "base/files/memory_file.hpp"
+#include "base/files/packet.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::import {
 
-// Writes the scene into an empty memfd and seals its size. The scene's memory goes back to the system piece by piece, so that
-// it is not held twice. Returns an empty text on success, otherwise the reason.
-std::string write_scene(int fd, Scene scene);
+// A scene among the values of a packet. What is sent without being shared goes back to the system piece by piece, so that the
+// scene is not held twice. Indices and numbers that arrive are not checked here but by validate().
+struct SentScene {
+    Scene scene;
+    template <class Packet, class Self>
+    static void visit(Packet& packet, Self& self) {
+        if constexpr (!Packet::kWrites)
+            receive(packet, self.scene);
+        else if constexpr (std::is_const_v<Self>)
+            send(packet, self.scene);
+        else
+            send(packet, std::move(self.scene));
+    }
+    static void send(PacketWriter& packet, Scene scene);
+    static void receive(PacketReader& packet, Scene& scene);
+};
+
+// Writes the scene into an empty file, whose size is sealed then. Throws Error(failed), as the other functions do.
+void write_scene(MemoryFile& file, Scene scene);
 
 // Reads a scene that write_scene() wrote. This empties the file: the memory of what was read goes back to the system. The
-// worker is not trusted: a file that is not sealed is refused, and every size is checked against the file's size. Each byte is
-// read once, so that it does not matter if the worker still writes. Indices and numbers are not checked here but by validate().
-// Returns an empty text on success, otherwise the reason.
-std::string read_scene(int fd, Scene& scene);
+// process that wrote it is not trusted.
+Scene read_scene(const MemoryFile& file);
 
 // The scene of a file that write_scene() wrote and that has been sealed whole: its large arrays lie in the file, so that all
-// processes that call this share one copy. Indices and numbers are not checked. Returns an empty text on success, otherwise the
-// reason. Throws Error(failed) if the file cannot be mapped.
-std::string map_scene(const MemoryFile& file, Scene& scene);
+// processes that call this share one copy.
+Scene map_scene(const MemoryFile& file);
 
 }  // namespace clarity::import

@@ -74,10 +74,6 @@ void wait_for(const MemoryFile& file, int64_t first_rank, Progress& progress) {
     }
 }
 
-void check_scene(const std::string& why) {
-    if (!why.empty()) throw Error(Exit::failed, "sharing the scene among ranks: " + why);
-}
-
 }  // namespace
 
 MpiRanks::MpiRanks() : module_(load()) {
@@ -134,7 +130,7 @@ Scene MpiRanks::share_scene(const PluginRegistry& plugins, const std::function<S
     bool fills = false;
     MemoryFile file = file_of_host(fills);
     check(module_->receivers(fills), "sharing the scene");
-    if (rank_ == 0) check_scene(import::write_scene(file.fd(), import()));
+    if (rank_ == 0) import::write_scene(file, import());
     if (fills) {
         double bytes = rank_ == 0 ? double(file.bytes()) : 0;
         check(module_->broadcast(&bytes, sizeof bytes), "sharing the scene");
@@ -148,8 +144,7 @@ Scene MpiRanks::share_scene(const PluginRegistry& plugins, const std::function<S
         file.seal();
     }
     wait_for(file, first_of_host_, progress);
-    Scene scene;
-    check_scene(import::map_scene(file, scene));
+    Scene scene = import::map_scene(file);
     const std::string why = import::complete_scene(plugins, scene);
     if (!why.empty()) throw Error(Exit::import_failed, "the scene that rank 0 has sent " + why);
     return scene;

@@ -3,13 +3,14 @@
 #pragma once
 #include <string>
 
+#include "worker/job.hpp"
+
 namespace clarity {
 
-// Opens and checks a library that is not known (known_libraries.hpp) in a worker. Returns an empty text if that worker came to
+// Opens and checks a library without trust (trust.hpp) in a worker. Returns an empty text if that worker came to
 // an end, or could not be started; otherwise how it died: the library must then not be opened here. Thread-safe.
 std::string try_to_load(const std::string& path);
 
-// Main function of the worker (`clarity load-worker ...`, which people do not call).
-int load_worker_main(int argc, char** argv);
+extern const worker::JobKind kLoadJob;
 
 }  // namespace clarity

@@ -21,6 +21,8 @@ bool make_sound(Camera& camera) {
     if (!(distance2 > 0)) return false;
     if (!(camera.fov_y_rad > 1e-3f && camera.fov_y_rad < static_cast<float>(kPi) - 1e-3f))
         camera.fov_y_rad = Camera{}.fov_y_rad;
+    for (float* size : {&camera.aperture, &camera.focus})
+        if (!(*size >= 0 && std::isfinite(*size))) *size = 0;
     if (are_usable(camera.up) && dot(across, across) > 1e-10 * distance2 * dot(up, up)) return true;
     const bool vertical = std::abs(forward[1]) > 0.9 * std::sqrt(distance2);
     camera.up = vertical ? std::array<float, 3>{0, 0, 1} : std::array<float, 3>{0, 1, 0};
@@ -70,7 +72,8 @@ Camera framing_camera(const Scene& scene, float aspect) {
 }
 
 bool same_camera(const Camera& a, const Camera& b) {
-    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad && a.aperture == b.aperture &&
+           a.focus == b.focus;
 }
 
 }  // namespace clarity

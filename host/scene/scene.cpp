@@ -179,16 +179,6 @@ Bounds shape_bounds(const Scene& scene, const Shape& shape) {
     return box;
 }
 
-rt_material default_material() {
-    rt_material m{};
-    for (float& channel : m.color) channel = 0.7f;
-    for (float& channel : m.specular) channel = 0.15f;
-    m.shininess = 32;
-    m.ior = 1.5f;
-    m.texture = RT_NONE;
-    return m;
-}
-
 rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color) {
     rt_light light{};
     light.kind = kind;

@@ -98,15 +98,17 @@ struct Material {
 struct Light {
     std::string name;
     rt_light values{};
-    rt_u32 node = RT_NONE;           // that moves it
-    std::array<float, 3> at_node{};  // its position, or direction, in the node's space
-    rt_u32 source = 0;               // for the import only: by which channels name it
+    rt_u32 node = RT_NONE;  // that moves it
+    rt_light at_node{};     // in the node's space
+    rt_u32 source = 0;      // for the import only: by which channels name it
 };
 struct Camera {
     std::string name;
     std::array<float, 3> eye{}, target{}, up{0, 1, 0};
     float fov_y_rad = 0.7853982f;
-    rt_u32 node = RT_NONE;                                      // that moves it
+    float aperture = 0;     // diameter of the lens; 0: a pinhole
+    float focus = 0;        // distance along the view at which the lens is sharp; 0: that of the target
+    rt_u32 node = RT_NONE;  // that moves it
     std::array<float, 3> node_eye{}, node_target{}, node_up{};  // in the node's space
     rt_u32 source = 0;                                          // for the import only: by which channels name it
 };
@@ -176,7 +178,7 @@ Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 // Box of a shape's parts in its own space.
 Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
-rt_material default_material();
+rt_material default_material();  // in material_keys.cpp
 // A light without falloff. kind: RT_LIGHT_POINT at a position, or RT_LIGHT_DIRECTIONAL from a unit vector towards it.
 rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color);
 

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "base/angle.hpp"
-#include "scene/scene.hpp"
+#include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
 
 namespace clarity {
 namespace {
@@ -153,13 +154,7 @@ std::string check_looks(const Scene& s) {
     if (s.materials.empty()) return "materials: the default material is missing";
     for (size_t i = 0; i < s.materials.size(); ++i) {
         const rt_material& m = s.materials[i].values;
-        const float scalars[] = {m.reflect, m.refract, m.shininess, m.ior};
-        if (!all_finite(m.color) || !all_finite(m.emission) || !all_finite(m.specular) || !all_finite(scalars)) {
-            return text("material", i, "not a finite number");
-        }
-        if (m.reflect < 0 || m.reflect > 1 || m.refract < 0 || m.refract > 1)
-            return text("material", i, "a share outside 0..1");
-        if (!(m.ior > 0)) return text("material", i, "its index of refraction is not positive");
+        if (const std::string fault = material_fault(m); !fault.empty()) return text("material", i, fault);
         if (m.texture != RT_NONE && m.texture >= s.textures.size()) {
             return text("material", i, "texture " + of(m.texture, s.textures.size()));
         }
@@ -178,9 +173,7 @@ std::string check_looks(const Scene& s) {
 
 std::string check_view(const Scene& s) {
     for (size_t i = 0; i < s.lights.size(); ++i) {
-        const rt_light& light = s.lights[i].values;
-        if (light.kind != RT_LIGHT_POINT && light.kind != RT_LIGHT_DIRECTIONAL) return text("light", i, "unknown kind");
-        if (!all_finite(light.position) || !all_finite(light.color)) return text("light", i, "not a finite number");
+        if (const std::string fault = light_fault(s.lights[i].values); !fault.empty()) return text("light", i, fault);
     }
     for (size_t i = 0; i < s.cameras.size(); ++i) {
         const Camera& camera = s.cameras[i];
@@ -189,6 +182,8 @@ std::string check_view(const Scene& s) {
         }
         if (!(camera.fov_y_rad > 0 && camera.fov_y_rad < static_cast<float>(kPi)))
             return text("camera", i, "field of view outside 0..180 degrees");
+        for (const float size : {camera.aperture, camera.focus})
+            if (!(size >= 0 && std::isfinite(size))) return text("camera", i, "aperture or focus is no length");
         if (camera.eye == camera.target) return text("camera", i, "it looks at its own eye");
     }
     if (!all_finite(s.background) || !all_finite(s.ambient)) return "background or ambient light is not a finite number";

@@ -24,7 +24,7 @@
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
- *      wrap_v of textures; content of rt_host, flags of rt_importer. */
+ *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -250,17 +250,28 @@ enum {
     RT_KEY_POINT,  /* x y z */
     RT_KEY_VECTOR, /* x y z, not all of them 0 */
     RT_KEY_NUMBERS, /* numbers, as many as the file has */
-    RT_KEY_POINTS   /* x y z of each point, as many as the file has */
+    RT_KEY_POINTS,  /* x y z of each point, as many as the file has */
+    /* Of lights and materials alone: */
+    RT_KEY_COLOR, /* r g b, or one number for a grey */
+    RT_KEY_WORD,  /* one of `words`: its number, from 0 */
+    RT_KEY_FLAG   /* 0 or 1: `true` or `false`; the name alone means `true` */
 };
 #define RT_KEY_REQUIRED 1u /* the statement must have this key; otherwise numbers default to def, and lists are empty */
-/* A key of the shape's statement in text scenes, `radius .5`. It is data: importers read the values and write the messages.
- * rt_primitive::key_bytes tells the size of an element. */
+/* A key of a statement in text scenes, `radius .5`: of a shape, a light or a material. It is data: importers read the values and
+ * write the messages. rt_primitive::key_bytes tells the size of an element. */
 typedef struct rt_key {
     const char *name, *help; /* "radius", "distance from the axis": [a-z][a-z0-9_]*, not `material` */
     rt_u32 kind, flags;      /* RT_KEY_NUMBER, ..., RT_KEY_REQUIRED */
     double min, max;         /* of each number */
     double def[3];
+    const char *const *words; /* appended: of RT_KEY_WORD, NULL-terminated; else NULL */
 } rt_key;
+/* The value of a key by its name. 24 B; it never grows. */
+typedef struct rt_key_value {
+    const char *key;  /* "radius" */
+    float numbers[3]; /* of a word its number, of a flag 0 or 1 */
+    rt_u32 pad;       /* 0 */
+} rt_key_value;
 /* The values of one key. 16 B; it never grows. */
 typedef struct rt_key_values {
     const float *numbers;
@@ -329,7 +340,7 @@ typedef struct rt_instance_desc {
     const double *translation;   /* appended: x, y, z, in place of numbers 3, 7 and 11 of world_from_object; NULL: those */
 } rt_instance_desc;
 
-/* Whitted's material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */
+/* A material. The members are those of Whitted's; docs/scene_format.md lists the keys of `values`. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */
 typedef struct rt_material_desc {
     rt_u32 struct_bytes;
     rt_u32 flags;      /* RT_MATERIAL_CHECKER, or 0 */
@@ -342,6 +353,8 @@ typedef struct rt_material_desc {
     float shininess;   /* exponent of the highlight */
     float ior;         /* index of refraction of the inside, 1.5 for glass */
     rt_u32 texture;    /* id that the sink's `texture` returned, which multiplies color; RT_NONE: none */
+    const rt_key_value *values; /* appended: of keys that rt_scene_sink::material_kind names, which replace the members above; or NULL */
+    rt_u32 value_count, pad;
 } rt_material_desc;
 
 /* What a texture shows outside of its picture, along u or v. */
@@ -366,19 +379,24 @@ typedef struct rt_camera {
     float fov_y_rad;
     rt_u32 node; /* appended: id of the node that moves it; 0: none */
     rt_u32 pad;  /* 0 */
+    float aperture; /* appended: diameter of the lens; 0: a pinhole */
+    float focus;    /* appended: distance along the view at which the lens is sharp; 0: that of the target */
 } rt_camera;
 
-/* A light without falloff. With a node, position and direction are in the node's space. */
+/* A light. With a node, all of it is in the node's space. What has neither a member nor a value is as docs/scene_format.md says:
+ * a point light without values has no falloff. */
 typedef struct rt_light_desc {
     rt_u32 struct_bytes;
-    rt_u32 kind;        /* RT_LIGHT_POINT, RT_LIGHT_DIRECTIONAL */
+    rt_u32 kind;        /* RT_LIGHT_POINT, ... */
     const char *name;   /* or NULL */
-    float position[3];  /* of a point light */
-    float direction[3]; /* into which a directional light shines; need not be unit */
+    float position[3];  /* of a point or spot light; the middle of a rect, disc or sphere */
+    float direction[3]; /* into which a directional light, a sun or a spot shines; need not be unit */
     float color[3];     /* linear RGB, intensity included */
     rt_u32 pad;         /* 0 */
     rt_u32 node;        /* appended: id of the node that moves it; 0: none */
     rt_u32 pad2;        /* 0 */
+    const rt_key_value *values; /* appended: of keys that rt_scene_sink::light_kind names, which replace the members above; or NULL */
+    rt_u32 value_count, pad3;
 } rt_light_desc;
 
 typedef struct rt_load {
@@ -400,7 +418,7 @@ typedef struct rt_scene_info {
     const float *ambient;    /* linear RGB, or NULL */
 } rt_scene_info;
 
-/* A kind of shapes that the sink takes: the plugin's id, and its keys. */
+/* A kind of shapes that the sink takes: the plugin's id, and its keys. Likewise a kind of lights, and materials. */
 typedef struct rt_primitive_kind {
     rt_u32 struct_bytes, key_count;
     const char *id;
@@ -598,6 +616,9 @@ typedef struct rt_scene_sink {
      * "instance.3.translate" and "1,0,0". Keys are instance.N..., material.N... and light.N, counted as `clarity info` counts them.
      * where: "FILE:LINE:COLUMN" of the statement, or NULL. Returns RT_OK, or RT_FAILED with the error recorded. */
     int32_t (*edit)(void *ctx, const char *key, const char *value, const char *where);
+    /* Appended. The keys of lights of a kind: RT_LIGHT_POINT, ...; NULL: there is no such kind. And those of materials. */
+    const rt_primitive_kind *(*light_kind)(void *ctx, rt_u32 kind);
+    const rt_primitive_kind *(*material_kind)(void *ctx);
 } rt_scene_sink;
 
 #define RT_IMPORTER_TAKES_CONTENT 1u /* it reads rt_host::content if there is some; others get no packed files */

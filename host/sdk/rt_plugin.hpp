@@ -285,24 +285,24 @@ inline void prims(const rt_refit_input* in, uint64_t first, uint64_t count, rt_p
 
 // The keys of a shape. Without a default, a key is required.
 constexpr rt_key number_key(const char* name, const char* help, double min, double max) {
-    return {name, help, RT_KEY_NUMBER, RT_KEY_REQUIRED, min, max, {}};
+    return {name, help, RT_KEY_NUMBER, RT_KEY_REQUIRED, min, max, {}, nullptr};
 }
 constexpr rt_key number_key(const char* name, const char* help, double min, double max, double def) {
-    return {name, help, RT_KEY_NUMBER, 0, min, max, {def, 0, 0}};
+    return {name, help, RT_KEY_NUMBER, 0, min, max, {def, 0, 0}, nullptr};
 }
 constexpr rt_key whole_key(const char* name, const char* help, int min, int max, int def) {
-    return {name, help, RT_KEY_WHOLE, 0, double(min), double(max), {double(def), 0, 0}};
+    return {name, help, RT_KEY_WHOLE, 0, double(min), double(max), {double(def), 0, 0}, nullptr};
 }
 // kind: RT_KEY_POINT, RT_KEY_VECTOR, RT_KEY_NUMBERS or RT_KEY_POINTS.
 constexpr rt_key key(rt_u32 kind, const char* name, const char* help) {
-    return {name, help, kind, RT_KEY_REQUIRED, -1e15, 1e15, {}};
+    return {name, help, kind, RT_KEY_REQUIRED, -1e15, 1e15, {}, nullptr};
 }
 constexpr rt_key key(rt_u32 kind, const char* name, const char* help, double x, double y, double z) {
-    return {name, help, kind, 0, -1e15, 1e15, {x, y, z}};
+    return {name, help, kind, 0, -1e15, 1e15, {x, y, z}, nullptr};
 }
 // A list that may be left out.
 constexpr rt_key list_key(rt_u32 kind, const char* name, const char* help) {
-    return {name, help, kind, 0, -1e15, 1e15, {}};
+    return {name, help, kind, 0, -1e15, 1e15, {}, nullptr};
 }
 
 using ShapeBounds = int32_t (*)(const rt_host*, const rt_key_values*, float lo[3], float hi[3]);
@@ -327,11 +327,24 @@ inline void part(const rt_shape_output* out, const float lo[3], const float hi[3
 
 // A material of the values that the host gives to objects without one.
 constexpr rt_material_desc material(const char* name = nullptr) {
-    return {sizeof(rt_material_desc), 0, name, {0.7f, 0.7f, 0.7f}, 0, {0, 0, 0}, 0, {0.15f, 0.15f, 0.15f}, 32, 1.5f, RT_NONE};
+    rt_material_desc m{};
+    m.struct_bytes = sizeof m;
+    m.name = name;
+    for (float& c : m.color) c = 0.7f;
+    for (float& c : m.specular) c = 0.15f;
+    m.shininess = 32;
+    m.ior = 1.5f;
+    m.texture = RT_NONE;
+    return m;
 }
-// A white light at the origin, or one that shines downwards. kind: RT_LIGHT_POINT or RT_LIGHT_DIRECTIONAL.
+// A white light at the origin, or one that shines downwards. kind: RT_LIGHT_POINT, ...
 constexpr rt_light_desc light(rt_u32 kind, const char* name = nullptr) {
-    return {sizeof(rt_light_desc), kind, name, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 0, 0};
+    return {sizeof(rt_light_desc), kind, name, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 0, 0, nullptr, 0, 0};
+}
+
+// The value of a key of a light or a material: rt::value("angle", 30).
+constexpr rt_key_value value(const char* key, float x, float y = 0, float z = 0) {
+    return {key, {x, y, z}, 0};
 }
 
 // A mesh that is placed where its vertices are.

@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 namespace clarity::worker {
 namespace {
@@ -31,6 +33,15 @@ bool write_packet(int fd, const char* packet, size_t bytes) {
 }
 
 }  // namespace
+
+bool in_worker() {
+    return std::any_of(std::begin(kWorkerVariables), std::end(kWorkerVariables),
+                       [](const char* name) { return std::getenv(name); });
+}
+
+std::string greeting_of(const char* kind) {
+    return std::string("clarity ") + kind + " worker 2";
+}
 
 bool send_message(int fd, const Message& message) {
     const size_t text_bytes = std::min(message.text.size(), kMaxText);

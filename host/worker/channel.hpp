@@ -6,23 +6,29 @@
 namespace clarity::worker {
 
 // File descriptors which are open when the worker starts.
-inline constexpr int kChannelFd = 3, kResultFd = 4;
-// Set in the worker's environment. A process that has it must not start workers of its own.
-inline constexpr const char* kWorkerVariable = "CLARITY_IMPORT_WORKER";
+inline constexpr int kChannelFd = 3, kResultFd = 4, kArgumentsFd = 5;
+// Set in the worker's environment. A process that has one of them must not start workers of its own. The second is an older
+// name of the first.
+inline constexpr const char* kWorkerVariables[] = {"CLARITY_IN_WORKER", "CLARITY_IMPORT_WORKER"};
+bool in_worker();
+// A worker's command is its kind and this end: "import-worker".
+inline constexpr const char* kCommandEnd = "-worker";
+std::string greeting_of(const char* kind);  // the first message of our workers
 
 enum class MessageKind : uint32_t {
-    greeting = 1,  // text: the kind of the worker, see child.hpp. Any other program says something else, or nothing
-    running,       // text: what it runs now; importers: file, line break, importer, and the worker waits for `proceed`
+    greeting = 1,  // text: greeting_of(). Any other program says something else, or nothing
+    running,       // text: the step that begins; fraction: seconds that it may take, or 0: as long as the one before
     stage,         // text as for Progress::stage
     progress,      // fraction
     log,           // level, text
     death,         // text: the cause of death as the worker sees it, "stack overflow"
+    no_memory,     // memory was refused; if the worker dies, this was the reason
     failed,        // text: error message, naming the file or the plugin
     cancelled,     // the work stopped because it was told to
-    report,        // text: one result of a check, as JSON
+    report,        // text: a part of the result
     done,          // the result is complete and sealed
     cancel,        // to the worker: stop
-    proceed,       // to the worker: its limits now allow for the file that it named
+    proceed,       // to the worker: its limits now allow for the step that it named, if it waits for that
 };
 
 struct Message {

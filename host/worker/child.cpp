@@ -135,7 +135,7 @@ void on_crash(int signal, siginfo_t* info, void* context) {
     try {
         if (std::current_exception()) std::rethrow_exception(std::current_exception());
     } catch (const std::bad_alloc&) {
-        send_short(kChannelFd, MessageKind::death, "out of memory");
+        send_short(kChannelFd, MessageKind::no_memory, "");
     } catch (const std::exception& e) {
         send_short(kChannelFd, MessageKind::death, e.what());
     } catch (...) {
@@ -146,9 +146,19 @@ void on_crash(int signal, siginfo_t* info, void* context) {
 // Sent once. The code that asked for memory may survive the refusal; if the worker dies instead, this was the reason.
 void on_out_of_memory() {
     static bool said = false;
-    if (!said) send_short(kChannelFd, MessageKind::death, "out of memory");
+    if (!said) send_short(kChannelFd, MessageKind::no_memory, "");
     said = true;
     throw std::bad_alloc();
+}
+
+// Sets our signal handlers, also again: an OpenCL compiler (LLVM's) replaces them when it is loaded. With its handlers, a
+// second thread that crashes at the same moment ends the process before anything is reported.
+void take_crash_signals() {
+    if (kHasCrashReports) return;
+    struct sigaction action {};
+    action.sa_sigaction = on_crash;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+    for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
 }
 
 void prepare_last_words() {
@@ -164,19 +174,13 @@ void send_log(LogLevel level, const std::string& text) {
     send_message(kChannelFd, {MessageKind::log, static_cast<int32_t>(level), 0, text});
 }
 
-}  // namespace
-
-bool begin_worker(const char* greeting, long parent, const char* instead) {
-    if (fcntl(kChannelFd, F_GETFD) < 0 || fcntl(kResultFd, F_GETFD) < 0) {
-        std::fprintf(stderr, "workers are started by clarity itself; %s\n", instead);
-        return false;
-    }
+void begin_worker(const JobKind& kind, long parent) {
     // The kernel ends the worker when its parent dies, because the result is of no use then. The check after the call covers a
     // parent that died before it.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (parent != 0 && getppid() != parent) _exit(1);
 #ifdef SYS_close_range
-    syscall(SYS_close_range, kResultFd + 1, ~0u, 0);
+    syscall(SYS_close_range, kArgumentsFd + 1, ~0u, 0);
 #endif
     std::signal(SIGPIPE, SIG_IGN);
     std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what a plugin prints reaches the parent at once, and before a crash
@@ -184,8 +188,40 @@ bool begin_worker(const char* greeting, long parent, const char* instead) {
     set_log_level(static_cast<LogLevel>(static_cast<int>(LogLevel::error) + 1));
     set_log_listener(send_log);
     prepare_last_words();
-    send_message(kChannelFd, {MessageKind::greeting, 0, 0, greeting});
-    return true;
+    send_message(kChannelFd, {MessageKind::greeting, 0, 0, greeting_of(kind.name)});
+}
+
+}  // namespace
+
+const JobKind* kind_of_worker(int argc, char** argv, const std::vector<const JobKind*>& kinds) {
+    for (const JobKind* kind : kinds)
+        if (argc > 1 && std::string(kind->name) + kCommandEnd == argv[1]) return kind;
+    return nullptr;
+}
+
+// clarity KIND-worker PARENT [SUBJECT]
+int worker_main(const JobKind& kind, int argc, char** argv) {
+    for (const int fd : {kChannelFd, kResultFd, kArgumentsFd}) {
+        if (fcntl(fd, F_GETFD) >= 0) continue;
+        std::fprintf(stderr, "workers are started by clarity itself; %s\n", kind.instead);
+        return static_cast<int>(Exit::usage);
+    }
+    begin_worker(kind, argc > 2 ? std::strtol(argv[2], nullptr, 10) : 0);
+    Message last{MessageKind::done, 0, 0, {}};
+    try {
+        const MemoryFile file = MemoryFile::of(kArgumentsFd);
+        PacketReader arguments(file, PacketReader::How::mapped);
+        kind.main(arguments);
+    } catch (const Cancelled&) {
+        last.kind = MessageKind::cancelled;
+    } catch (const std::exception& e) {
+        last.kind = MessageKind::failed;
+        last.text = e.what();
+    }
+    std::fflush(nullptr);  // what libraries printed comes before the end
+    send_message(kChannelFd, last);
+    // Without destructors: the kernel frees memory faster, a library or a driver may crash in them, and a launch may still run.
+    _exit(last.kind == MessageKind::done ? 0 : 1);
 }
 
 void ChannelProgress::stage(const std::string& text) {
@@ -207,12 +243,9 @@ bool ChannelProgress::report(float fraction) {
     return !cancelled();
 }
 
-void take_crash_signals() {
-    if (kHasCrashReports) return;
-    struct sigaction action {};
-    action.sa_sigaction = on_crash;
-    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
-    for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
+void say_step(const std::string& text, double limit_s) {
+    take_crash_signals();
+    send_message(kChannelFd, {MessageKind::running, 0, static_cast<float>(limit_s), text});
 }
 
 void name_memory(const void* begin, size_t bytes, const std::string& name, size_t element_bytes) {

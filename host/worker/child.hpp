@@ -3,29 +3,41 @@
 #include <chrono>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "base/progress.hpp"
 #include "worker/channel.hpp"
+#include "worker/job.hpp"
+#include "worker/sandbox.hpp"
 
 namespace clarity::worker {
 
-// First messages of our workers.
-inline constexpr const char* kImportGreeting = "clarity import worker 1";
-inline constexpr const char* kBuildGreeting = "clarity build worker 1";
-inline constexpr const char* kCheckGreeting = "clarity check worker 1";
-inline constexpr const char* kCompileGreeting = "clarity compile worker 1";
-inline constexpr const char* kLoadGreeting = "clarity load worker 1";
-inline constexpr const char* kTrialGreeting = "clarity trial worker 1";
+// The kind whose worker this process is to be, by its first argument; nullptr: none.
+const JobKind* kind_of_worker(int argc, char** argv, const std::vector<const JobKind*>& kinds);
 
-// Begins a worker process: it ends when its parent does, logs to the parent, reports the cause of its death, and greets.
-// Returns false, after a line on stderr, if this process was not started as a worker. parent: pid of the parent; 0: not known.
-// instead: what a person should run, "to import a file, run `clarity info FILE`".
-bool begin_worker(const char* greeting, long parent, const char* instead);
+// The main function of a worker. The process ends when its parent does, logs to the parent, and reports the cause of its death.
+// Returns only if it was not started as a worker, after a line on stderr.
+int worker_main(const JobKind& kind, int argc, char** argv);
 
-// Sets our signal handlers again, so that we report crashes. An OpenCL compiler (LLVM's) replaces them when it is loaded. With
-// its handlers, a second thread that crashes at the same moment ends the process before anything is reported. Call this before
-// others' code runs.
-void take_crash_signals();
+// What JobKind::main needs: the arguments, which may refer to the packet's memory, and the result, written once at its end.
+template <class Arguments>
+Arguments arguments_in(PacketReader& packet) {
+    Arguments arguments;
+    packet(arguments);
+    packet.end();
+    return arguments;
+}
+template <class Result>
+void answer(Result&& result) {
+    allow_writing_result();
+    MemoryFile file = MemoryFile::of(kResultFd);
+    PacketWriter packet(file);
+    packet(result);
+    packet.finish();
+}
+
+// Tells that a step of the work begins, before it does. limit_s: seconds that it may take; 0: as long as the one before.
+void say_step(const std::string& text, double limit_s = 0);
 
 // Forwards progress to the parent, and its cancel to us.
 class ChannelProgress : public Progress {

@@ -37,13 +37,13 @@ int checked(int fd, const char* what) {
     return fd;
 }
 
-// Moves a descriptor to a number above those that the worker's descriptors get.
+// A copy of a descriptor with a number above those that the worker's descriptors get.
+FileDescriptor copied_up(int fd) {
+    return FileDescriptor(checked(fcntl(fd, F_DUPFD_CLOEXEC, 10), "descriptor"));
+}
 FileDescriptor moved_up(int fd) {
-    const int moved = fcntl(fd, F_DUPFD_CLOEXEC, 10);
-    const int error = errno;
-    close(fd);
-    if (moved < 0) fail("descriptor", error);
-    return FileDescriptor(moved);
+    const FileDescriptor low(fd);
+    return copied_up(fd);
 }
 
 struct FileActions {
@@ -69,8 +69,7 @@ std::string worker_program() {
     return named && *named ? named : kThisProgram;
 }
 
-WorkerProcess::WorkerProcess(const std::string& program, const std::string& command, const std::vector<std::string>& arguments,
-                             Exit code) try {
+WorkerProcess::WorkerProcess(std::vector<std::string> words, const MemoryFile& arguments, Exit code) try {
     int pair[2], pipe_ends[2];
     checked(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair), "socket pair");
     channel_ = moved_up(pair[0]);
@@ -79,14 +78,16 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::string& comm
     output_ = moved_up(pipe_ends[0]);
     const FileDescriptor their_output = moved_up(pipe_ends[1]);
     fcntl(output_.get(), F_SETFL, O_NONBLOCK);
-    result_ = moved_up(checked(memfd_create("clarity-worker", MFD_CLOEXEC | MFD_ALLOW_SEALING), "shared memory"));
+
+    const FileDescriptor their_result = copied_up(result_.fd()), their_arguments = copied_up(arguments.fd());
 
     FileActions files;
     posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 1);
     posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 2);
     posix_spawn_file_actions_adddup2(&files.actions, their_channel.get(), kChannelFd);
-    posix_spawn_file_actions_adddup2(&files.actions, result_.get(), kResultFd);
+    posix_spawn_file_actions_adddup2(&files.actions, their_result.get(), kResultFd);
+    posix_spawn_file_actions_adddup2(&files.actions, their_arguments.get(), kArgumentsFd);
     // The worker gets a process group of its own, so that Ctrl-C reaches only us and we turn it into a cancel. Its signals have
     // the default handlers.
     Attributes spawn;
@@ -98,12 +99,11 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::string& comm
     posix_spawnattr_setpgroup(&spawn.attributes, 0);
     posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
 
-    std::vector<std::string> words = {program, command};
-    words.insert(words.end(), arguments.begin(), arguments.end());
+    const std::string program = words.front();
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    const std::string variable = std::string(kWorkerVariable) + "=1";
+    const std::string variable = std::string(kWorkerVariables[0]) + "=1";
     std::vector<char*> environment;
     for (char** entry = environ; *entry; ++entry) environment.push_back(*entry);
     environment.push_back(const_cast<char*>(variable.c_str()));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/files/memory_file.hpp"
 
 namespace clarity::worker {
 
@@ -36,15 +37,15 @@ std::string worker_program();
 // A worker process. The destructor kills it if it still runs, and waits for its end.
 class WorkerProcess {
  public:
-    // Starts `program COMMAND ARGUMENTS...`. Throws Error(code) if that fails.
-    WorkerProcess(const std::string& program, const std::string& command, const std::vector<std::string>& arguments, Exit code);
+    // Starts the program words[0] with these words. It finds `arguments` at kArgumentsFd. Throws Error(code) if that fails.
+    WorkerProcess(std::vector<std::string> words, const MemoryFile& arguments, Exit code);
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
     WorkerProcess& operator=(const WorkerProcess&) = delete;
 
     int channel() const { return channel_.get(); }
-    // Shared memory for the worker's result; empty at the start. The caller may put the input there.
-    int result() const { return result_.get(); }
+    // Shared memory for the worker's result; empty at the start.
+    const MemoryFile& result() const { return result_; }
     pid_t pid() const { return pid_; }
     // Pipe with everything that the worker and its libraries print; non-blocking.
     int output() const { return output_.get(); }
@@ -61,7 +62,8 @@ class WorkerProcess {
  private:
     pid_t pid_ = -1;
     int status_ = 0;
-    FileDescriptor channel_, result_, output_;
+    FileDescriptor channel_, output_;
+    MemoryFile result_;
 };
 
 }  // namespace clarity::worker

@@ -14,6 +14,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/log.hpp"
+
 #if __has_include(<linux/landlock.h>)
 #include <linux/landlock.h>
 #define CLARITY_LANDLOCK
@@ -38,20 +40,22 @@ uint64_t mapped_bytes() {
     return read ? pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 
-void limit(int resource, uint64_t soft, uint64_t hard, const char* what, std::vector<std::string>& notes) {
+void note(const std::string& text) {
+    log(LogLevel::debug, "worker: " + text);
+}
+
+void limit(int resource, uint64_t soft, uint64_t hard, const char* what) {
     rlimit now{};
     getrlimit(static_cast<__rlimit_resource>(resource), &now);
     const rlimit wanted = {std::min<rlim_t>(soft, now.rlim_max), std::min<rlim_t>(hard, now.rlim_max)};
-    if (setrlimit(static_cast<__rlimit_resource>(resource), &wanted) != 0) {
-        notes.push_back(std::string(what) + " is not limited: " + std::strerror(errno));
-    }
+    if (setrlimit(static_cast<__rlimit_resource>(resource), &wanted) != 0)
+        note(std::string(what) + " is not limited: " + std::strerror(errno));
 }
 
 }  // namespace
 
-std::vector<std::string> enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders,
-                                       const std::vector<std::string>& files, const WorkerLimits& limits) {
-    std::vector<std::string> notes;
+void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders, const std::vector<std::string>& files,
+                   const WorkerLimits& limits) {
     // Small thread stacks and few malloc arenas: on a machine with many cores they would otherwise use up the address space.
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
@@ -60,33 +64,32 @@ std::vector<std::string> enter_sandbox(WorkerKind kind, const std::vector<std::s
     pthread_attr_destroy(&attributes);
     mallopt(M_ARENA_MAX, 2);
 
-    limit(RLIMIT_STACK, limits.stack_bytes, limits.stack_bytes, "the stack", notes);
-    limit(RLIMIT_CORE, 0, 0, "the core file", notes);
+    limit(RLIMIT_STACK, limits.stack_bytes, limits.stack_bytes, "the stack");
+    limit(RLIMIT_CORE, 0, 0, "the core file");
     // At the soft limit the process gets SIGXCPU, which tells the parent the reason; SIGKILL follows one second later.
-    if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time", notes);
+    if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time");
     signal(SIGXFSZ, SIG_IGN);
     if (kind == WorkerKind::driver) {
         const std::string call_note = detail::restrict_system_calls(kind);
-        if (!call_note.empty()) notes.push_back("system calls are not restricted: " + call_note);
-        return notes;
+        if (!call_note.empty()) note("system calls are not restricted: " + call_note);
+        return;
     }
-    limit(RLIMIT_NOFILE, 64, 64, "the number of open files", notes);
+    limit(RLIMIT_NOFILE, 64, 64, "the number of open files");
     const uint64_t most = std::max(limits.memory_bytes, limits.most_memory_bytes);
-    limit(RLIMIT_FSIZE, 0, most > 0 ? most : RLIM_INFINITY, "writing", notes);
+    limit(RLIMIT_FSIZE, 0, most > 0 ? most : RLIM_INFINITY, "writing");
     if (limits.memory_bytes > 0) {
         if (kLimitAddressSpace) {
             const uint64_t mapped = mapped_bytes();
-            limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + most, "memory", notes);
+            limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + most, "memory");
         } else {
-            notes.push_back("address space is not limited in a build with a sanitizer");
+            note("address space is not limited in a build with a sanitizer");
         }
     }
-    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) notes.push_back("no_new_privs is not available");
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) note("no_new_privs is not available");
     const std::string file_note = detail::restrict_files(folders, files);
-    if (!file_note.empty()) notes.push_back("reading is not restricted to the scene's folders: " + file_note);
+    if (!file_note.empty()) note("reading is not restricted to the scene's folders: " + file_note);
     const std::string call_note = detail::restrict_system_calls(kind);
-    if (!call_note.empty()) notes.push_back("system calls are not restricted: " + call_note);
-    return notes;
+    if (!call_note.empty()) note("system calls are not restricted: " + call_note);
 }
 
 void allow_writing_result() {

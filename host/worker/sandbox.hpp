@@ -22,12 +22,11 @@ struct WorkerLimits {
 
 // Restricts this process for good, including threads that start later. Afterwards it has no network, cannot start programs or
 // processes, cannot write or change files, and reads only files in `folders` and the named `files` (canonical paths). Memory,
-// processor time and stack are limited, and a crash writes no core file. Returns one line for each restriction that this kernel
-// cannot enforce.
-// A worker of kind `driver` is less restricted: it has no network and no tracing of other processes, and only its processor
-// time and stack are limited here. Its parent watches its resident memory.
-std::vector<std::string> enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders,
-                                       const std::vector<std::string>& files, const WorkerLimits& limits);
+// processor time and stack are limited, and a crash writes no core file. Logs a line for each restriction that this kernel
+// cannot enforce. A worker of kind `driver` is less restricted: it has no network and no tracing of other processes, and only
+// its processor time and stack are limited here. Its parent watches its resident memory.
+void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders = {}, const std::vector<std::string>& files = {},
+                   const WorkerLimits& limits = {});
 
 // Lifts the limit on file sizes, which would also hold for the file in memory that takes the result.
 void allow_writing_result();

@@ -28,7 +28,7 @@ const int kAllowed[] = {
     SCMP_SYS(dup), SCMP_SYS(fadvise64), SCMP_SYS(fcntl), SCMP_SYS(statfs), SCMP_SYS(fstatfs), SCMP_SYS(ppoll), SCMP_SYS(stat),
     SCMP_SYS(lstat), SCMP_SYS(access), SCMP_SYS(readlink), SCMP_SYS(getdents), SCMP_SYS(poll), SCMP_SYS(time),
     // writing the result and the messages: only files that are open already, since none can be opened for writing
-    SCMP_SYS(write), SCMP_SYS(writev),
+    SCMP_SYS(write), SCMP_SYS(writev), SCMP_SYS(pwrite64),
     // memory (executable mappings are restricted below)
     SCMP_SYS(brk), SCMP_SYS(munmap), SCMP_SYS(mremap), SCMP_SYS(madvise), SCMP_SYS(msync), SCMP_SYS(mincore), SCMP_SYS(mlock),
     SCMP_SYS(munlock), SCMP_SYS(get_mempolicy), SCMP_SYS(membarrier),

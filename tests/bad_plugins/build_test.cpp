@@ -1,6 +1,8 @@
 // A builder that breaks its contract gets one clear error, causes no crash, and the next build works.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <set>
 #include <string>
 
@@ -8,6 +10,7 @@
 #include "base/progress.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
+#include "plugin/trust.hpp"
 #include "render/accel/accel_build.hpp"
 #include "rt_plugin.hpp"
 
@@ -166,6 +169,46 @@ TEST(BadPacker, CrashIsOneClearError) {
     const auto* run = static_cast<const rt_u32*>(packed.slots[0].memory.data());
     EXPECT_EQ(run[0], 0u);
     EXPECT_EQ(run[1], 4u);
+}
+
+// One rule says where the code of a library runs.
+TEST(Trust, IsEarnedAndCanBeRefused) {
+    using clarity::Trust;
+    namespace fs = std::filesystem;
+    std::string cache = (fs::temp_directory_path() / "clarity-trust-XXXXXX").string();
+    ASSERT_TRUE(mkdtemp(cache.data()));
+    const char* const before = std::getenv("XDG_CACHE_HOME");
+    const std::string kept = before ? before : "";
+    setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+    const fs::path program = std::getenv("CLARITY_WORKER");
+    const std::string own = (program.parent_path() / "../lib/clarity/plugins/accel/linear.so").string();
+    const std::string other = cache + "/bad_packer.so";  // a copy, because other tests may have made the library proven
+    fs::copy_file(std::string(BAD_PLUGINS) + "/bad_packer.so", other);
+    EXPECT_EQ(clarity::trust_of(own), Trust::own);
+    EXPECT_EQ(clarity::trust_of(other), Trust::none);
+    clarity::remember_library(other);
+    EXPECT_EQ(clarity::trust_of(other), Trust::proven);
+
+    setenv("CLARITY_PLUGINS", "worker", 1);
+    EXPECT_EQ(clarity::trust_of(own), Trust::none);
+    EXPECT_EQ(clarity::trust_of(other), Trust::none);
+    // The crash of a library that was proven stays in a worker.
+    constexpr rt_accel accel = rt::topology("bad_packer", one_leaf_each, {});
+    const rt_plugin leaves = rt::accel_plugin("one_leaf_each", "One leaf a group", "1.0", nullptr, accel);
+    const clarity::PluginRecord packer = clarity::load_plugin(other);
+    ASSERT_NE(packer.plugin, nullptr) << packer.why;
+    clarity::BuildTarget target;
+    target.layout = packer.plugin;
+    clarity::Progress progress;
+    try {
+        clarity::build_accel(sample_scene(), leaves, {}, progress, target);
+        ADD_FAILURE() << "the build was taken";
+    } catch (const clarity::Error& e) {
+        EXPECT_NE(std::string(e.what()).find("the builder crashed (segmentation fault"), std::string::npos) << e.what();
+    }
+    unsetenv("CLARITY_PLUGINS");
+    before ? setenv("XDG_CACHE_HOME", kept.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
+    fs::remove_all(cache);
 }
 
 TEST(BadBuilders, AllAreTested) {

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "support/errors.hpp"
+#include "support/scratch.hpp"
 
 namespace {
 
@@ -19,22 +21,17 @@ using clarity::LogLevel;
 
 class Log : public testing::Test {
  protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "clarity-log-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
     void TearDown() override {
         clarity::set_log_level(LogLevel::info);
         clarity::set_log_listener({});
         clarity::set_log_file("/dev/null");
-        fs::remove_all(folder_);
     }
     static std::string text_of(const fs::path& path) {
         std::ifstream in(path);
         return std::string(std::istreambuf_iterator<char>(in), {});
     }
-    fs::path folder_;
+    const Scratch scratch_;
+    const fs::path folder_ = scratch_.path("");
 };
 
 TEST_F(Log, StderrShowsTheLevelAndNoColourOffATerminal) {
@@ -73,13 +70,7 @@ TEST_F(Log, TheFileHasEveryLineWithItsTime) {
 
 TEST_F(Log, AFileThatCannotBeOpenedIsAnError) {
     const std::string path = (folder_ / "missing" / "run.log").string();
-    try {
-        clarity::set_log_file(path);
-        FAIL() << "nothing was thrown";
-    } catch (const clarity::Error& e) {
-        EXPECT_EQ(std::string(e.what()).find(path + ": "), 0u) << e.what();
-        EXPECT_NE(std::string(e.what()).find("No such file"), std::string::npos) << e.what();
-    }
+    clarity::expect_error([&] { clarity::set_log_file(path); }, {path + ": ", "No such file"});
 }
 
 // A full disk causes one warning; rendering goes on.

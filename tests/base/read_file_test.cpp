@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "support/errors.hpp"
 #include "support/scratch.hpp"
 
 namespace {
@@ -44,11 +45,7 @@ TEST(ReadFile, RefusesOtherThanRegularFilesAtOnce) {
     EXPECT_TRUE(contains(why_not(scratch.path("pipe")), "no regular file"));
     EXPECT_TRUE(contains(why_not("/dev/zero"), "no regular file"));
     EXPECT_TRUE(contains(why_not(scratch.path("missing")), "No such file"));
-    try {
-        clarity::read_file("/dev/zero", 100, clarity::Exit::usage);
-        FAIL() << "nothing was thrown";
-    } catch (const clarity::Error& e) {
-        EXPECT_EQ(e.code(), clarity::Exit::usage);
-        EXPECT_EQ(std::string(e.what()).find("/dev/zero: is no regular file"), 0u) << e.what();
-    }
+    const std::string why =
+        clarity::expect_error([] { clarity::read_file("/dev/zero", 100, clarity::Exit::usage); }, {}, clarity::Exit::usage);
+    EXPECT_EQ(why.find("/dev/zero: is no regular file"), 0u) << why;
 }

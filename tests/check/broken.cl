@@ -108,6 +108,11 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #if defined(BROKEN_UNASKED) || (defined(BROKEN_UNASKED_ANY) && RT_ANY_HIT) || (defined(BROKEN_UNASKED_MESH) && RT_TRIANGLES_ONLY)
                 ++top;
 #else
+#ifdef BROKEN_UNASKED_DEEP
+                if (top >= 3u)
+                    ++top;
+                else
+#endif
                 if (RT_STACK_OK(top + 1u, BROKEN_STACK, hit)) ++top;
 #endif
                 ref = node->first;

@@ -64,12 +64,15 @@ constexpr Macro kMacros[] = {{"octant", "BROKEN_OCTANT"},
                              {"unasked", "BROKEN_UNASKED"},
                              {"unasked_any", "BROKEN_UNASKED_ANY"},
                              {"unasked_mesh", "BROKEN_UNASKED_MESH"},
+                             {"unasked_deep", "BROKEN_UNASKED_DEEP"},
                              {"own_test", "BROKEN_OWN_TEST"},
                              {"cut_positions", "BROKEN_CUT_POSITIONS"},
                              {"reads_past_empty", "BROKEN_READS_PAST_EMPTY"}};
 constexpr const char* kWithSlabs[] = {"strict_slabs", "divides", "sign_of_d", "rounds_boxes"};  // need BROKEN_SLABS, too
 
 constexpr rt_param kParams[] = {rt::int_param("max_leaf", "Leaf size", "primitives in a leaf, at most", 1, 8, 3)};
+
+bool has_refitted = false;  // state that a plugin must not keep
 
 struct Box {
     float lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -91,6 +94,7 @@ class Builder {
         for (rt_u32 i = 0; i < range.count; ++i) order[i] = range.first + i;
         if (is("dropped") && range.count > 20) order.pop_back();
         if (is("dropped_at_limit") && most_ == 1 && range.count > 20) order.pop_back();
+        if (is("build_after_refit") && has_refitted && range.count > 20) order.resize(order.size() / 2);
         if (is("half")) order.resize((order.size() + 1) / 2);
         const rt_u32 root = add_nodes(1);
         split(root, order.data(), rt_u32(order.size()), 1);
@@ -276,6 +280,7 @@ double cost_of(const broken_node* nodes, rt_u32 root, rt_u32 end) {
 int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out) {
     auto* const nodes = static_cast<broken_node*>(out->slots[0]);
     const auto node_count = rt_u32(in->slot_counts[0]);
+    has_refitted = is("build_after_refit");
     if (is("refit_throws")) throw std::runtime_error("the refit gave up");
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         if (!in->changed[g] && !is("refit_of_all")) continue;
@@ -346,7 +351,11 @@ int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device
     using rt::number;
     using rt::of;
     const uint64_t each = rt::elements_each(plan), elements = tree->element_count[0];
-    const int defect = is("device_refit_forgets") ? 1 : is("device_refit_outside") ? 2 : is("device_no_costs") ? 3 : 0;
+    const int defect = is("device_refit_forgets")    ? 1
+                       : is("device_refit_outside")  ? 2
+                       : is("device_no_costs")       ? 3
+                       : is("device_constant_costs") ? 4
+                                                     : 0;
     rt::DeviceSteps steps(plan);
     steps.launch("broken_refit", (elements + each - 1) / each,
                  {of(tree->slots[0]), of(tree->ranges), of(blocks), number(tree->count), number(tree->first_element[0]),

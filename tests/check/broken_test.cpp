@@ -68,6 +68,7 @@ const Defect kDefects[] = {
     {"device_refit_forgets", "builds.device", {"after the refit", "is in no volume"}},
     {"device_refit_outside", "builds.device", {"wrote to element", "slot broken_nodes"}},
     {"device_no_costs", "builds.device", {"the cost nan"}},
+    {"device_constant_costs", "builds.device", {"the cost", "does not follow its boxes"}},
     // trees that the device builds
     {"device_box", "builds.device", {"in groups of 256", "a box that does not hold them"}},
     {"device_loses", "builds.device", {"two leaves of place"}},
@@ -114,6 +115,7 @@ const Defect kDefects[] = {
     {"unasked", "hits.pushes", {"it never asked RT_STACK_OK", "stack[BROKEN_STACK]"}},
     {"unasked_any", "hits.pushes", {"refuses every push", "any-hit queries"}},
     {"unasked_mesh", "hits.pushes", {"refuses every push", "nearest hits in meshes"}},
+    {"unasked_deep", "hits.pushes", {"refuses all but the first 12 pushes", "one path down the tree"}},
     {"world_stack", "hits.stack", {"stack was full", "must hold the deepest tree"}},
     {"own_test", "hits.counts", {"tested none through the host"}},
     {"defines_lanes", "builds.sound", {"a define the name 'RT_LANES'", "are the host's"}},
@@ -131,6 +133,7 @@ const Defect kDefects[] = {
     {"refit_constant_cost", "builds.refit", {"the cost", "does not follow its boxes"}},
     {"refit_costs_of_before", "builds.refit", {"the cost", "does not follow its boxes"}},
     {"refit_moves_leaves", "hits.refit", {"after a refit"}},
+    {"build_after_refit", "hits.refit", {"after a refit and a new build"}},
 };
 INSTANTIATE_TEST_SUITE_P(Plugins, Broken, testing::ValuesIn(kDefects), name_of);
 

@@ -1,13 +1,12 @@
 // store_test.cpp -- programs on disk: found again, never damaged, never too many, and what two processes say to each other.
 #include <gtest/gtest.h>
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <thread>
 
-#include "compile/compile_wire.hpp"
+#include "compile/compile_job.hpp"
 #include "compile/program_store.hpp"
 #include "support/scratch.hpp"
 
@@ -117,26 +116,43 @@ TEST(ProgramKey, NamesAllThatABinaryDependsOn) {
     EXPECT_NE(program_key(info, "source", "options"), key);
 }
 
-TEST(CompileWire, RefusesEveryCut) {
-    const int fd = memfd_create("wire", 0);
-    CompileJob job{"source", "options", "0:0", "name", "driver", 1, 0, "folder"}, read;
-    ASSERT_EQ(write_compile_job(fd, job), "");
-    ASSERT_EQ(read_compile_job(fd, read), "");
+template <class Value>
+std::vector<char> packed(const Value& value) {
+    MemoryFile file;
+    PacketWriter packet(file);
+    packet(value);
+    packet.finish();
+    std::vector<char> bytes(file.bytes());
+    file.read_at(0, bytes.data(), bytes.size());
+    return bytes;
+}
+template <class Value>
+Value unpacked(const char* bytes, size_t count) {
+    MemoryFile file;
+    file.write_at(0, bytes, count);
+    file.seal_size();
+    PacketReader packet(file, PacketReader::How::emptied);
+    Value value;
+    packet(value);
+    packet.end();
+    return value;
+}
+
+TEST(CompileJob, ArrivesWholeOrNotAtAll) {
+    const std::vector<char> job = packed(CompileJob{"source", "options", "0:0", "name", "driver", true, false, "folder"});
+    const CompileJob read = unpacked<CompileJob>(job.data(), job.size());
     EXPECT_EQ(read.source, "source");
     EXPECT_EQ(read.driver, "driver");
-    EXPECT_EQ(read.ends_on_zeros, 1u);
+    EXPECT_TRUE(read.ends_on_zeros);
     EXPECT_EQ(read.pocl_cache, "folder");
-    CompileOutcome outcome{CompileOutcome::failed, -11, "log", {'b', '\0', 'c'}}, back;
-    ASSERT_EQ(write_compile_outcome(fd, outcome), "");
-    ASSERT_EQ(read_compile_outcome(fd, back), "");
+    const CompileOutcome outcome{CompileOutcome::failed, -11, "log", {'b', '\0', 'c'}};
+    const std::vector<char> sent = packed(outcome);
+    const CompileOutcome back = unpacked<CompileOutcome>(sent.data(), sent.size());
     EXPECT_EQ(back.error, -11);
+    EXPECT_EQ(back.log, "log");
     EXPECT_EQ(back.binary, outcome.binary);
-    for (off_t bytes = lseek(fd, 0, SEEK_END) - 1; bytes >= 0; --bytes) {
-        ASSERT_EQ(ftruncate(fd, bytes), 0);
-        CompileOutcome cut;
-        EXPECT_NE(read_compile_outcome(fd, cut), "") << bytes;
-    }
-    close(fd);
+    for (size_t bytes = 0; bytes < sent.size(); ++bytes)
+        EXPECT_THROW(unpacked<CompileOutcome>(sent.data(), bytes), PacketDamaged) << bytes;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "render/accel/accel_build.hpp"
 #include "rt_plugin.hpp"
+#include "support/errors.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;
@@ -126,12 +127,7 @@ TEST(Topology, OfAnyShapeIsPacked) {
 }
 
 TEST(Topology, NeedsItsLayout) {
-    try {
-        build_shape("sound", false);
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_NE(std::string(e.what()).find("layout 'bvh2' is not there"), std::string::npos) << e.what();
-    }
+    expect_error([&] { build_shape("sound", false); }, {"layout 'bvh2' is not there"});
 }
 
 }  // namespace

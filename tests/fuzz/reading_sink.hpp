@@ -8,6 +8,8 @@
 #include <string>
 
 #include "rt_plugin.h"
+#include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
 
 namespace clarity::fuzz {
 
@@ -37,6 +39,9 @@ class ReadingSink {
     }
     void mesh(const rt_mesh&);
     void channel(const rt_channel_desc&);
+    void read_values(const rt_key_value* values, rt_u32 count) {
+        for (rt_u32 i = 0; i < count; ++i) read(values[i].key), read(values[i].numbers, 3);
+    }
     void skin(const rt_skin_desc&);
     void morph(const rt_morph_desc&);
 
@@ -69,12 +74,13 @@ inline ReadingSink::ReadingSink() {
     sink_.struct_bytes = sizeof sink_;
     sink_.ctx = this;
     SINK(texture, rt_texture_desc, s.read(d->path); s.read(d->bytes, d->byte_count); return s.textures_++);
-    SINK(material, rt_material_desc, s.read(d->name); require(d->texture == RT_NONE || d->texture < s.textures_, "texture");
-         return s.materials_++);
+    SINK(material, rt_material_desc, s.read(d->name); s.read_values(d->values, d->value_count);
+         require(d->texture == RT_NONE || d->texture < s.textures_, "texture"); return s.materials_++);
     SINK(mesh, rt_mesh, s.mesh(*d); return s.meshes_++);
     SINK(instance, rt_instance_desc, s.read(d->name); require(d->mesh < s.meshes_ && d->node <= s.nodes_, "instance");
          return rt_u32(0));
-    SINK(light, rt_light_desc, s.read(d->name); require(d->node <= s.nodes_, "light"); return s.views_++);
+    SINK(light, rt_light_desc, s.read(d->name); s.read_values(d->values, d->value_count); require(d->node <= s.nodes_, "light");
+         return s.views_++);
     SINK(camera, rt_camera, s.read(d->name); require(d->node <= s.nodes_, "camera"); return s.views_++);
     SINK(info, rt_scene_info, s.sum_ += d->up_axis);
     SINK(load, rt_load, s.read(d->path); return int32_t(RT_OK));
@@ -93,6 +99,8 @@ inline ReadingSink::ReadingSink() {
         return rt_u32(0);
     };
     sink_.warn = [](void* ctx, const char* text) { static_cast<ReadingSink*>(ctx)->check_message(text); };
+    sink_.light_kind = [](void*, rt_u32 kind) { return clarity::light_kind_for_plugins(kind); };
+    sink_.material_kind = [](void*) { return clarity::material_kind_for_plugins(); };
     sink_.primitive_kind = [](void*, rt_u32) { return static_cast<const rt_primitive_kind*>(nullptr); };
 }
 

@@ -1,9 +1,12 @@
 // light_test.cpp -- compares background, Lambert's cosine, ambient light and shadows with formulas.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "images/optics.hpp"
+#include "scene/light_kinds.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -89,6 +92,70 @@ TEST(Light, LambertsCosineFromAPointWithoutFalloff) {
             return 0.5 * normalized(lamp - p)[2];
         },
         1e-5, 64 * 48);
+}
+
+// Each kind of lights at (0.5, 0.25, 2), shining down, against the irradiance that it gives divided by pi.
+TEST(Light, OtherKindsLightAsTheirUnitsSay) {
+    const Vec lamp{0.5, 0.25, 2};
+    const double pi = 3.14159265358979;
+    struct Case {
+        rt_u32 kind, flags;
+        // at: strength of a colour of 1, by the squared distance and the cosine at the light
+        std::function<double(double, double)> strength;
+    };
+    const double outer = std::cos(25 * pi / 180), inner = std::cos(10 * pi / 180), disc = 0.25;
+    const auto ramp = [&](double cosine) { return std::pow(std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0), 2); };
+    const Case cases[] = {
+        {RT_LIGHT_POINT, RT_LIGHT_FALLOFF, [&](double d2, double) { return 1 / (pi * d2); }},
+        {RT_LIGHT_SPOT, 0, [&](double, double cosine) { return ramp(cosine); }},
+        {RT_LIGHT_SPOT, RT_LIGHT_FALLOFF, [&](double d2, double cosine) { return ramp(cosine) / (pi * d2); }},
+        {RT_LIGHT_SUN, 0, [&](double, double) { return 1 / pi; }},
+        {RT_LIGHT_DISC, 0, [&](double d2, double cosine) { return disc * cosine / (d2 + disc); }},
+        {RT_LIGHT_DISC, RT_LIGHT_TWO_SIDED, [&](double d2, double cosine) { return disc * cosine / (d2 + disc); }},
+        {RT_LIGHT_RECT, 0, [&](double d2, double cosine) { return 4 / pi * cosine / (d2 + 4 / pi); }},
+        {RT_LIGHT_SPHERE, 0, [&](double d2, double) { return disc / d2; }},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(std::string(light_kinds()[c.kind].name) + ", flags " + std::to_string(c.flags));
+        rt_light light = default_light(c.kind);
+        light.flags = c.flags;
+        for (int k = 0; k < 3; ++k) {
+            light.position[k] = light_kinds()[c.kind].has_place ? static_cast<float>(lamp[k]) : float(k == 2);
+            light.normal[k] = k == 2 ? -1.0f : 0.0f;
+            light.v[k] = k == 1 ? -1.0f : 0.0f;  // u x v is -z
+        }
+        light.angle = 50;
+        light.inner = 20;
+        light.radius = 0.5f;
+        ASSERT_TRUE(make_sound(light));
+        View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+        view.lights = {light};
+        const bool is_far = !light_kinds()[c.kind].has_place;
+        expect_picture(
+            trace(plane_scene(), view, 64, 48, 1), view,
+            [&](const Ray& line) {
+                const Vec to = lamp - line.at(-line.origin[2] / line.direction[2]);
+                const double cosine = is_far ? 1 : normalized(to)[2];
+                return 0.5 * cosine * c.strength(dot(to, to), cosine);
+            },
+            1e-5, 64 * 48);
+    }
+}
+
+// The side of a light that does not emit gives nothing, and a second side does.
+TEST(Light, OneSideOfADiscIsDark) {
+    rt_light light = default_light(RT_LIGHT_DISC);
+    light.position[1] = 0, light.position[2] = 2;
+    light.normal[1] = 0, light.normal[2] = 1;
+    ASSERT_TRUE(make_sound(light));
+    View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+    for (const bool two_sided : {false, true}) {
+        light.flags = two_sided ? RT_LIGHT_TWO_SIDED : 0;
+        ASSERT_TRUE(make_sound(light));
+        view.lights = {light};
+        const float middle = trace(plane_scene(), view, 3, 3, 1).at(1, 1)[0];
+        EXPECT_NEAR(middle, two_sided ? 0.5 / (4 + 1) : 0.0, 1e-5);
+    }
 }
 
 TEST(Light, LightsAndAmbientAddUp) {

@@ -1,15 +1,9 @@
 #include "import_case.hpp"
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include "support/errors.hpp"
 
 namespace clarity {
 
 void ImportCase::SetUp() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "clarity-import-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = std::filesystem::canonical(pattern).string();
     options_.worker = CLARITY_TEST_WORKER;
     set_log_listener([this](LogLevel, const std::string& line) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -19,14 +13,6 @@ void ImportCase::SetUp() {
 
 void ImportCase::TearDown() {
     set_log_listener(nullptr);
-    std::filesystem::remove_all(folder_);
-}
-
-std::string ImportCase::file(const std::string& name, const std::string& text) const {
-    const std::string full = path(name);
-    std::filesystem::create_directories(std::filesystem::path(full).parent_path());
-    std::ofstream(full, std::ios::binary) << text;
-    return full;
 }
 
 Scene ImportCase::import(const std::vector<std::string>& files) {
@@ -39,15 +25,9 @@ const PluginRegistry& ImportCase::plugins() {
 }
 
 std::string ImportCase::failure(const std::vector<std::string>& files) {
-    try {
-        import(files);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Exit::import_failed) << e.what();
-        EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << "one line: " << e.what();
-        return e.what();
-    }
-    ADD_FAILURE() << "the import succeeded";
-    return {};
+    const std::string why = expect_error([&] { import(files); }, {}, Exit::import_failed);
+    EXPECT_EQ(why.find('\n'), std::string::npos) << "one line: " << why;
+    return why;
 }
 
 std::vector<std::string> ImportCase::logged() const {

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "import/import.hpp"
+#include "support/scratch.hpp"
 
 namespace clarity {
 using namespace import;
@@ -19,8 +20,8 @@ class ImportCase : public ::testing::Test {
     void TearDown() override;
 
     // Writes a file into this test's folder; returns its path.
-    std::string file(const std::string& name, const std::string& text) const;
-    std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    std::string file(const std::string& name, const std::string& text) const { return scratch_.write(name, text); }
+    std::string path(const std::string& name) const { return scratch_.path(name); }
 
     static const PluginRegistry& plugins();  // with the importer of tests
     Scene import(const std::vector<std::string>& files);
@@ -37,7 +38,7 @@ class ImportCase : public ::testing::Test {
     Progress progress_;
 
  private:
-    std::string folder_;
+    Scratch scratch_;
     mutable std::mutex mutex_;
     std::vector<std::string> log_;
 };

@@ -40,8 +40,8 @@ int recurse(volatile int depth) {
     }
 }
 
-void throw_from_a_thread() {
-    std::thread([] { throw std::runtime_error("thrown where nobody catches"); }).join();
+void throw_from_a_thread(const std::string& text) {
+    std::thread([&] { throw std::runtime_error(text); }).join();
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ bool misbehave(const std::string& what, const std::string& argument) {
     } else if (what == "throw_number") {
         throw 7;
     } else if (what == "throw_in_thread") {
-        throw_from_a_thread();
+        throw_from_a_thread(argument);
     } else {
         return false;
     }

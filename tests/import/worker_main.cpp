@@ -1,5 +1,6 @@
-#include "import/import.hpp"
+#include "import/import_in_worker.hpp"
+#include "worker/child.hpp"
 
 int main(int argc, char** argv) {
-    return clarity::import::import_worker_main(argc, argv);
+    return clarity::worker::worker_main(clarity::import::kImportJob, argc, argv);
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "rt_plugin.hpp"
+#include "support/errors.hpp"
 
 namespace {
 
@@ -32,14 +33,7 @@ double set(const std::string& key, const std::string& value) {
 // The message of the Error(usage) which the call throws.
 template <class Call>
 std::string usage_error(Call call) {
-    try {
-        call();
-    } catch (const clarity::Error& e) {
-        EXPECT_EQ(e.code(), clarity::Exit::usage);
-        return e.what();
-    }
-    ADD_FAILURE() << "nothing was thrown";
-    return {};
+    return clarity::expect_error(call, {}, clarity::Exit::usage);
 }
 
 TEST(Parameters, Defaults) {

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "scene/motion/matrix.hpp"
 #include "scene/motion/pose.hpp"
+#include "support/errors.hpp"
 
 namespace clarity {
 namespace {
@@ -81,13 +82,7 @@ TEST_F(PoseTest, OneClipActsAtATime) {
     key(RT_MOVES_TRANSLATION, 1, 0, 0, 5);
     EXPECT_NEAR(corner(at(1), 0)[0], -5, 1e-5) << "the first one acts where none is named";
     EXPECT_NEAR(corner(at(1, "right"), 0)[0], 5, 1e-5);
-    try {
-        evaluate(scene_, "up", 0);
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Exit::usage);
-        EXPECT_NE(std::string(e.what()).find("left, right"), std::string::npos) << e.what();
-    }
+    expect_error([&] { evaluate(scene_, "up", 0); }, {"left, right"}, Exit::usage);
 }
 
 TEST_F(PoseTest, LayersAddAndBlend) {

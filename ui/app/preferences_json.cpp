@@ -9,11 +9,8 @@ namespace {
 using Json = nlohmann::json;
 
 Json camera_json(const Camera& camera) {
-    return {{"name", camera.name},
-            {"eye", camera.eye},
-            {"target", camera.target},
-            {"up", camera.up},
-            {"fov_y_rad", camera.fov_y_rad}};
+    return {{"name", camera.name},           {"eye", camera.eye},           {"target", camera.target}, {"up", camera.up},
+            {"fov_y_rad", camera.fov_y_rad}, {"aperture", camera.aperture}, {"focus", camera.focus}};
 }
 
 bool finite(const std::array<float, 3>& v) {
@@ -27,6 +24,8 @@ bool read_camera(const Json& json, Camera& camera) {
     camera.target = json.at("target").get<std::array<float, 3>>();
     camera.up = json.at("up").get<std::array<float, 3>>();
     camera.fov_y_rad = std::clamp(json.at("fov_y_rad").get<float>(), 0.01f, 3.0f);
+    camera.aperture = std::clamp(json.value("aperture", 0.0f), 0.0f, 1e15f);
+    camera.focus = std::clamp(json.value("focus", 0.0f), 0.0f, 1e15f);
     return finite(camera.eye) && finite(camera.target) && finite(camera.up) && camera.eye != camera.target;
 }
 

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/angle.hpp"
+#include "scene/light_kinds.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -60,7 +61,7 @@ std::vector<LightHandle> light_handles(const Projection& projection, const std::
         const rt_light& light = lights[i].values;
         LightHandle handle;
         handle.index = i;
-        if (light.kind == RT_LIGHT_DIRECTIONAL) {
+        if (!light_kind_of(light).has_place) {
             handle.kind = LightHandle::Kind::sun;
             handle.place = sun_place(projection, position_of(light));
         } else {

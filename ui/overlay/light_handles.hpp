@@ -1,9 +1,9 @@
 // light_handles.hpp -- handles with which lights are dragged in the picture. Pure arithmetic.
 //
-// A point light has its handle at its position. It moves in the plane perpendicular to the line of sight, or along its own line
-// of sight. A directional light has no position. Its handle lies on a disc that shows the sphere of directions about the eye
-// (azimuthal equidistant projection: straight ahead in the middle, straight behind at the rim), so that every direction can be
-// reached.
+// A light that is somewhere has its handle there, one with a size at its middle. It moves in the plane perpendicular to the
+// line of sight, or along its own line of sight. A light that lies in a direction has no position. Its handle lies on a disc
+// that shows the sphere of directions about the eye (azimuthal equidistant projection: straight ahead in the middle, straight
+// behind at the rim), so that every direction can be reached.
 #pragma once
 #include <vector>
 
@@ -17,12 +17,12 @@ struct LightHandle {
     enum class Kind {
         point,
         sun,
-        outside  // a point light outside of the picture: a mark at the border, in its direction
+        outside  // a light outside of the picture: a mark at the border, in its direction
     };
     unsigned index = 0;
     Kind kind = Kind::point;
     glm::vec2 place{};
-    float distance = 0;  // from the eye; for point lights
+    float distance = 0;  // from the eye; for lights with a position
 };
 
 std::vector<LightHandle> light_handles(const Projection& projection, const std::vector<DesiredLight>& lights);

@@ -24,7 +24,7 @@ const std::vector<RayKind>& ray_kinds() {
     return kinds;
 }
 
-size_t kind_of(const RayRecord& ray) {
+size_t ray_kind_of(const RayRecord& ray) {
     switch (ray.kind) {
         case RayRecord::Kind::camera:
             return 0;
@@ -46,7 +46,7 @@ void append_ray_lines(const RayTree& tree, const Projection& seen, float far, fl
         const glm::vec3 from = vec(ray.origin), along = vec(ray.direction);
         const bool ends = followed && std::isfinite(ray.t);
         const glm::vec3 to = from + along * (ends ? ray.t : followed ? far : far * 0.05f);
-        const uint32_t color = with_opacity(ray_kinds()[kind_of(ray)].color, followed ? 1.0f : 0.5f);
+        const uint32_t color = with_opacity(ray_kinds()[ray_kind_of(ray)].color, followed ? 1.0f : 0.5f);
         const float width = (chosen ? 4.0f : 1.8f) * scale;
         lines.line(from, to, kHalo, width + 2 * scale);
         lines.line(from, to, color, width);

@@ -18,7 +18,7 @@ struct RayKind {
 // light, "shadow" one that does not.
 const std::vector<RayKind>& ray_kinds();
 // Returns an index into ray_kinds().
-size_t kind_of(const RayRecord& ray);
+size_t ray_kind_of(const RayRecord& ray);
 
 // Appends the traced rays up to their hits, or with length `far` for a miss; short stubs for rays that were not traced; dots at
 // hits. seen: view that dots and arrow heads are sized for, so that they look the same from anywhere. selected: index of the

@@ -52,7 +52,7 @@ void draw_ray(const Session& session, const Inspection& inspection, const RayChi
         ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth;
     if (below.empty()) flags |= ImGuiTreeNodeFlags_Leaf;
     if (state.selected_ray == index) flags |= ImGuiTreeNodeFlags_Selected;
-    const RayKind& kind = ray_kinds()[kind_of(ray)];
+    const RayKind& kind = ray_kinds()[ray_kind_of(ray)];
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const Scene& scene = *inspection.job.ready->scene;
     const std::vector<std::string> light_names = names_of_lights(session);

@@ -3,8 +3,9 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cmath>
 
+#include "scene/light_kinds.hpp"
+#include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
@@ -13,32 +14,51 @@
 namespace clarity::ui {
 namespace {
 
-void make_unit(float* v) {
-    const float length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; ++i) v[i] = length > 0 ? v[i] / length : (i == 1 ? 1.0f : 0.0f);
-}
-
-// Changes the kind of a light. A new point light stands above the target; a new directional light shines from the camera's
-// side.
-void change_kind(Session& session, rt_light& light, rt_u32 kind) {
-    if (light.kind == kind) return;
-    light.kind = kind;
+// A new light of a kind. One with a place is above the target, one without shines from the camera's side.
+rt_light new_light(const Session& session, rt_u32 kind) {
+    rt_light light = default_light(kind);
     const Camera& camera = session.desired.camera;
+    const bool has_place = light_kind_of(light).has_place;
     for (int i = 0; i < 3; ++i) {
         const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * scene_size(session) * 0.3f;
-        light.position[i] = kind == RT_LIGHT_POINT ? camera.target[i] + towards : towards;
+        light.position[i] = has_place ? camera.target[i] + towards : towards;
     }
-    if (kind == RT_LIGHT_DIRECTIONAL) make_unit(light.position);
+    // Edges and radii are a twentieth of the scene.
+    for (const Key& key : light_kind_of(light).keys) {
+        if (key.moves != Moves::vector && key.moves != Moves::length) continue;
+        std::array<float, 3> value = value_of(key, &light);
+        for (float& x : value) x *= scene_size(session) * 0.05f;
+        set_value(key, &light, value);
+    }
+    make_sound(light);
+    return light;
+}
+
+// It keeps its colour, and its place if both kinds have one.
+void change_kind(const Session& session, rt_light& light, rt_u32 kind) {
+    rt_light changed = new_light(session, kind);
+    std::copy_n(light.color, 3, changed.color);
+    if (light_kind_of(light).has_place == light_kind_of(changed).has_place) std::copy_n(light.position, 3, changed.position);
+    light = changed;
 }
 
 void add_light(Session& session) {
     DesiredLight light;
     light.name = "light " + std::to_string(session.desired.lights.size() + 1);
-    light.values.kind = RT_LIGHT_DIRECTIONAL;
-    change_kind(session, light.values, RT_LIGHT_POINT);
+    light.values = new_light(session, RT_LIGHT_POINT);
     for (float& x : light.values.color) x = 0.5f;
     session.desired.lights.push_back(light);
     session.selected_light = static_cast<unsigned>(session.desired.lights.size()) - 1;
+}
+
+void kind_row(const Session& session, rt_light& light) {
+    std::string help;
+    for (const LightKind& kind : light_kinds()) help += (help.empty() ? "" : "; ") + std::string(kind.label) + ": " + kind.help;
+    row_label("Kind", help);
+    if (!ImGui::BeginCombo("##kind", light_kind_of(light).label)) return;
+    for (const LightKind& kind : light_kinds())
+        if (option(kind.label, light.kind == kind.kind) && light.kind != kind.kind) change_kind(session, light, kind.kind);
+    ImGui::EndCombo();
 }
 
 void light_list(Session& session) {
@@ -89,19 +109,14 @@ void draw_light_rows(Session& session, UiState& state) {
     light_list(session);
     session.selected_light = std::min<unsigned>(session.selected_light, static_cast<unsigned>(lights.size()) - 1);
     DesiredLight& light = lights[session.selected_light];
-    row_label("Kind", "lamp: a point light, equally bright at any distance; sun: a directional light");
-    const char* const kinds[] = {"lamp", "sun"};
-    const bool sun = light.values.kind == RT_LIGHT_DIRECTIONAL;
-    if (ImGui::BeginCombo("##kind", kinds[sun])) {
-        if (option(kinds[0], !sun)) change_kind(session, light.values, RT_LIGHT_POINT);
-        if (option(kinds[1], sun)) change_kind(session, light.values, RT_LIGHT_DIRECTIONAL);
-        ImGui::EndCombo();
+    kind_row(session, light.values);
+    for (const Key& key : light_kind_of(light.values).keys) {
+        std::array<float, 3> value = value_of(key, &light.values);
+        if (key.alias || !key_row(key, value, scene_size(session))) continue;
+        rt_light changed = light.values;
+        set_value(key, &changed, value);
+        if (make_sound(changed)) light.values = changed;
     }
-    row_label(sun ? "Direction" : "Position", sun ? "towards the light" : "in units of the file");
-    const float speed = sun ? 0.005f : scene_size(session) * 0.002f;
-    if (ImGui::DragFloat3("##position", light.values.position, speed, 0, 0, "%.3g") && sun) make_unit(light.values.position);
-    row_label("Light colour", "linear, intensity included");
-    color_field("##colour", light.values.color);
     const auto ready = session.ready();
     const bool own = !ready || session.selected_light >= ready->loaded->first_view.lights.size();
     if (own && session.selected_light + 1 == lights.size() && button("Remove this light", {}, -FLT_MIN)) lights.pop_back();

@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "scene/material_keys.hpp"
+#include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
@@ -31,26 +33,14 @@ void choose_material(Session& session, const Scene& scene, size_t current) {
     ImGui::EndCombo();
 }
 
-bool share(const char* label, const char* help, float& value, float max, const char* format, bool logarithmic = false,
-           float min = 0) {
-    row_label(label, help);
-    return slider((std::string("##") + label).c_str(), value, min, max, format, logarithmic);
-}
-
-bool value_rows(rt_material& values) {
-    row_label("Colour", "diffuse reflectance, linear; also tints what is refracted");
-    bool changed = color_field("##color", values.color);
-    changed |= share("Mirror", "share of the light that is mirrored", values.reflect, 1, "%.3f");
-    changed |= share("Refraction", "share of the light that Fresnel's equations split into a mirrored and a refracted part",
-                     values.refract, 1, "%.3f");
-    changed |=
-        share("Index", "index of refraction inside: water 1.33, glass 1.5, diamond 2.42", values.ior, 3, "%.3f", false, 1);
-    row_label("Highlight", "colour of the Blinn-Phong highlight, linear");
-    changed |= color_field("##specular", values.specular);
-    changed |= share("Shininess", "exponent of the highlight: a larger one makes a smaller highlight", values.shininess, 2000,
-                     "%.1f", true, 1);
-    row_label("Emission", "light of its own, linear; it lights nothing else");
-    changed |= color_field("##emission", values.emission);
+bool value_rows(rt_material& values, float size) {
+    bool changed = false;
+    for (const Key& key : material_keys()) {
+        std::array<float, 3> value = value_of(key, &values);
+        if (!key_row(key, value, size)) continue;
+        set_material_value(values, key, value);
+        changed = true;
+    }
     return changed;
 }
 
@@ -68,10 +58,9 @@ void draw_material_rows(Session& session) {
     choose_material(session, scene, index);
     rt_material values = material(session, index);
     ImGui::PushID(static_cast<int>(index));
-    if (value_rows(values)) edited_material(session, index) = values;
+    if (value_rows(values, scene_size(session))) edited_material(session, index) = values;
     ImGui::PopID();
     if (values.texture != RT_NONE) dim_text("a texture multiplies the colour");
-    if (values.flags & RT_MATERIAL_CHECKER) dim_text("a checkerboard of the colour and a third of it");
     const rt_material& own = scene.materials[index].values;
     const bool edited = std::memcmp(&material(session, index), &own, sizeof own) != 0;
     ImGui::BeginDisabled(!edited);

@@ -2,6 +2,7 @@
 // plugins' parameters.
 #include <imgui.h>
 
+#include "render/settings/tracer_choice.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -149,7 +150,7 @@ void size_rows(Session& session, const UiState& state) {
 
 void group_rows(SettingGroup group, Session& session, const UiState& state) {
     for (const Setting& row : settings_table()) {
-        if (row.group != group) continue;
+        if (row.group != group || !row.used(session.edited().settings)) continue;
         setting_row(row, session.settings_for(row.key));
         if (row.key == "size") size_rows(session, state);
     }
@@ -168,6 +169,8 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
     section("DEVICE");
     device_row(session);
     if (folding_section("TRACING")) group_rows(SettingGroup::tracing, session, state);
+    if (picture_of_tracer(session.edited().settings.tracer) == kPathPicture && folding_section("PATHS"))
+        group_rows(SettingGroup::paths, session, state);
     if (folding_section("PICTURE")) {
         if (session.desired.other) dim_text("of both sides");
         group_rows(SettingGroup::picture, session, state);

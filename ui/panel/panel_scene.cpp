@@ -2,6 +2,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "ui/panel/panel.hpp"
@@ -102,6 +103,11 @@ void camera_rows(Session& session, UiState& state) {
     float degrees = camera.fov_y_rad * 57.29578f;
     row_label("Field of view", "vertical, in degrees");
     if (slider("##fov", degrees, 5, 120, "%.1f\u00b0")) camera.fov_y_rad = degrees / 57.29578f;
+    row_label("Aperture", "diameter of the lens, in units of the file; 0: a pinhole. For `path`");
+    const float step = scene_size(session) * 0.0005f;
+    if (ImGui::DragFloat("##aperture", &camera.aperture, step, 0, 0, "%.3g")) camera.aperture = std::max(camera.aperture, 0.0f);
+    row_label("Focus", "distance along the view at which the lens is sharp; 0: that of the target");
+    if (ImGui::DragFloat("##focus", &camera.focus, 10 * step, 0, 0, "%.3g")) camera.focus = std::max(camera.focus, 0.0f);
     row_label("Key speed", "how fast the keys move the camera; 1: a third of the scene a second");
     slider("##speed", state.camera_speed, 0.05f, 10, "%.2f", true);
     const float half = share_of_line(2);

@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "scene/light_kinds.hpp"
+
 namespace clarity::ui {
 namespace {
 
@@ -112,7 +114,7 @@ void frame_bounds(Camera& camera, const Bounds& bounds, float aspect) {
 void move_light(rt_light& light, const Camera& camera, const Step& step, float size) {
     glm::vec3 place(light.position[0], light.position[1], light.position[2]);
     const glm::vec3 offset = ground_offset(camera, step);
-    if (light.kind == RT_LIGHT_DIRECTIONAL)
+    if (!light_kind_of(light).has_place)
         place = unit_or(place + offset / std::max(size, 1e-20f), place);
     else
         place += offset;

@@ -9,6 +9,7 @@
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
+#include "render/settings/aov.hpp"
 #include "ui/session/comparisons.hpp"
 
 namespace clarity::ui {
@@ -171,7 +172,7 @@ void Session::post_frame() {
     job.ready = ready_;
     job.settings = desired.main.settings;
     // For every AOV but colours, a new sample replaces the last one. Sixteen samples would only make the picture tremble.
-    if (ready_->main.settings.aov != "color") job.settings.spp = 1;
+    if (!find_aov(ready_->main.settings.aov).adds_samples()) job.settings.spp = 1;
     job.other_settings.reset();
     if (desired.other) job.other_settings = desired.other->settings;
     EditedView edited = edited_view(desired);

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/edit/scene_text.hpp"
+#include "render/settings/aov.hpp"
 
 namespace clarity::ui {
 
@@ -29,7 +30,7 @@ uint64_t Session::save_picture(const std::string& path) {
 
 Preset Session::desired_preset(EditedView base) const {
     Preset preset{desired.main.device, desired.main.settings, {}};
-    if (preset.settings.aov != "color") preset.settings.spp = 1;  // as in post_frame()
+    if (!find_aov(preset.settings.aov).adds_samples()) preset.settings.spp = 1;  // as in post_frame()
     if (desired.pose.time_s) {
         preset.pose = desired.pose;
         // Lights for a scene that has none suit its size, which is another in another pose. So they are always named.

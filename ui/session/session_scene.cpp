@@ -1,6 +1,8 @@
 // The parts of Session which work on the scene: inspecting and picking pixels, selecting, focusing, editing and hiding objects.
 #include <algorithm>
 
+#include "base/log.hpp"
+#include "render/view/size_note.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/comparisons.hpp"
 #include "ui/session/session.hpp"
@@ -91,6 +93,8 @@ void Session::adopt_view(const EditedView& edited) {
         if (name.empty()) name = "light " + std::to_string(i + 1);
         desired.lights.push_back({name, view.lights[i], i >= edited.lights_on.size() || edited.lights_on[i]});
     }
+    if (const std::string note = size_note(view.lights, desired.main.settings.tracer); !note.empty())
+        log(LogLevel::warning, note);
 }
 
 }  // namespace clarity::ui

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "scene/light_kinds.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
@@ -110,7 +111,7 @@ void PictureMouse::drag(const Target& target, Session& session, UiState& state, 
             if (light_ >= session.desired.lights.size()) break;
             rt_light& light = session.desired.lights[light_].values;
             const Projection projection(area, camera_of(target.picture));
-            if (light.kind == RT_LIGHT_DIRECTIONAL)
+            if (!light_kind_of(light).has_place)
                 drag_sun(light, projection, mouse + offset_);
             else if (ImGui::GetIO().KeyShift)
                 push_point_light(light, projection, std::exp(-moved.y * 0.006f / ui_scale()));

@@ -18,7 +18,7 @@
 /* control: RT_CONTROL uints for each level: the number of rays, which may exceed `room`, and the tickets claimed. Zero at the
  * start. */
 #define RT_CONTROL 2u
-#define RT_CONTROLS (17u * RT_CONTROL) /* 16 generations, and one that is never traced */
+#define RT_CONTROLS (129u * RT_CONTROL) /* 128 generations, and one that is never traced */
 
 /* The light of deferred paths, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
 #define RT_SHARE 6u
@@ -57,8 +57,8 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
     const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_TEAM_SIZE - 1u) / RT_TEAM_SIZE;
     if (chunks == 0u && fresh == 0u) return;
     rt_tally tally = {0, 0, 0, 0};
-    if (level == 0u && get_global_id(0) == 0)
-        for (uint i = 0; i < RT_CONTROLS; ++i) idle_control[i] = 0u;
+    if (level == 0u)
+        for (uint i = (uint)get_global_id(0); i < RT_CONTROLS; i += (uint)get_global_size(0)) idle_control[i] = 0u;
     RT_FOR_CHUNKS(chunk, chunks, control + level * RT_CONTROL + 1u, scratch)
     {
         const uint unit = chunk * RT_TEAM_SIZE + rt_team_item();

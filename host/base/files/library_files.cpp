@@ -28,6 +28,12 @@ std::string loaded_file_of(const void* address) {
     return dladdr(address, &info) != 0 && info.dli_fname ? info.dli_fname : "";
 }
 
+std::string library_of(const void* address) {
+    const std::string file = loaded_file_of(address);
+    std::error_code error;
+    return file.empty() || std::filesystem::equivalent(file, program_file(), error) ? std::string() : file;
+}
+
 void note_private_copy(const std::string& copy, const std::string& original) {
     const std::lock_guard<std::mutex> lock(mutex);
     copies()[copy] = std::filesystem::absolute(original).lexically_normal().string();

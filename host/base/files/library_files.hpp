@@ -15,6 +15,9 @@ std::filesystem::path program_file();
 // of the heap.
 std::string loaded_file_of(const void* address);
 
+// The same, but empty for what is part of this program.
+std::string library_of(const void* address);
+
 // Notes that `copy` was loaded in the place of `original`.
 void note_private_copy(const std::string& copy, const std::string& original);
 

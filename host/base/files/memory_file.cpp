@@ -16,7 +16,7 @@
 namespace clarity {
 namespace {
 
-constexpr int kSeals = F_SEAL_WRITE | F_SEAL_SHRINK | F_SEAL_GROW;
+constexpr int kSizeSeals = F_SEAL_SHRINK | F_SEAL_GROW, kSeals = F_SEAL_WRITE | kSizeSeals;
 constexpr uint64_t kAtOnce = uint64_t{1} << 30;  // bytes: one call transfers less than 2 GiB
 
 [[noreturn]] void fail(const char* what, const char* why) {
@@ -38,6 +38,15 @@ void transfer(const char* what, uint64_t bytes, const Call& call) {
         if (count <= 0) fail(what, count == 0 ? "it is shorter than it should be" : std::strerror(errno));
         done += static_cast<uint64_t>(count);
     }
+}
+
+bool has_seals(int fd, int wanted) {
+    const int seals = fcntl(fd, F_GET_SEALS);
+    return seals >= 0 && (seals & wanted) == wanted;
+}
+
+void add_seals(int fd, int seals) {
+    if (fcntl(fd, F_ADD_SEALS, seals) != 0) fail("sealed", std::strerror(errno));
 }
 
 }  // namespace
@@ -90,12 +99,19 @@ void MemoryFile::read_at(uint64_t at, void* to, uint64_t bytes) const {
 }
 
 void MemoryFile::seal() {
-    if (fcntl(fd_, F_ADD_SEALS, kSeals) != 0) fail("sealed", std::strerror(errno));
+    add_seals(fd_, kSeals);
 }
 
 bool MemoryFile::sealed() const {
-    const int seals = fcntl(fd_, F_GET_SEALS);
-    return seals >= 0 && (seals & kSeals) == kSeals;
+    return has_seals(fd_, kSeals);
+}
+
+void MemoryFile::seal_size() {
+    add_seals(fd_, kSizeSeals);
+}
+
+bool MemoryFile::size_sealed() const {
+    return has_seals(fd_, kSizeSeals);
 }
 
 std::shared_ptr<const char> map_file(int fd, uint64_t bytes) {

@@ -21,6 +21,8 @@ class MemoryFile {
     MemoryFile(MemoryFile&& other) noexcept;
     MemoryFile& operator=(MemoryFile&& other) noexcept;
 
+    // The file of a descriptor, which the result owns.
+    static MemoryFile of(int fd) { return MemoryFile(fd); }
     // The file of another process, for reading. None if it cannot be opened, for example because /proc of that process is not
     // to be seen.
     static std::optional<MemoryFile> open(const Address& address);
@@ -33,6 +35,9 @@ class MemoryFile {
     // No process can change the file from now on. Fails while it is mapped for writing.
     void seal();
     bool sealed() const;
+    // No process can change its size from now on.
+    void seal_size();
+    bool size_sealed() const;
 
  private:
     explicit MemoryFile(int fd) : fd_(fd) {}

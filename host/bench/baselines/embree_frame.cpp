@@ -16,6 +16,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/parallel_for.hpp"
+#include "scene/light_kinds.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
     !defined(__clang__)
@@ -187,7 +188,7 @@ INLINED void trace_packet(const Job& job, Tile& tile, const RayQueue& queue, uns
     const Lanes o_x = lanes_of(packet.ray.org_x), o_y = lanes_of(packet.ray.org_y), o_z = lanes_of(packet.ray.org_z),
                 d_x = lanes_of(packet.ray.dir_x), d_y = lanes_of(packet.ray.dir_y), d_z = lanes_of(packet.ray.dir_z);
     Lanes ox, oy, oz, lx, ly, lz, far, brought, mx, my, mz;
-    const bool point = whitted.light.kind == RT_LIGHT_POINT;
+    const bool point = light_kind_of(whitted.light).has_place;
     const float light_x = whitted.light.position[0], light_y = whitted.light.position[1], light_z = whitted.light.position[2];
     EACH_LANE {
         const float t = met[i] ? hit_t[i] : 0.0f, dx = d_x[i], dy = d_y[i], dz = d_z[i];

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "render/launch/frame_constants.hpp"
+#include "scene/light_kinds.hpp"
 
 namespace clarity::bench {
 
@@ -11,6 +12,11 @@ View whitted_view(const Scene& scene, View view) {
     if (view.lights.empty())
         throw Error(Exit::failed, "the scene has no light, and the frame of the peers needs one: add a light to the scene");
     view.lights.resize(1);
+    // Peers know two kinds of lights.
+    const rt_light& first = view.lights[0];
+    view.lights[0] = whitted_light(light_kind_of(first).has_place ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL,
+                                   {first.position[0], first.position[1], first.position[2]},
+                                   {first.color[0], first.color[1], first.color[2]});
     rt_material mirror{};
     for (float& c : mirror.color) c = 0.8f;
     mirror.reflect = 0.5f;

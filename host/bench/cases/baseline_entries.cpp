@@ -5,7 +5,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "bench/cases/ray_entries.hpp"
+#include "bench/cases/own_entries.hpp"
 #include "bench/run/failure.hpp"
 
 namespace clarity::bench {

@@ -4,10 +4,8 @@
 
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/baseline_entries.hpp"
-#include "bench/cases/build_entry.hpp"
-#include "bench/cases/frame_entries.hpp"
+#include "bench/cases/own_entries.hpp"
 #include "bench/cases/pictures.hpp"
-#include "bench/cases/ray_entries.hpp"
 #include "bench/motion/motion.hpp"
 #include "bench/motion/strategies.hpp"
 #include "bench/run/bench.hpp"
@@ -40,13 +38,7 @@ class CaseRunner {
                 add_ours(variant, device);
             }
         add_baselines(state_);
-        if (case_.timing == Timing::timed) measure_entries(state_.entries, rules_, progress_);
-        for (Entry& entry : state_.entries) run_or_mark_failed(entry, entry.finish);
-        std::vector<BenchRecord> rows;
-        for (Entry& entry : state_.entries) {
-            set_rates(entry.row);
-            rows.push_back(std::move(entry.row));
-        }
+        std::vector<BenchRecord> rows = measured_rows(state_.entries, case_.timing == Timing::timed, rules_, progress_);
         compare_with_baselines(rows);
         if (case_.measure == "moving") compare_with_one_by_one(rows);
         return rows;
@@ -64,7 +56,9 @@ class CaseRunner {
         row.accel_params = parameters_text(plugin, settings.accel_params);
         if (case_.measure == "build") {
             describe_host(row, std::thread::hardware_concurrency());
-            add_build(state_, entry, plugin, settings);
+            add_build(entry, [=, &plugin] {
+                return build_accel(*fixture_.scene(), plugin, settings.accel_params, progress_, fixture_.target_of(plugin));
+            });
             return;
         }
         describe(row, fixture_.device(device));

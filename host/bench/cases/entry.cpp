@@ -29,16 +29,24 @@ void run_or_mark_failed(Entry& entry, const std::function<void(BenchRecord&)>& w
     }
 }
 
-void measure_entries(std::vector<Entry>& entries, const MeasureRules& rules, Progress& progress) {
+std::vector<BenchRecord> measured_rows(std::vector<Entry>& entries, bool is_timed, const MeasureRules& rules,
+                                       Progress& progress) {
     std::vector<Contender> contenders;
     std::vector<BenchRecord*> rows;  // in the order of the contenders
     for (Entry& entry : entries) {
-        if (entry.row.status != RowStatus::ok || !entry.once) continue;
+        if (!is_timed || entry.row.status != RowStatus::ok || !entry.once) continue;
         contenders.push_back({entry.row.variant, entry.once});
         rows.push_back(&entry.row);
     }
     const std::vector<Measured> measured = measure_interleaved(contenders, rules, progress);
     for (size_t i = 0; i < rows.size(); ++i) set_result(*rows[i], measured[i]);
+    for (Entry& entry : entries) run_or_mark_failed(entry, entry.finish);
+    std::vector<BenchRecord> finished;
+    for (Entry& entry : entries) {
+        set_rates(entry.row);
+        finished.push_back(std::move(entry.row));
+    }
+    return finished;
 }
 
 void set_result(BenchRecord& row, const Measured& measured) {

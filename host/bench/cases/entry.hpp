@@ -21,8 +21,10 @@ BenchRecord make_row(const BenchCase& c);
 // row is marked as skipped (the setting is not supported) or failed, with the reason. Throws Cancelled.
 void run_or_mark_failed(Entry& entry, const std::function<void(BenchRecord&)>& work);
 
-// Measures all entries which can be timed, interleaved, and puts times and status into their rows. Throws Cancelled.
-void measure_entries(std::vector<Entry>& entries, const MeasureRules& rules, Progress& progress);
+// Finishes all entries and returns their rows. is_timed: before that, measures those that can be timed, interleaved, and puts
+// times and status into their rows. Throws Cancelled.
+std::vector<BenchRecord> measured_rows(std::vector<Entry>& entries, bool is_timed, const MeasureRules& rules,
+                                       Progress& progress);
 
 void set_result(BenchRecord& row, const Measured& measured);
 // Computes the rates (frames, triangles, rays a second) from times and counts. Does nothing unless the row's status is ok.

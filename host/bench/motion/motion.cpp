@@ -11,7 +11,7 @@
 #include "bench/baselines/moving_baseline.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/case_state.hpp"
-#include "bench/cases/ray_entries.hpp"
+#include "bench/cases/own_entries.hpp"
 #include "bench/motion/motions.hpp"
 #include "bench/motion/moving_frames.hpp"
 #include "bench/run/bench.hpp"
@@ -59,13 +59,7 @@ class MotionCase {
             run_or_mark_failed(entry, [&](BenchRecord&) { add(variant, entry); });
         }
         for (const std::string& quality : case_.baseline_qualities) add_baseline(quality);
-        measure_entries(state_.entries, rules_, progress_);
-        std::vector<BenchRecord> rows;
-        for (Entry& entry : state_.entries) {
-            run_or_mark_failed(entry, entry.finish);
-            set_rates(entry.row);
-            rows.push_back(std::move(entry.row));
-        }
+        std::vector<BenchRecord> rows = measured_rows(state_.entries, true, rules_, progress_);
         compare_with_baselines(rows);
         return rows;
     }
@@ -210,23 +204,11 @@ class MotionCase {
     }
 
     void add_rebuild(const rt_plugin& plugin, const Settings& settings, Entry& entry) {
-        const auto last = std::make_shared<BenchRecord>(entry.row);
         const auto next = std::make_shared<size_t>(0);
-        entry.once = [=, &plugin] {
-            const auto begin = std::chrono::steady_clock::now();
-            const AccelData built = build_accel(*moved_[(*next)++ % moved_.size()], plugin, settings.accel_params, progress_,
-                                                fixture_.target_of(plugin));
-            describe(*last, built);
-            return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
-        };
-        entry.finish = [=](BenchRecord& row) {
-            row.build_ms = last->build_ms;
-            row.pack_ms = last->pack_ms;
-            row.accel_bytes = last->accel_bytes;
-            row.bytes_per_triangle = last->bytes_per_triangle;
-            row.nodes = last->nodes;
-            row.sah_cost = last->sah_cost;
-        };
+        add_build(entry, [=, &plugin] {
+            return build_accel(*moved_[(*next)++ % moved_.size()], plugin, settings.accel_params, progress_,
+                               fixture_.target_of(plugin));
+        });
     }
 
     // Rays in the last pose, on a structure that was refitted or built for it.
@@ -243,24 +225,12 @@ class MotionCase {
         held.queries = std::make_shared<RayQueries>(fixture_.opened(0));
         describe(entry.row, *held.prepared);
         if (rays_.rays.empty()) make_rays(held);
-        const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
-        std::shared_ptr<const RayBlocks>& packed = state_.packed[lanes];
-        if (!packed) packed = std::make_shared<const RayBlocks>(rays_.rays, lanes);
-        entry.once = [=, blocks = packed] {
-            Sample sample;
-            sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{rays_.any_hit, false, true});
-            const RayTuning tuning = held.queries->tuning();
-            sample.trial = tuning.trial;
-            sample.settled = tuning.settled;
-            sample.variant = tuning.variant;
-            return sample;
-        };
+        time_rays(state_, entry, held, rays_);
         entry.finish = [=](BenchRecord& row) {
             std::vector<float> distances;
             for (const rt_hit& hit : held.queries->trace(*held.prepared, rays_.rays)) distances.push_back(hit.t);
             state_.agreement.check_hits(row, rays_, distances);
         };
-        set_ray_counts(entry.row, rays_);
     }
     void make_rays(const Fixture::Held& held) {
         const Settings settings = variant_settings(plugins_, request_, {});

@@ -6,6 +6,7 @@
 #include "base/angle.hpp"
 #include "base/parallel_for.hpp"
 #include "bench/suites/vec3.hpp"
+#include "scene/light_kinds.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -162,8 +163,9 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
             Vec3 normal = normals.at(hits[i].prim, point);
             if (dot(normal, direction) > 0) normal = -normal;
             const Vec3 origin = point + eps * normal;
-            const Vec3 to_light = light.kind == RT_LIGHT_POINT ? vec(light.position) - origin : vec(light.position);
-            const double distance = light.kind == RT_LIGHT_POINT ? glm::length(to_light) : INFINITY;
+            const bool has_place = light_kind_of(light).has_place;
+            const Vec3 to_light = has_place ? vec(light.position) - origin : vec(light.position);
+            const double distance = has_place ? glm::length(to_light) : INFINITY;
             sets[0].rays[i] = make_ray(origin, normalized(to_light, normal), distance);
             sets[1].rays[i] = make_ray(origin, direction - 2 * dot(direction, normal) * normal, INFINITY);
             sets[2].rays[i] = make_ray(origin, cosine_direction(normal, order[i]), INFINITY);

@@ -150,19 +150,27 @@ class DeviceCheck {
     std::string refit_fault(const BuildKernels& kernels, const Step& step) {
         std::vector<NamedScene> scenes = small_scenes();
         scenes.push_back({"sparse", sparse_scene(300)});
-        for (const NamedScene& scene : scenes)
+        for (const NamedScene& scene : scenes) {
+            std::vector<PosedCosts> poses;
             for (const Movement& movement : movements()) {
                 if (scene.name == "mixed" && quick_ && std::string(movement.name) != "as a wave") continue;
                 const std::string what = "scene `" + scene.name + "`, " + movement.name;
                 step("refitting " + what, kPlanLimit_s);
                 const BuildCase rest(scene.name, scene.scene), moved(scene.name, movement.move(scene.scene));
                 if (moved.scene().prims.size() != rest.scene().prims.size()) continue;  // flattened in another way
-                if (std::string why = refit_fault(kernels, rest, moved); !why.empty()) return what + ": " + why;
+                PosedCosts costs{movement.name, {}, {}};
+                if (std::string why = refit_fault(kernels, rest, moved, costs); !why.empty()) return what + ": " + why;
+                if (!movement.is_flat && !costs.surfaces.empty()) poses.push_back(std::move(costs));
                 ++runs_;
             }
+            if (poses.empty()) continue;
+            const BuildCase rest(scene.name, scene.scene);
+            if (std::string why = cost_fault(rest.scene(), poses); !why.empty()) return "scene `" + scene.name + "`: " + why;
+        }
         return {};
     }
-    std::string refit_fault(const BuildKernels& kernels, const BuildCase& rest, const BuildCase& moved) {
+    // costs: receives those of each group, and surfaces if the plugin shows its levels.
+    std::string refit_fault(const BuildKernels& kernels, const BuildCase& rest, const BuildCase& moved, PosedCosts& costs) {
         BuildRun built = rest.run(plugin_, default_parameters(plugin_), Schedule::program);
         if (!built.why.empty()) return built.why;
         const auto* const refs = static_cast<const rt_u32*>(built.result.refs.data());
@@ -176,11 +184,13 @@ class DeviceCheck {
                 why = "`ranges` names positions in leaf order that there are not";
             if (!why.empty()) return "group " + std::to_string(g) + ": " + why;
             positions += layout.count();
+            costs.costs.push_back(-1);
             if (layout.count() == 0) continue;
             std::vector<rt_prim> prims;
             for (uint64_t i = 0; i < layout.count(); ++i) prims.push_back(by_ref.at(refs[layout.first_leaf() + i]));
             why = layout.refit(prims);
             if (!why.empty()) return "the refit of group " + std::to_string(g) + " " + why;
+            costs.costs.back() = layout.cost();
             built.result.slots = std::move(layout.result().slots);
         }
         if (positions != built.result.leaf_count)
@@ -188,6 +198,7 @@ class DeviceCheck {
                    std::to_string(built.result.leaf_count);
         if (!plugin_.accel->levels) return {};
         const std::string why = loose_bounds(plugin_, moved.scene(), built.result);
+        if (why.empty()) costs.surfaces = relative_surfaces(plugin_, built.result);
         return why.empty() ? why : "after the refit " + why;
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "plugin/extensions.hpp"
@@ -262,6 +263,13 @@ std::string LayoutRun::refit(const std::vector<rt_prim>& prims) {
     for (uint64_t e = 0; e < costs.size(); ++e)
         if (std::isnan(costs[e]) || costs[e] < 0)
             return "gave element " + std::to_string(first_[0] + e) + " of slot 0 the cost " + std::to_string(costs[e]);
+    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY}, extent[3];
+    for (const rt_prim& prim : prims)
+        for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], double(prim.lo[k])), hi[k] = std::max(hi[k], double(prim.hi[k]));
+    for (int k = 0; k < 3; ++k) extent[k] = hi[k] - lo[k];
+    const double area = extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0];
+    // Beyond these areas the products of floats, by which the device computes costs, are 0 or infinite.
+    cost_ = area > 1e-20 && area < 1e20 ? std::accumulate(costs.begin(), costs.end(), 0.0) / area : -1;
     return written_outside(before);
 }
 

@@ -41,6 +41,8 @@ class LayoutRun {
     std::string pack(const std::vector<rt_prim>& prims, const DeviceTree& tree, std::vector<rt_u32>& leaves);
     // Refits the tree. prims: in leaf order.
     std::string refit(const std::vector<rt_prim>& prims);
+    // The expected cost of a ray that hits the box of the tree, by the last refit; negative: floats cannot hold the areas.
+    double cost() const { return cost_; }
     // The slots with their tree, for loose_bounds(). Of one group.
     BuilderResult result() const;
     uint64_t first_leaf() const { return first_leaf_; }
@@ -60,6 +62,7 @@ class LayoutRun {
     const ParameterValues params_;
     uint64_t count_ = 0, first_leaf_ = 0;
     rt_u32 root_ = RT_NONE;
+    double cost_ = -1;
     std::vector<uint64_t> first_, elements_, all_;  // of each slot: of the tree, and with what is beside it
     std::vector<cl::Buffer> buffers_;               // of each slot; of those of the host alone nothing is sent
     cl::Buffer ranges_, prims_, nodes_, counts_, order_, root_buffer_, leaves_, leaf_prims_, costs_;

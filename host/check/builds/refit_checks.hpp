@@ -13,6 +13,7 @@ namespace clarity::check {
 struct Movement {
     const char* name;
     Scene (*move)(Scene scene);
+    bool is_flat = false;  // volumes have no extent afterwards, and costs say nothing
 };
 // At rest, a wave, a twist, scattered, in one plane, at one point, and a million times as large.
 const std::vector<Movement>& movements();

@@ -244,6 +244,25 @@ std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResu
     return surfaces;
 }
 
+std::string cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& poses) {
+    constexpr double kSurfaces = 2, kCosts = 1.3;  // where volumes have twice the surface, costs rise by 1.3 at least
+    constexpr rt_u32 kLeast = 60;                  // primitives of a group
+    for (rt_u32 g = 0; g < scene.groups.size(); ++g) {
+        if (scene.groups[g].count < kLeast) continue;
+        for (const PosedCosts& a : poses)
+            for (const PosedCosts& b : poses) {
+                if (a.costs[g] < 0 || b.costs[g] < 0 || b.surfaces[g] == 0 || std::isinf(b.costs[g])) continue;
+                if (a.surfaces[g] < kSurfaces * b.surfaces[g] || a.costs[g] > kCosts * b.costs[g]) continue;
+                return "the cost that a refit reports of group " + std::to_string(g) + " does not follow its boxes: it is " +
+                       std::to_string(a.costs[g]) + " " + a.pose + ", where they have " + std::to_string(a.surfaces[g]) +
+                       " times the surface of the first level, and " + std::to_string(b.costs[g]) + " " + b.pose +
+                       ", where they have " + std::to_string(b.surfaces[g]) +
+                       " times: the host would never build a tree again that has become slow";
+            }
+    }
+    return {};
+}
+
 std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result) {
     constexpr uint64_t kFree = 64u << 10;
     // The nodes of a topology, which has no traversal, are freed as soon as they are packed. Its builder may ask for as many as

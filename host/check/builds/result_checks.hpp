@@ -16,6 +16,14 @@ std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, Build
 // For each group: the surface of all volumes that `levels` shows, in units of that of the first level. 0: there is none.
 std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResult& result);
 
+// What a refit to one pose reported of each group, negative where nothing, and relative_surfaces().
+struct PosedCosts {
+    const char* pose;
+    std::vector<double> costs, surfaces;
+};
+// The costs that refits report rise with the surfaces of the tree's volumes: the host decides by them when to build again.
+std::string cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& poses);
+
 // Slots are not far larger than what the builder filled, nor than the input.
 std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result);
 

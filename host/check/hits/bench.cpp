@@ -13,18 +13,19 @@ namespace clarity::check {
 
 const TestScene kMixedScene{"the mixed scene", mixed_scene, ray_sets, rippled},
     kRegularScene{"the scene of tessellations", regular_scene, regular_ray_sets, bent},
-    kFloorScene{"the floor", [](uint64_t) { return floor_scene(); }, floor_ray_sets, bent};
+    kFloorScene{"the floor", [](uint64_t) { return floor_scene(); }, floor_ray_sets};
 
 namespace {
 
 constexpr size_t kRays = 2400, kQuickRays = 800;  // of a set
+constexpr size_t kRaysAtOnce = 64;                // of the reference, between two steps
 
 // Draws the scene around the first wrong ray.
 std::string write_picture(const Bench& bench, CheckedScene& scene, const Variant& variant, const std::string& name,
                           const rt_ray& ray, bool any_hit, const Step& step) {
     if (bench.options().report_folder.empty()) return {};
     const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".png";
-    step("drawing the picture of the report", kCompileLimit_s);
+    step("drawing the picture of the report", compile_limit_s(bench.options()));
     try {
         const ReportPicture picture = write_report_picture(path, scene, variant, ray, any_hit);
         return "; the view along the first of them is " + path + ": " + std::to_string(picture.differing) + " of " +
@@ -95,21 +96,28 @@ std::vector<Variant> Bench::variants(const Step& step) {
 
 CheckedScene& Bench::scene(const Step& step) {
     if (!scene_) {
-        step("opening the device", kCompileLimit_s);
+        step("opening the device", compile_limit_s(options()));
         device_ = input_.open();
         fit_lanes(input_.options, device_->info());
-        step(std::string("building ") + test_.what, kCompileLimit_s);
+        step("building " + test_.what, std::max(compile_limit_s(options()), test_.limit_s));
         const Scene rest = test_.scene(input_.options.seed);
-        scene_ = refits_ ? std::make_unique<CheckedScene>(input_.plugin, input_.layout, test_.moved(rest), device_, &rest, as_)
-                         : std::make_unique<CheckedScene>(input_.plugin, input_.layout, rest, device_, nullptr, as_);
+        const bool moves = as_.moves != Moves::none;
+        scene_ = std::make_unique<CheckedScene>(input_.plugin, input_.layout, moves ? test_.moved(rest) : rest, device_,
+                                                moves ? &rest : nullptr, as_);
     }
     return *scene_;
+}
+
+void Bench::take_turn(size_t turn, const Step& step) {
+    scene(step);
+    std::vector<int>& lanes = input_.options.lanes;
+    lanes = {lanes[turn % lanes.size()]};
 }
 
 CheckedScene& Bench::compiled(const Variant& variant, const Step& step) {
     CheckedScene& at = scene(step);
     if (std::find(compiled_.begin(), compiled_.end(), variant.text()) != compiled_.end()) return at;
-    step("compiling for " + variant.text(), kCompileLimit_s);
+    step("compiling for " + variant.text(), compile_limit_s(options()));
     at.compile(variant);
     compiled_.push_back(variant.text());
     return at;
@@ -133,7 +141,13 @@ const RaySet& Bench::set(const std::string& name, const Step& step) {
 
 const std::vector<Truth>& Bench::truths(const RaySet& set, const Step& step) {
     std::vector<Truth>& known = truths_[set.name];
-    if (known.empty()) known = BruteForce(scene(step).build_scene()).trace(set.rays);
+    const BruteForce force(scene(step).build_scene());
+    while (known.size() < set.rays.size()) {
+        step("computing what the rays hit", std::max(60.0, test_.limit_s));
+        const auto begin = set.rays.begin() + static_cast<std::ptrdiff_t>(known.size());
+        const auto count = static_cast<std::ptrdiff_t>(std::min(kRaysAtOnce, set.rays.size() - known.size()));
+        for (Truth& truth : force.trace(std::vector<rt_ray>(begin, begin + count))) known.push_back(std::move(truth));
+    }
     return known;
 }
 
@@ -153,49 +167,52 @@ std::string write_report(const Bench& bench, const std::string& name, const Faul
     return "the rays are in " + path;
 }
 
-Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
-    const RaySet& set = bench.set(name, step);
-    step("computing what these rays hit", 60);
-    const std::vector<Truth>& truths = bench.truths(set, step);
-    std::vector<std::string> wrong_variants, right_variants;
+Outcome trace_passes(Bench& bench, const std::vector<rt_ray>& rays, const Step& step,
+                     const std::function<Outcome(const Pass&)>& judge) {
+    std::string wrong, right;
     Outcome first;
-    std::map<std::string, std::vector<rt_hit>> nearest;  // of each variant
     for (const bool any_hit : {false, true})
         for (const Variant& variant : bench.variants(step)) {
             CheckedScene& scene = bench.compiled(variant, step);
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
-            step("tracing " + std::to_string(set.rays.size()) + " rays, " + what,
-                 bench.options().large ? kCompileLimit_s : kTraceLimit_s);
-            const Traced traced = scene.trace(variant, set.rays, any_hit);
-            const Faults faults = Faults::of(set.rays, truths, traced.hits, any_hit);
-            if (!any_hit) nearest[variant.text()] = traced.hits;
-            if (faults.wrong.empty()) {
-                const std::string lost = again_fault(scene, variant, set.rays, nearest[variant.text()], truths, any_hit);
-                if (lost.empty()) {
-                    right_variants.push_back(what);
-                    continue;
-                }
-                if (wrong_variants.empty()) first = Outcome::failed(what + ": " + lost);
-            } else if (wrong_variants.empty()) {
-                first = Outcome::failed(what + ": " + faults.text(set.rays, truths, traced.hits, variant.lanes) +
-                                        (*set.hint && faults.misses() ? ". Mostly: " + std::string(set.hint) : ""));
-                first.repeat = write_report(bench, name, faults, set.rays, traced.hits, what) +
-                               write_picture(bench, scene, variant, name, set.rays[faults.wrong.front().ray], any_hit, step);
+            step("tracing " + std::to_string(rays.size()) + " rays, " + what, bench.test().limit_s);
+            const Traced traced = scene.trace(variant, rays, any_hit);
+            Outcome outcome = judge({variant, any_hit, what, scene, traced});
+            const bool failed = outcome.kind == Outcome::Kind::failed;
+            if (failed && wrong.empty()) {
+                first = std::move(outcome);
+                first.found = what + ": " + first.found;
             }
-            wrong_variants.push_back(what);
+            std::string& list = failed ? wrong : right;
+            list += (list.empty() ? "" : "; ") + what;
         }
-    if (wrong_variants.empty())
-        return Outcome::passed(std::to_string(set.rays.size()) + " rays, nearest and any, are right with " +
+    if (wrong.empty())
+        return Outcome::passed(std::to_string(rays.size()) + " rays, nearest and any, are right with " +
                                std::to_string(bench.variants(step).size()) + " programs");
-    if (right_variants.empty()) {
-        first.found += ". With every number of lanes, nearest and any";
-        return first;
-    }
-    first.found += ". Wrong: ";
-    for (size_t i = 0; i < wrong_variants.size(); ++i) first.found += (i ? "; " : "") + wrong_variants[i];
-    first.found += ". Right: ";
-    for (size_t i = 0; i < right_variants.size(); ++i) first.found += (i ? "; " : "") + right_variants[i];
+    first.found += right.empty() ? ". With every number of lanes, nearest and any" : ". Wrong: " + wrong + ". Right: " + right;
     return first;
+}
+
+Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
+    const RaySet& set = bench.set(name, step);
+    const std::vector<Truth>& truths = bench.truths(set, step);
+    std::map<std::string, std::vector<rt_hit>> nearest;  // of each variant
+    return trace_passes(bench, set.rays, step, [&](const Pass& pass) {
+        const std::vector<rt_hit>& hits = pass.traced.hits;
+        const Faults faults = Faults::of(set.rays, truths, hits, pass.any_hit);
+        if (!pass.any_hit) nearest[pass.variant.text()] = hits;
+        if (faults.wrong.empty()) {
+            const std::string lost =
+                again_fault(pass.scene, pass.variant, set.rays, nearest[pass.variant.text()], truths, pass.any_hit);
+            return lost.empty() ? Outcome::passed("") : Outcome::failed(lost);
+        }
+        Outcome outcome = Outcome::failed(faults.text(set.rays, truths, hits, pass.variant.lanes) +
+                                          (*set.hint && faults.misses() ? ". Mostly: " + std::string(set.hint) : ""));
+        outcome.repeat =
+            write_report(bench, name, faults, set.rays, hits, pass.what) +
+            write_picture(bench, pass.scene, pass.variant, name, set.rays[faults.wrong.front().ray], pass.any_hit, step);
+        return outcome;
+    });
 }
 
 Outcome trace_sets(Bench& bench, const std::vector<const char*>& names, const std::string& after, const Step& step) {

@@ -14,15 +14,19 @@
 
 namespace clarity::check {
 
-constexpr double kCompileLimit_s = 120;
+// Processor time of one program, which takes 2 to 7 s. Quick checks of a kernel without end must not take minutes.
+inline double compile_limit_s(const HitsOptions& options) {
+    return options.quick ? 40 : 120;
+}
 constexpr double kTraceLimit_s = 10;  // some thousand rays take milliseconds; a loop without end takes for ever
 
 // A scene, and the rays for it.
 struct TestScene {
-    const char* what;  // "the mixed scene"
-    Scene (*scene)(uint64_t seed);
-    std::vector<RaySet> (*rays)(const BuildScene& scene, size_t count, uint64_t seed);
+    std::string what;  // "the mixed scene"
+    std::function<Scene(uint64_t seed)> scene;
+    std::function<std::vector<RaySet>(const BuildScene& scene, size_t count, uint64_t seed)> rays;
     Scene (*moved)(Scene scene) = nullptr;  // in another pose
+    double limit_s = kTraceLimit_s;         // for a build, for a set of rays, and for what 64 of them hit
 };
 extern const TestScene kMixedScene, kRegularScene, kFloorScene;
 
@@ -39,15 +43,16 @@ struct BenchInput {
 // Used from one thread.
 class Bench {
  public:
-    // refits: the structure is built for the scene at rest, and refitted to a moved one.
-    explicit Bench(BenchInput input, const TestScene& test = kMixedScene, BuiltAs as = {}, bool refits = false)
-        : input_(std::move(input)), test_(test), as_(std::move(as)), refits_(refits) {}
+    explicit Bench(BenchInput input, const TestScene& test = kMixedScene, BuiltAs as = {})
+        : input_(std::move(input)), test_(test), as_(std::move(as)) {}
 
     const HitsOptions& options() const { return input_.options; }
     const rt_plugin& plugin() const { return input_.plugin; }
     const TestScene& test() const { return test_; }
     std::vector<Variant> variants(const Step& step);
     CheckedScene& scene(const Step& step);
+    // From now on with one of the numbers of lanes; turn: any number.
+    void take_turn(size_t turn, const Step& step);
     CheckedScene& compiled(const Variant& variant, const Step& step);
     const std::vector<RaySet>& sets(const Step& step);
     const RaySet& set(const std::string& name, const Step& step);
@@ -57,7 +62,6 @@ class Bench {
     BenchInput input_;
     const TestScene& test_;
     const BuiltAs as_;
-    const bool refits_;
     std::shared_ptr<Device> device_;
     std::unique_ptr<CheckedScene> scene_;
     std::vector<std::string> compiled_;
@@ -65,6 +69,18 @@ class Bench {
     std::map<std::string, std::vector<Truth>> truths_;
 };
 
+// One way in which rays were traced.
+struct Pass {
+    const Variant& variant;
+    bool any_hit;
+    std::string what;  // "any-hit queries with 4 lanes, debug"
+    CheckedScene& scene;
+    const Traced& traced;
+};
+// Traces rays with every variant, nearest and any. judge: says what is wrong with a pass. Returns what is wrong with the first
+// of those that failed, and which of them failed.
+Outcome trace_passes(Bench& bench, const std::vector<rt_ray>& rays, const Step& step,
+                     const std::function<Outcome(const Pass&)>& judge);
 // Traces a set with every variant, nearest and any, and judges all answers.
 Outcome trace_set(Bench& bench, const std::string& name, const Step& step);
 // Sets one after the other until one fails. after: "after a refit", for the message.

@@ -299,6 +299,7 @@ Truth BruteForce::trace(const rt_ray& given) const {
         if (RT_REF_KIND(ref) != RT_REF_INSTANCE || !may_enter(ray, scene_.prims[i])) continue;
         const rt_u32 index = RT_REF_INDEX(ref);
         const rt_instance& instance = scene_.instances[index];
+        if (instance.hidden) continue;
         const float* m = instance.object_from_world;
         const auto turned = [&](const Vec& v) {
             return Vec{m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
@@ -333,7 +334,7 @@ Truth BruteForce::trace(const rt_ray& given) const {
 
 std::vector<Truth> BruteForce::trace(const std::vector<rt_ray>& rays) const {
     std::vector<Truth> truths(rays.size());
-    constexpr size_t kChunk = 64;
+    constexpr size_t kChunk = 16;
     parallel_for(static_cast<uint32_t>((rays.size() + kChunk - 1) / kChunk), [&](uint32_t c) {
         for (size_t i = c * kChunk; i < std::min(rays.size(), (c + 1) * kChunk); ++i) truths[i] = trace(rays[i]);
     });

@@ -12,40 +12,55 @@ namespace {
 
 constexpr size_t kBuiltRays = 400;  // of a set
 // Processor time for the compilation of kernels that differ in a define. What is cut is said.
-constexpr double kQuick_s = 12, kLong_s = 60;
+constexpr double kQuick_s = 8, kLong_s = 60;
 constexpr unsigned kLarge = 70000, kHuge = (1u << 20) + 4099;  // above 2^16 and 2^20
 
 double processor_s() {
     return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
-// The same with few rays, one number of lanes, and for debugging alone. Cases take turns with the numbers of lanes, so that all
-// are tried and each case compiles one program.
-BenchInput in_turn(BenchInput input, size_t turn) {
-    HitsOptions& options = input.options;
-    options.rays = kBuiltRays;
-    options.quick = true;
-    options.lanes = {options.lanes[turn % options.lanes.size()]};
+// The same with few rays, and for debugging alone.
+BenchInput few(BenchInput input) {
+    input.options.rays = kBuiltRays;
+    input.options.quick = true;
     return input;
 }
 
-// Traces the mixed scene as it is built in one way after another.
+// Traces the mixed scene as it is built in one way after another, first where the program is there already: that of the default
+// defines, with each number of lanes in turn. Each further set of defines is compiled with one number of lanes, again in turn.
 struct Case {
     std::string what;  // "bvh2,max_leaf=1"
     BuiltAs as;
 };
 Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, const Step& step) {
     const double begin = processor_s(), most = input.options.quick ? kQuick_s : kLong_s;
+    const auto usual = Bench(few(input)).scene(step).accel()->defines;
+    struct Tried {
+        std::string what;
+        std::unique_ptr<Bench> bench;
+        std::map<std::string, rt_u32> defines;
+    };
+    std::vector<Tried> left;
+    for (const Case& one : cases) {
+        auto bench = std::make_unique<Bench>(few(input), kMixedScene, one.as);
+        auto defines = bench->scene(step).accel()->defines;
+        left.push_back({one.what, std::move(bench), std::move(defines)});
+    }
     size_t traced = 0;
-    for (; traced < cases.size() && processor_s() - begin < most; ++traced) {
-        const Case& one = cases[traced];
-        Bench bench(in_turn(input, traced), kMixedScene, one.as);
+    std::map<std::map<std::string, rt_u32>, size_t> programs;  // the turn of each
+    for (; !left.empty() && processor_s() - begin < most; ++traced) {
+        auto next = std::find_if(left.begin(), left.end(),
+                                 [&](const Tried& t) { return t.defines == usual || programs.count(t.defines) > 0; });
+        if (next == left.end()) next = left.begin();
+        Bench& bench = *next->bench;
+        bench.take_turn(next->defines == usual ? traced : programs.emplace(next->defines, programs.size()).first->second, step);
         Outcome outcome =
-            trace_sets(bench, {"hits.random", "hits.instances", "hits.primitives", "hits.nested"}, "with " + one.what, step);
+            trace_sets(bench, {"hits.random", "hits.instances", "hits.primitives", "hits.nested"}, "with " + next->what, step);
         if (outcome.kind == Outcome::Kind::failed) return outcome;
+        left.erase(next);
     }
     const std::string all = std::to_string(cases.size());
-    return Outcome::passed("rays are right in " + (traced == cases.size()
+    return Outcome::passed("rays are right in " + (left.empty()
                                                        ? "all " + all + " cases"
                                                        : std::to_string(traced) + " of " + all + " cases: cut after " +
                                                              std::to_string(static_cast<int>(most)) + " s of processor time"));
@@ -54,7 +69,7 @@ Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, con
 Outcome parameters(const BenchInput& input, const Step& step) {
     std::vector<Case> cases;
     for (const ParameterValues& params : parameter_tries(input.plugin, input.options.seed))
-        cases.push_back({choice_text(input.plugin, params), {params, 0, {}}});
+        cases.push_back({choice_text(input.plugin, params), {params, 0, {}, Moves::none}});
     if (cases.empty()) return Outcome::skipped("the plugin has no parameters");
     // All at their ends and in between first: they say most if time is short.
     std::rotate(cases.begin(), cases.end() - std::min<long>(4, static_cast<long>(cases.size())), cases.end());
@@ -65,15 +80,27 @@ Outcome packed(const BenchInput& input, const Step& step) {
     if (input.layout || !input.plugin.accel->pack) return Outcome::skipped("the plugin has no `pack`");
     std::vector<Case> cases;
     for (const rt_u32 leaf : {1u, 3u, 50u})
-        cases.push_back({"a packed tree of leaves of " + std::to_string(leaf), {{}, leaf, {}}});
+        cases.push_back({"a packed tree of leaves of " + std::to_string(leaf), {{}, leaf, {}, Moves::none}});
     return trace_cases(input, cases, step);
 }
 
-Outcome refitted(Bench& mixed, Bench& regular, const Step& step) {
-    Outcome outcome =
-        trace_sets(mixed, {"hits.random", "hits.instances", "hits.primitives", "hits.limits"}, "after a refit", step);
-    if (outcome.kind == Outcome::Kind::failed) return outcome;
-    return trace_sets(regular, {"hits.edges", "hits.uneven"}, "after a refit", step);
+Outcome refitted(const BenchInput& input, const Step& step) {
+    struct Row {
+        const TestScene& scene;
+        Moves moves;
+        std::vector<const char*> sets;
+    };
+    Outcome outcome;
+    for (const Row& row :
+         {Row{kMixedScene, Moves::refitted, {"hits.random", "hits.instances", "hits.primitives", "hits.limits"}},
+          Row{kMixedScene, Moves::rebuilt, {"hits.random", "hits.instances"}},
+          Row{kRegularScene, Moves::refitted, {"hits.edges", "hits.uneven"}}}) {
+        Bench bench(input, row.scene, {{}, 0, {}, row.moves});
+        const bool again = row.moves == Moves::rebuilt;
+        outcome = trace_sets(bench, row.sets, again ? "after a refit and a new build" : "after a refit", step);
+        if (outcome.kind == Outcome::Kind::failed) break;
+    }
+    return outcome;
 }
 
 Scene nothing(uint64_t) {
@@ -105,7 +132,7 @@ std::vector<RaySet> rays_at_soup(const BuildScene& scene, size_t count, uint64_t
     return {set};
 }
 const TestScene kLargeScene{"70000 triangles", [](uint64_t seed) { return soup_scene(kLarge, seed); }, rays_at_soup},
-    kHugeScene{"more than 2^20 triangles", [](uint64_t seed) { return soup_scene(kHuge, seed); }, rays_at_soup};
+    kHugeScene{"more than 2^20 triangles", [](uint64_t seed) { return soup_scene(kHuge, seed); }, rays_at_soup, nullptr, 120};
 
 }  // namespace
 
@@ -117,20 +144,21 @@ std::vector<Check> built_checks(const BenchInput& input) {
     };
     BenchInput debug = input;  // other programs are those of the other checks
     debug.options.quick = true;
-    const auto mixed = std::make_shared<Bench>(debug, kMixedScene, BuiltAs(), true),
-               regular = std::make_shared<Bench>(debug, kRegularScene, BuiltAs(), true);
     const bool refits = refit_of(input.layout ? *input.layout : input.plugin).refit != nullptr;
     checks.push_back({"hits.refit", "rays in scenes that moved after the build", [=](const Step& step) {
-                          return refits ? refitted(*mixed, *regular, step)
-                                        : Outcome::skipped("the plugin does not offer `refit`");
+                          return refits ? refitted(debug, step) : Outcome::skipped("the plugin does not offer `refit`");
                       }});
-    const auto add = [&](const TestScene& test, size_t turn) {
-        const auto bench = std::make_shared<Bench>(in_turn(input, turn), test);
+    // Their programs are their own, because they have no instances: quick checks compile those of one lane.
+    const auto add = [&](const TestScene& test) {
+        const auto bench = std::make_shared<Bench>(few(input), test);
         const RaySet set = test.rays(BuildScene(), 0, 0).front();
-        checks.push_back({set.name, set.tried, [=](const Step& step) { return trace_set(*bench, set.name, step); }});
+        checks.push_back({set.name, set.tried, [=](const Step& step) {
+                              if (input.options.quick) bench->take_turn(0, step);
+                              return trace_set(*bench, set.name, step);
+                          }});
     };
-    add(kEmptyScene, 0);
-    add(input.options.large ? kHugeScene : kLargeScene, input.options.lanes.size() - 1);
+    add(kEmptyScene);
+    add(input.options.large ? kHugeScene : kLargeScene);
     return checks;
 }
 

@@ -56,20 +56,21 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     const ParameterValues params = as.params.empty() ? default_parameters(plugin) : as.params;
     const std::unique_ptr<const BuildCase> rest_case(rest ? new BuildCase("mixed", *rest) : nullptr);
     const BuildCase& built = rest_case ? *rest_case : case_;
-    if (as.packed_leaf > 0)
-        run_ = built.pack(plugin, Halves(built.scene(), as.packed_leaf).topology());
-    else
-        run_ = built.run(plugin, params, Schedule::program);
-    if (layout && run_.why.empty() && !run_.cancelled) {
+    const auto run_on = [&](const BuildCase& from) {
+        run_ = as.packed_leaf > 0 ? from.pack(plugin, Halves(from.scene(), as.packed_leaf).topology())
+                                  : from.run(plugin, params, Schedule::program);
+        if (!layout || !run_.why.empty() || run_.cancelled) return;
         const BuildRun tree = std::move(run_);
-        run_ = built.pack(*layout, topology_of(tree.result));
-    }
+        run_ = from.pack(*layout, topology_of(tree.result));
+    };
+    run_on(built);
     if (rest && run_.why.empty() && !run_.cancelled) {
         const rt_plugin& refits = layout ? *layout : plugin;
         RefitRun moved = run_refit(refits, layout ? default_parameters(refits) : params, run_.result, case_.scene(),
                                    std::vector<uint8_t>(case_.scene().groups.size(), 1), Schedule::program);
         if (!moved.why.empty()) throw Error(Exit::failed, moved.why + " (see builds.refit)");
         run_.result = std::move(moved.result);
+        if (as.moves == Moves::rebuilt) run_on(case_);
     }
     if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
     if (run_.why.empty()) {

@@ -28,18 +28,22 @@ struct Traced {
 // not exist. On a CPU an access further behind ends the process.
 constexpr rt_u32 kTrapPrim = 0x40000000u;  // an instance adds the first number of its mesh, of at most 28 bits
 
+// How the structure is built for a scene that moves: at rest and then refitted, or refitted and then built again.
+enum class Moves { none, refitted, rebuilt };
+
 // How the structure is built.
 struct BuiltAs {
     ParameterValues params;  // empty: the defaults
     rt_u32 packed_leaf = 0;  // not 0: the plugin packs halves of the scene, in leaves of that many (pack_checks.hpp)
     std::map<std::string, rt_u32> defines;  // more ones for its kernels
+    Moves moves = Moves::none;
 };
 
 class CheckedScene {
  public:
     // Builds the structure. layout: what packs and traces it if the plugin builds a topology, otherwise nullptr. Throws Error
-    // with the reason if the build fails. rest: the same scene in another pose, if the structure is built in that one and
-    // refitted to `scene`; otherwise nullptr.
+    // with the reason if the build fails. rest: the same scene in another pose, if the structure is built in that one first;
+    // otherwise nullptr.
     CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
                  const Scene* rest = nullptr, const BuiltAs& as = {});
     const BuildScene& build_scene() const { return case_.scene(); }

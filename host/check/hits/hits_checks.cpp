@@ -34,30 +34,24 @@ Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
     const BruteForce force(bench.scene(step).build_scene());
     std::vector<Truth> truths;  // strange rays hit nothing
     for (size_t i = 0; i < set.rays.size(); ++i) truths.push_back(is_strange(i) ? Truth() : force.trace(set.rays[i]));
-    for (const bool any_hit : {false, true})
-        for (const Variant& variant : bench.variants(step)) {
-            CheckedScene& scene = bench.compiled(variant, step);
-            const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
-            step("tracing rays that are no numbers, " + what, kTraceLimit_s);
-            Traced traced = scene.trace(variant, set.rays, any_hit);
-            for (size_t i = 0; i < set.rays.size(); ++i) {
-                if (!is_strange(i)) continue;
-                rt_hit& hit = traced.hits[i];
-                if (std::isnan(hit.t) || hit.prim < -1 || hit.prim >= static_cast<rt_i32>(kTrapPrim))
-                    return Outcome::failed(what + ": the ray " + ray_text(set.rays[i]) + " has an answer that is none: t " +
-                                           std::to_string(hit.t) + ", prim " + std::to_string(hit.prim));
-                hit.t = INFINITY, hit.prim = -1;  // no answer of a strange ray is wrong: it counts as a miss
-            }
-            const Faults faults = Faults::of(set.rays, truths, traced.hits, any_hit);
-            if (faults.wrong.empty()) continue;
-            Outcome outcome = Outcome::failed(what +
-                                              ", beside rays that are no numbers (`--only hits.random` tells whether it "
-                                              "is right without them): " +
-                                              faults.text(set.rays, truths, traced.hits, variant.lanes));
-            outcome.repeat = write_report(bench, name, faults, set.rays, traced.hits, what);
-            return outcome;
+    return trace_passes(bench, set.rays, step, [&](const Pass& pass) {
+        std::vector<rt_hit> hits = pass.traced.hits;
+        for (size_t i = 0; i < hits.size(); ++i) {
+            if (!is_strange(i)) continue;
+            rt_hit& hit = hits[i];
+            if (std::isnan(hit.t) || hit.prim < -1 || hit.prim >= static_cast<rt_i32>(kTrapPrim))
+                return Outcome::failed("the ray " + ray_text(set.rays[i]) + " has an answer that is none: t " +
+                                       std::to_string(hit.t) + ", prim " + std::to_string(hit.prim));
+            hit.t = INFINITY, hit.prim = -1;  // no answer of a strange ray is wrong: it counts as a miss
         }
-    return Outcome::passed("all have an answer, and sound rays beside them are right");
+        const Faults faults = Faults::of(set.rays, truths, hits, pass.any_hit);
+        if (faults.wrong.empty()) return Outcome::passed("");
+        Outcome outcome =
+            Outcome::failed("beside rays that are no numbers (`--only hits.random` tells whether it is right without them): " +
+                            faults.text(set.rays, truths, hits, pass.variant.lanes));
+        outcome.repeat = write_report(bench, name, faults, set.rays, hits, pass.what);
+        return outcome;
+    });
 }
 
 Outcome accesses(Bench& bench, const Step& step) {
@@ -66,7 +60,7 @@ Outcome accesses(Bench& bench, const Step& step) {
     for (const RaySet& set : bench.sets(step))
         for (const bool any_hit : {false, true}) {
             CheckedScene& scene = bench.compiled(variant, step);
-            step(std::string("tracing ") + set.name + " on a simulated device", kCompileLimit_s);
+            step(std::string("tracing ") + set.name + " on a simulated device", compile_limit_s(bench.options()));
             scene.trace(variant, set.rays, any_hit);
             rays += set.rays.size();
         }
@@ -115,7 +109,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
             else
                 checks.push_back({name, set.tried, [=](const Step& step) { return trace_set(*of, name, step); }});
         }
-    checks.push_back(planes_check(plugin, layout, open, options));
+    checks.push_back(planes_check(input));
     for (Check& check : built_checks(input)) checks.push_back(std::move(check));
     checks.push_back(device_hits_check(plugin, layout, open));
     return checks;

@@ -5,15 +5,15 @@
 #include <random>
 
 #include "base/numbers.hpp"
-#include "check/hits/checked_scene.hpp"
-#include "check/scenes.hpp"
+#include "check/scene_maker.hpp"
 #include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {
 
-constexpr double kPlanesCompile_s = 120, kPlanesTrace_s = 10;
-constexpr float kReach = 1e6f;  // t_max: beyond all faces, and before what only makes the programs those of the mixed scene
+constexpr float kReach = 1e6f;  // t_max: beyond all faces
+
+const RaySet kPlaneRays{"hits.planes", "rays exactly in planes of boxes, with directions that have zeros of either sign", {}};
 
 // A square of squares across an axis. Its corners are multiples of `step` from `corner`, so it is exact in floats.
 struct Face {
@@ -49,76 +49,61 @@ const Lattice kLattices[] = {
     {{1, -3.5f, -1000}, 1, 2, "xyz", {1, 1, 1}, true},
 };
 
-class PlaneScene {
- public:
-    PlaneScene() {
-        scene.materials.push_back({"default", default_material()});
-        const Lattice* placed = nullptr;
-        for (const Lattice& lattice : kLattices) {
-            if (!lattice.is_instance || !placed) add_squares(lattice);
-            if (lattice.is_instance) placed = &lattice;
-            place(lattice);
-            add_faces(lattice);
-        }
-        // Out of reach: a sphere and a polygon, so that kernels are compiled for the same kinds as for the mixed scene.
-        scene.spheres.push_back({{3e6f, 3e6f, 3e6f}, 1, 0});
-        scene.polygons.push_back({0, 3, 0});
-        for (const float c : {3e6f, 3e6f, -3e6f, 3e6f, 3.1e6f, -3e6f, 3.1e6f, 3e6f, -3e6f}) scene.polygon_corners.push_back(c);
+void add_squares(Maker& make, const Lattice& lattice) {
+    for (const char* plane = lattice.planes; *plane; ++plane) {
+        const int a = *plane - 'x', u = (a + 1) % 3, v = (a + 2) % 3, layers = lattice.planes[1] ? lattice.count + 1 : 1;
+        const auto at = [&](int layer, int i, int j) {
+            Point p;
+            p[a] = float(layer), p[u] = float(i), p[v] = float(j);
+            for (int k = 0; k < 3; ++k) p[k] = (lattice.is_instance ? 0 : lattice.corner[k]) + lattice.step * p[k];
+            return p;
+        };
+        for (int layer = 0; layer < layers; ++layer)
+            for (int i = 0; i < lattice.count; ++i)
+                for (int j = 0; j < lattice.count; ++j)
+                    make.quad(at(layer, i, j), at(layer, i + 1, j), at(layer, i + 1, j + 1), at(layer, i, j + 1));
     }
-    Scene scene;
-    std::vector<Face> faces;
+}
 
- private:
-    static double edge(const Lattice& lattice, int axis, int i) {
-        return double(lattice.corner[axis]) + double(lattice.mirror[axis]) * lattice.step * i;
-    }
-    void add_squares(const Lattice& lattice) {
-        Mesh mesh;
-        mesh.first_vertex = scene.vertex_count();
-        mesh.first_triangle = scene.triangle_count();
-        for (const char* plane = lattice.planes; *plane; ++plane) {
-            const int a = *plane - 'x', u = (a + 1) % 3, v = (a + 2) % 3, layers = lattice.planes[1] ? lattice.count + 1 : 1;
-            for (int layer = 0; layer < layers; ++layer)
-                for (int i = 0; i < lattice.count; ++i)
-                    for (int j = 0; j < lattice.count; ++j)
-                        for (const int corner : {0, 1, 3, 0, 3, 2}) {
-                            float p[3];
-                            p[a] = float(layer), p[u] = float(i + (corner & 1)), p[v] = float(j + (corner >> 1));
-                            for (int k = 0; k < 3; ++k)
-                                p[k] = (lattice.is_instance ? 0 : lattice.corner[k]) + lattice.step * p[k];
-                            scene.triangles.push_back(scene.vertex_count());
-                            scene.positions.append(p, p + 3);
-                        }
+Scene plane_scene(uint64_t) {
+    Maker make;
+    const rt_u32 none = RT_NONE;
+    rt_u32 placed_mesh = none;
+    for (const Lattice& lattice : kLattices) {
+        if (!lattice.is_instance || placed_mesh == none) add_squares(make, lattice);
+        if (!lattice.is_instance) {
+            make.place(make.mesh());
+            continue;
         }
-        mesh.vertex_count = scene.vertex_count() - mesh.first_vertex;
-        mesh.triangle_count = mesh.polygon_count = scene.triangle_count() - mesh.first_triangle;
-        while (scene.triangle_materials.size() < scene.triangle_count()) scene.triangle_materials.push_back(0);
-        scene.meshes.push_back(mesh);
+        if (placed_mesh == none) placed_mesh = make.mesh();
+        Affine world = kIdentity;
+        for (int k = 0; k < 3; ++k) world[5 * k] = lattice.mirror[k], world[4 * k + 3] = lattice.corner[k];
+        make.place(placed_mesh, world);
     }
-    void place(const Lattice& lattice) {
-        Instance instance;
-        instance.mesh = static_cast<rt_u32>(scene.meshes.size() - 1);
-        for (int k = 0; lattice.is_instance && k < 3; ++k) {
-            instance.world_from_object[5 * k] = lattice.mirror[k];
-            instance.world_from_object[4 * k + 3] = lattice.corner[k];
-        }
-        scene.instances.push_back(instance);
-    }
-    void add_faces(const Lattice& lattice) {
+    add_common_part(make, {33.3f, 27.7f, 31.1f});
+    return std::move(make.scene);
+}
+
+std::vector<Face> plane_faces() {
+    std::vector<Face> faces;
+    for (const Lattice& lattice : kLattices) {
+        const auto edge = [&](int axis, int i) {
+            return double(lattice.corner[axis]) + double(lattice.mirror[axis]) * lattice.step * i;
+        };
         for (const char* plane = lattice.planes; *plane; ++plane) {
             const int a = *plane - 'x', layers = lattice.planes[1] ? lattice.count + 1 : 1;
             for (int layer = 0; layer < layers; ++layer) {
                 Face face{a, {}, {}};
                 for (int k = 0; k < 3; ++k) {
-                    const double begin = edge(lattice, k, k == a ? layer : 0),
-                                 end = edge(lattice, k, k == a ? layer : lattice.count);
+                    const double begin = edge(k, k == a ? layer : 0), end = edge(k, k == a ? layer : lattice.count);
                     face.lo[k] = std::min(begin, end), face.hi[k] = std::max(begin, end);
                 }
                 faces.push_back(face);
             }
         }
     }
-};
+    return faces;
+}
 
 // In each lattice, rays along each axis and within each plane of two, in either direction, with zeros of either sign. Sixteen
 // neighbours are alike, so they make coherent packets; at the end rays of all kinds are side by side.
@@ -189,52 +174,38 @@ bool is_right(const PlaneTruth& truth, const rt_hit& hit, bool any_hit) {
            std::any_of(truth.maybe.begin(), truth.maybe.end(), [&](double t) { return t <= truth.t && is_at(t); });
 }
 
-Outcome trace_planes(const rt_plugin& plugin, const rt_plugin* layout, const std::function<std::shared_ptr<Device>()>& open,
-                     HitsOptions options, const Step& step) {
-    step("opening the device", kPlanesCompile_s);
-    const std::shared_ptr<Device> device = open();
-    fit_lanes(options, device->info());
-    // Quick checks compile few programs: this scene's trees are less deep than the mixed one's, so its programs may differ.
-    if (options.quick && !options.lanes_are_named && options.lanes.size() > 2)
-        options.lanes = {options.lanes.front(), options.lanes.back()};
-    step("building a scene of floors and lattices", kPlanesCompile_s);
-    PlaneScene planes;
-    CheckedScene scene(plugin, layout, std::move(planes.scene), device);
-    const std::vector<rt_ray> rays = plane_rays();
+Outcome trace_planes(Bench& bench, const Step& step) {
+    const std::vector<rt_ray>& rays = bench.set(kPlaneRays.name, step).rays;
+    const std::vector<Face> faces = plane_faces();
     std::vector<PlaneTruth> truths;
-    for (const rt_ray& ray : rays) truths.push_back(truth_of(planes.faces, ray));
-    for (const int lanes : options.lanes)
-        for (const bool any_hit : {false, true}) {
-            const Variant variant{lanes, true, false};  // programs that other checks have too
-            const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
-            step("compiling for " + variant.text(), kPlanesCompile_s);
-            scene.compile(variant);
-            step("tracing rays along planes, " + what, kPlanesTrace_s);
-            const std::vector<rt_hit> hits = scene.trace(variant, rays, any_hit).hits;
-            size_t wrong = 0, first = 0;
-            for (size_t i = rays.size(); i-- > 0;)
-                if (!is_right(truths[i], hits[i], any_hit)) ++wrong, first = i;
-            if (wrong == 0) continue;
-            const std::string found = any_hit                ? (hits[first].t == 0 ? "occluded" : "free")
-                                      : hits[first].prim < 0 ? "nothing"
-                                                             : "t " + exact_text(hits[first].t);
-            return Outcome::failed(
-                what + ": " + std::to_string(wrong) + " of " + std::to_string(rays.size()) +
-                " rays with a zero in their direction, which lie in planes of boxes, are wrong: the box test "
-                "loses them (the helpers of cl/lanes/rays.h do not). The first: ray " +
-                ray_text(rays[first]) + " -- found " + found + ", expected " +
-                (std::isfinite(truths[first].t) ? "t " + exact_text(float(truths[first].t)) : "nothing"));
-        }
-    return Outcome::passed(std::to_string(rays.size()) + " rays, nearest and any, are right with " +
-                           std::to_string(options.lanes.size()) + " programs");
+    for (const rt_ray& ray : rays) truths.push_back(truth_of(faces, ray));
+    return trace_passes(bench, rays, step, [&](const Pass& pass) {
+        const std::vector<rt_hit>& hits = pass.traced.hits;
+        size_t wrong = 0, first = 0;
+        for (size_t i = rays.size(); i-- > 0;)
+            if (!is_right(truths[i], hits[i], pass.any_hit)) ++wrong, first = i;
+        if (wrong == 0) return Outcome::passed("");
+        const std::string found = pass.any_hit           ? (hits[first].t == 0 ? "occluded" : "free")
+                                  : hits[first].prim < 0 ? "nothing"
+                                                         : "t " + exact_text(hits[first].t);
+        return Outcome::failed(std::to_string(wrong) + " of " + std::to_string(rays.size()) +
+                               " rays with a zero in their direction, which lie in planes of boxes, are wrong: the box test "
+                               "loses them (the helpers of cl/lanes/rays.h do not). The first: ray " +
+                               ray_text(rays[first]) + " -- found " + found + ", expected " +
+                               (std::isfinite(truths[first].t) ? "t " + exact_text(float(truths[first].t)) : "nothing"));
+    });
 }
 
 }  // namespace
 
-Check planes_check(const rt_plugin& plugin, const rt_plugin* layout, const std::function<std::shared_ptr<Device>()>& open,
-                   const HitsOptions& options) {
-    return {"hits.planes", "rays exactly in planes of boxes, with directions that have zeros of either sign",
-            [=, &plugin](const Step& step) { return trace_planes(plugin, layout, open, options, step); }};
+Check planes_check(const BenchInput& input) {
+    static const TestScene scene{"a scene of floors and lattices", plane_scene, [](const BuildScene&, size_t, uint64_t) {
+                                     RaySet set = kPlaneRays;
+                                     set.rays = plane_rays();
+                                     return std::vector<RaySet>{set};
+                                 }};
+    const auto bench = std::make_shared<Bench>(input, scene);
+    return {kPlaneRays.name, kPlaneRays.tried, [=](const Step& step) { return trace_planes(*bench, step); }};
 }
 
 }  // namespace clarity::check

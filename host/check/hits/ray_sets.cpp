@@ -134,8 +134,8 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t see
     });
     add("hits.nested", "rays through the common centre of many shells, which enter every box: the stack is as full as it gets",
         [&](std::vector<rt_ray>& rays) {
-            const Region& at = region("nested");
             for (size_t i = 0; i < count / 2; ++i) {
+                const Region& at = region(i % 2 ? "nested, instanced" : "nested");
                 const Point d = make.direction();
                 Point from = at.center, to = at.center;
                 for (int k = 0; k < 3; ++k) from[k] -= (i % 3 == 0 ? 0.0f : 2.0f) * at.radius * d[k];

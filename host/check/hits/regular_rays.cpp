@@ -26,7 +26,10 @@ struct Aim {
     float size;  // of a square
 
     const rt_packed_prim& triangle(RayMaker& make) const {
-        return scene.triangles[RT_REF_INDEX(scene.prims[group.first + make.below(group.count)].ref)];
+        rt_u32 ref = 0;
+        do ref = scene.prims[group.first + make.below(group.count)].ref;
+        while (RT_REF_KIND(ref) != RT_REF_TRIANGLE);
+        return scene.triangles[RT_REF_INDEX(ref)];
     }
     // A corner, or a point of an edge; exact, some ulps beside it, or by 1e-7 to 1e-3 of a square.
     Point edge(RayMaker& make, int i) const {

@@ -30,7 +30,8 @@ std::string stack_in(const rt_plugin& tracer) {
 // before the nearest hit, which find nothing.
 struct Effort {
     uint64_t tests[2] = {0, 0};  // nearest, any
-    uint64_t asked = 0;          // packets that asked in vain
+    uint32_t most[2] = {0, 0};   // of one ray
+    uint64_t asked = 0;
 };
 Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step& step) {
     const Variant variant{1, true, false};
@@ -43,9 +44,12 @@ Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step
             std::vector<rt_ray> rays = set.rays;
             for (size_t i = 0; any_hit && i < rays.size(); ++i)
                 if (!truths[i].contacts.empty()) rays[i].t_max = static_cast<float>(truths[i].contacts.front().t * 0.99);
-            step(std::string("counting the primitives that rays of ") + name + " test", kCompileLimit_s);
+            step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(bench.options()));
             const Traced traced = scene.trace(variant, rays, any_hit, true);
-            for (const rt_hit& hit : traced.hits) effort.tests[any_hit] += hit.leaf_tests;
+            for (const rt_hit& hit : traced.hits) {
+                effort.tests[any_hit] += hit.leaf_tests;
+                effort.most[any_hit] = std::max<uint32_t>(effort.most[any_hit], hit.leaf_tests);
+            }
             effort.asked += traced.overflows;
         }
     }
@@ -86,30 +90,50 @@ Outcome stack_check(Bench& mixed, Bench& regular, const Step& step) {
 }
 
 Outcome pushes_check(const BenchInput& input, const Step& step) {
-    // Share of the usual tests that may be left: wide nodes test children that are leaves without a push. In cwbvh it is 0.51
-    // of the mixed scene, whose trees are small.
     struct Row {
         const TestScene& scene;
         std::vector<const char*> sets;
+        // Share of the usual tests that may be left: wide nodes test children that are leaves without a push. In cwbvh it is
+        // 0.51 of the mixed scene, whose trees are small.
         double most;
         const char* where;
     };
-    const BuiltAs refusing{{}, 0, {{"RT_STACK_REFUSED", 1}}};
+    // After each push that was granted, one more path down the tree may be walked. Without pushes the longest path of any ray
+    // tests kLeast primitives or more; twice as many are allowed, because the first path of a ray is not its longest.
+    constexpr rt_u32 kGranted = 12, kLeast = 4;
+    const Row rows[] = {{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
+                        {kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"}};
+    const auto effort = [&](const Row& row, const std::map<std::string, rt_u32>& defines) {
+        Bench bench(few_rays(input), row.scene, {{}, 0, defines, Moves::none});
+        return effort_of(bench, row.sets, step);
+    };
+    const auto fault = [](const char* when, int any, const Row& row, const std::string& tested) {
+        return Outcome::failed(std::string("when RT_STACK_OK refuses ") + when + ", " +
+                               (any ? "any-hit queries " : "nearest hits ") + row.where + " still test " + tested +
+                               ": some pushes go on without it. Ask before each push");
+    };
     uint64_t asked = 0, tested = 0, usually = 0;
-    for (const Row& row : {Row{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
-                           Row{kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"}}) {
-        Bench usual(few_rays(input), row.scene), refused(few_rays(input), row.scene, refusing);
-        const Effort all = effort_of(usual, row.sets, step), left = effort_of(refused, row.sets, step);
+    uint32_t path = kLeast;
+    for (const Row& row : rows) {
+        const Effort all = effort(row, {}), left = effort(row, {{"RT_STACK_GRANTED", 0}});
         asked += left.asked;
         if (left.asked == 0) continue;
         for (const int any : {0, 1}) {
             tested += left.tests[any], usually += all.tests[any];
-            if (double(left.tests[any]) <= row.most * double(all.tests[any]) + 100) continue;
-            return Outcome::failed(std::string("when RT_STACK_OK refuses every push, ") +
-                                   (any ? "any-hit queries " : "nearest hits ") + row.where + " still test " +
-                                   std::to_string(left.tests[any]) + " primitives of " + std::to_string(all.tests[any]) +
-                                   ": some pushes go on without it. Ask before each push");
+            path = std::max(path, left.most[any]);
+            if (double(left.tests[any]) > row.most * double(all.tests[any]) + 100)
+                return fault("every push", any, row,
+                             std::to_string(left.tests[any]) + " primitives of " + std::to_string(all.tests[any]));
         }
+    }
+    for (const Row& row : rows) {
+        if (asked == 0) break;
+        const Effort some = effort(row, {{"RT_STACK_GRANTED", kGranted}});
+        for (const int any : {0, 1})
+            if (some.most[any] > 2 * (kGranted + 1) * path)
+                return fault("all but the first 12 pushes of a ray", any, row,
+                             "up to " + std::to_string(some.most[any]) + " primitives for a ray, and one path down the tree " +
+                                 std::to_string(path) + " at most");
     }
     if (asked > 0)
         return Outcome::passed("every push asks RT_STACK_OK: when it refuses, " + std::to_string(tested) +
@@ -134,7 +158,7 @@ Outcome counts_check(const BenchInput& input, const Step& step) {
     for (const Row& row : {Row{mixed, "hits.random"}, Row{mixed, "hits.primitives"}, Row{regular, "hits.uneven"}}) {
         const RaySet& set = row.bench.set(row.set, step);
         CheckedScene& scene = row.bench.scene(step);
-        step(std::string("counting the primitives that rays of ") + row.set + " test", kCompileLimit_s);
+        step(std::string("counting the primitives that rays of ") + row.set + " test", compile_limit_s(input.options));
         const Traced traced = scene.trace(variant, set.rays, false, true);
         for (size_t i = 0; i < set.rays.size(); ++i) {
             if (traced.hits[i].prim < 0) continue;

@@ -48,7 +48,7 @@ class ShapeBench {
     std::vector<TouchedPart> parts_;
 };
 
-inline constexpr double kShapeCompile_s = 120, kShapeTrace_s = 10;  // limits of steps
+inline constexpr double kShapeCompile_s = 40, kShapeTrace_s = 10;  // processor time of steps; programs take 2 to 5 s
 
 // Points of touches, for ShapeProbe::surfaces().
 std::vector<ProbePoint> points_of(const std::vector<Touch>& touches);

@@ -11,6 +11,7 @@
 #include "base/log.hpp"
 #include "base/plural.hpp"
 #include "render/film/checkpoint.hpp"
+#include "render/kernels/program_cache.hpp"
 #include "render/settings/aov.hpp"
 
 namespace clarity {
@@ -45,7 +46,8 @@ unsigned PictureCheckpoint::resume(MultiFrameRenderer& frames, const std::shared
                         ": is a checkpoint of another picture: the scene, its time, the view, the settings, the kernels "
                         "or the program have changed; leave --resume out to begin the picture anew");
     const FloatImage& sums = *checkpoint.sums;
-    if (int(sums.width) != settings.width || int(sums.height) != settings.height || checkpoint.samples == 0 ||
+    if (int(sums.width) != settings.width || int(sums.height / checkpoint.planes) != settings.height ||
+        checkpoint.planes != film_planes(prepared->first()->program->row) || checkpoint.samples == 0 ||
         checkpoint.samples >= of_)
         throw Error(Exit::failed, resumed_ + ": holds " + plural(checkpoint.samples, "sample") + " of " +
                                       std::to_string(sums.width) + "x" + std::to_string(sums.height) +
@@ -75,6 +77,7 @@ void PictureCheckpoint::save(MultiFrameRenderer& frames, unsigned samples) {
     checkpoint.samples = samples;
     checkpoint.of = of_;
     checkpoint.sums = std::make_shared<const FloatImage>(frames.read_sums());
+    checkpoint.planes = frames.planes();
     if (!ranks_ || ranks_->rank() == 0) save_checkpoint(path_, checkpoint);
     saved_ = samples;
     last_ = Clock::now();

@@ -15,10 +15,12 @@ namespace {
 void add_settings_to(Digest& digest, const Settings& settings, bool display) {
     const Aov& aov = find_aov(settings.aov);
     const bool cost = aov.about == Aov::About::cost;
-    if (!aov.tracer) digest.add(picture_of_tracer(settings.tracer));
+    const std::string shows = picture_of_tracer(aov.tracer ? aov.tracer : settings.tracer);
+    if (!aov.tracer) digest.add(shows);
     for (const Setting& row : settings_table()) {
         if (!row.changes_picture && !cost) continue;
         if (row.effect == Effect::display && !display) continue;
+        if (!row.picture.empty() && row.picture != shows) continue;
         digest.add(row.key);
         digest.add(row.get(settings));
     }

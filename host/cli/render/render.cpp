@@ -36,6 +36,7 @@
 #include "plugin/library_watch.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/view/size_note.hpp"
 
 namespace clarity {
 namespace {
@@ -60,6 +61,7 @@ class RenderJob {
 
     int run() {
         check_render_options(options_, settings_, range_);
+        if (!options_.reference.empty()) stats_.reference = std::make_shared<ReferenceRun>(options_.reference, settings_);
         if (is_first()) check_scene(plugins_, options_.scene);
         if (range_.count() == 0) {
             log(LogLevel::info, "--frames-of " + options_.frames_of + ": there are fewer frames, so that this share is empty");
@@ -94,6 +96,7 @@ class RenderJob {
                 if (todo != Todo::render) continue;
                 const auto begin = Clock::now();
                 if (moving_ || !scene_.placed()) scene_.place(shown);
+                if (rendered == 0) note_sizes();
                 if (moving_ || rendered == 0) prepare(progress);
                 if (!frames) frames.emplace(devices_, mpi_);
                 if (!render(*frames, {number, digest, begin}, progress)) return Exit::interrupted;
@@ -283,6 +286,12 @@ class RenderJob {
         log(LogLevel::debug, line);
     }
 
+    // Once for each scene.
+    void note_sizes() const {
+        const std::string note = size_note(scene_.view().lights, settings_.tracer);
+        if (!note.empty() && is_first()) log(LogLevel::warning, note);
+    }
+
     struct Frame {
         int number;
         std::string digest;
@@ -308,6 +317,7 @@ class RenderJob {
             traced = trace_pass(frames, checkpoint, pass == 0, !(warm_up && pass == 0), double(pass) / passes, 1.0 / passes,
                                 progress);
         const bool whole = traced.samples == all;
+        if (stats_.reference && traced.exact && traced.samples > 0) stats_.reference->offer(frames, traced.samples, true);
         bar_.clear();
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
         if (!whole) take_time_to_stop();
@@ -352,9 +362,14 @@ class RenderJob {
                                      double from, double share, Progress& progress) {
         PictureTracer::Pass pass;
         pass.counts = counts, pass.timed = timed, pass.from = from, pass.share = share;
-        if (checkpoint.saves()) pass.between = [&](unsigned samples) { checkpoint.offer(frames, samples); };
+        if (checkpoint.saves() || stats_.reference)
+            pass.between = [&](unsigned samples) {
+                if (checkpoint.saves()) checkpoint.offer(frames, samples);
+                if (stats_.reference) stats_.reference->offer(frames, samples, false);
+            };
         for (;;) {
             pass.first = resumed_ = checkpoint.resume(frames, prepared_, settings_);
+            if (stats_.reference) stats_.reference->begin();
             try {
                 return PictureTracer(frames, settings_, stats_, mpi_).trace({prepared_, scene_, blur_.get()}, pass, progress);
             } catch (const SamplesLost&) {  // of a device that takes no further part: the other devices begin again

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/elapsed.hpp"
@@ -90,6 +91,31 @@ void gather_frame_times(RenderStats& stats, Ranks& ranks) {
     }
 }
 
+namespace {
+
+Json figure(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json reference_json(const ReferenceRun& run) {
+    Json json = {{"file", run.file()}, {"slope", figure(run.slope())}, {"points", Json::array()}};
+    for (const ReferenceRun::Point& point : run.points()) {
+        const PictureErrors& e = point.errors;
+        json["points"].push_back({{"samples", point.samples},
+                                  {"rmse", figure(e.rmse)},
+                                  {"relmse", figure(e.relmse)},
+                                  {"trimmed_rmse", figure(e.trimmed_rmse)},
+                                  {"mean", figure(e.mean)},
+                                  {"mean_ratio", figure(e.mean_ratio)},
+                                  {"flip", figure(e.flip)},
+                                  {"largest", figure(e.largest)},
+                                  {"not_finite", e.not_finite}});
+    }
+    return json;
+}
+
+}  // namespace
+
 std::string stats_json(const RenderStats& stats) {
     const Prepared& prepared = *stats.prepared;
     const AccelData& accel = *prepared.accel;
@@ -139,6 +165,7 @@ std::string stats_json(const RenderStats& stats) {
     json["accel_bytes"] = accel.bytes;
     json["accel_stats"] = Json::object();
     for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = number_json(value);
+    if (stats.reference) json["reference"] = reference_json(*stats.reference);
     json["triangles"] = prepared.scene->placed_triangle_count();
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -4,6 +4,7 @@
 
 #include "import/sink/scene_builder.hpp"
 #include "scene/camera.hpp"
+#include "scene/light_kinds.hpp"
 #include "scene/motion/matrix.hpp"
 #include "scene/usable.hpp"
 
@@ -136,13 +137,9 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
     for (const auto* list : {&content.lights, &content.included_lights}) {
         for (Light light : *list) {
             light.name = name_of(light.name, false);
-            float* p = light.values.position;
-            if (light.node == RT_NONE) std::copy_n(p, 3, light.at_node.begin());
+            if (light.node == RT_NONE) light.at_node = light.values;
             hang(light.node);
-            std::array<float, 3> moved =
-                light.values.kind == RT_LIGHT_POINT ? transform_point(m, p) : transform_direction(m, p);
-            const bool good = are_usable(moved) && (light.values.kind == RT_LIGHT_POINT || normalize(moved));
-            std::copy(moved.begin(), moved.end(), p);
+            const bool good = move_light(light.values, to_matrix(m));
             if (good) (is_root ? into.lights : into.included_lights).push_back(std::move(light));
         }
     }

@@ -8,6 +8,8 @@
 #include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
 #include "scene/camera.hpp"
+#include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -35,43 +37,6 @@ T taken(const T* from, const char* what) {
     const std::string why = from ? check_bytes<T>(what, from->struct_bytes) : std::string(what) + " is NULL";
     if (!why.empty()) throw Error(Exit::import_failed, why);
     return copied<T>(from, from->struct_bytes);
-}
-
-// Converts a description to the kernels' struct. The texture is still an id of the sink.
-rt_material kernel_material(const rt_material_desc& d) {
-    rt_material m{};
-    std::copy_n(d.color, 3, m.color);
-    std::copy_n(d.emission, 3, m.emission);
-    std::copy_n(d.specular, 3, m.specular);
-    m.reflect = d.reflect;
-    m.refract = d.refract;
-    m.shininess = d.shininess;
-    m.ior = d.ior;
-    m.texture = d.texture;
-    m.flags = d.flags & RT_MATERIAL_CHECKER;
-    return m;
-}
-
-// Clamps values to what the shading can handle. Returns false if a value was not a number; it is replaced by the default.
-bool make_sound(rt_material& m) {
-    const rt_material usual = default_material();
-    const bool good = are_usable(m.color) && are_usable(m.emission) && are_usable(m.specular) && is_usable(m.reflect) &&
-                      is_usable(m.refract) && is_usable(m.shininess) && is_usable(m.ior);
-    const auto repair = [](float& value, float otherwise) { value = is_usable(value) ? value : otherwise; };
-    for (int i = 0; i < 3; ++i) {
-        repair(m.color[i], usual.color[i]);
-        repair(m.emission[i], 0);
-        repair(m.specular[i], 0);
-    }
-    repair(m.reflect, 0);
-    repair(m.refract, 0);
-    repair(m.shininess, usual.shininess);
-    repair(m.ior, usual.ior);
-    m.reflect = std::clamp(m.reflect, 0.f, 1.f);
-    m.refract = std::clamp(m.refract, 0.f, 1.f);
-    m.shininess = std::max(m.shininess, 0.f);
-    if (!(m.ior > 0)) m.ior = usual.ior;
-    return good;
 }
 
 }  // namespace
@@ -144,6 +109,8 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     sink_.primitive = [](void* ctx, const rt_primitive_desc* d) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.primitive(taken(d, "rt_primitive_desc")); });
     };
+    sink_.light_kind = [](void*, rt_u32 kind) { return light_kind_for_plugins(kind); };
+    sink_.material_kind = [](void*) { return material_kind_for_plugins(); };
     offer_motion();
     sink_.edit = [](void* ctx, const char* key, const char* value, const char* where) {
         return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.edit(key, value, where); });
@@ -213,7 +180,8 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
 }
 
 rt_u32 SceneSink::material(const rt_material_desc& d) {
-    Material material = {clean_name(d.name), kernel_material(d)};
+    std::string problem;
+    Material material = {clean_name(d.name), material_of(d, problem)};
     if (d.texture != RT_NONE) {
         if (d.texture >= textures_.size()) {
             return fail("material '" + material.name + "': texture id " + std::to_string(d.texture) + " of " +
@@ -221,10 +189,7 @@ rt_u32 SceneSink::material(const rt_material_desc& d) {
         }
         material.values.texture = textures_[d.texture];
     }
-    if (!make_sound(material.values)) {
-        builder_.warn(path_,
-                      "material '" + material.name + "' has values that are not finite numbers; they are replaced by defaults");
-    }
+    if (!problem.empty()) builder_.warn(path_, "material '" + material.name + "' " + problem);
     Scene& scene = builder_.scene();
     materials_.push_back(static_cast<rt_u32>(scene.materials.size()));
     scene.materials.push_back(std::move(material));
@@ -318,28 +283,13 @@ rt_u32 SceneSink::polygon(const float* corners, rt_u32 corner_count, rt_u32 mate
 rt_u32 SceneSink::light(const rt_light_desc& d) {
     Light light;
     light.name = clean_name(d.name);
-    rt_light& values = light.values;
-    values.kind = d.kind;
-    if (d.kind != RT_LIGHT_POINT && d.kind != RT_LIGHT_DIRECTIONAL) {
-        return fail("light '" + light.name + "': kind " + std::to_string(d.kind) + " is unknown");
-    }
-    std::copy_n(d.color, 3, values.color);
-    // The kernels' struct has the direction towards the light.
-    for (int i = 0; i < 3; ++i) values.position[i] = d.kind == RT_LIGHT_POINT ? d.position[i] : -d.direction[i];
+    if (d.kind >= RT_LIGHT_KINDS) return fail("light '" + light.name + "': kind " + std::to_string(d.kind) + " is unknown");
+    std::string problem;
+    bool good = light_of(d, light.at_node, problem);
+    if (!problem.empty()) builder_.warn(path_, "light '" + light.name + "' " + problem);
     light.node = motion_.node_of(d.node, "light");
-    std::copy_n(values.position, 3, light.at_node.begin());
-    if (light.node != RT_NONE) {
-        const Matrix& node = motion_.at_rest(light.node).world;
-        const Vec at = {values.position[0], values.position[1], values.position[2]};
-        const Vec placed = d.kind == RT_LIGHT_POINT ? point(node, at) : direction(node, at);
-        for (int i = 0; i < 3; ++i) values.position[i] = static_cast<float>(placed[i]);
-    }
-    bool good = are_usable(values.position) && are_usable(values.color);
-    if (good && values.kind == RT_LIGHT_DIRECTIONAL) {
-        const double length = std::sqrt(squared_length(values.position));
-        good = length > 0;
-        for (float& x : values.position) x = good ? static_cast<float>(x / length) : 0;
-    }
+    light.values = light.at_node;
+    good = good && move_light(light.values, light.node == RT_NONE ? kIdentityMatrix : motion_.at_rest(light.node).world);
     light_sources_.push_back(good ? builder_.next_source() : RT_NONE);
     light.source = light_sources_.back();
     if (good) {
@@ -357,6 +307,9 @@ rt_u32 SceneSink::camera(const rt_camera& d) {
     std::copy(d.target, d.target + 3, camera.target.begin());
     std::copy(d.up, d.up + 3, camera.up.begin());
     camera.fov_y_rad = d.fov_y_rad;
+    const auto length = [](float x) { return is_usable(x) && x > 0 ? x : 0; };
+    camera.aperture = length(d.aperture);
+    camera.focus = length(d.focus);
     camera.node = motion_.node_of(d.node, "camera");
     camera.node_eye = camera.eye;
     camera.node_target = camera.target;

@@ -10,6 +10,7 @@
 
 #include "base/numbers.hpp"
 #include "import/sink/scene_builder.hpp"
+#include "scene/light_kinds.hpp"
 #include "scene/motion/matrix.hpp"
 
 namespace clarity::import {
@@ -111,7 +112,7 @@ void SceneBuilder::subtract_origin() {
         for (int k = 0; k < 3; ++k)
             shape.world_from_object[4 * k + 3] = static_cast<float>(shape.world_from_object[4 * k + 3] - origin[k]);
     for (Light& light : world_.lights)
-        if (light.values.kind == RT_LIGHT_POINT) subtract(origin, light.values.position);
+        if (light_kind_of(light.values).has_place) subtract(origin, light.values.position);
     for (Camera& camera : world_.cameras) {
         subtract(origin, camera.eye.data());
         subtract(origin, camera.target.data());

@@ -2,12 +2,13 @@
 #pragma once
 #include "base/progress.hpp"
 #include "rt_plugin.h"
+#include "worker/job.hpp"
 
 namespace clarity {
 
 // Where builders run.
 enum class BuildPlace {
-    automatic,  // libraries that are not our own: in a worker the first time, until a build has come to its end; else here
+    automatic,  // in a worker where the plugin's library has no trust (plugin/trust.hpp), else here
     worker,     // always in a worker, on memory between guard pages: for --debug
     here
 };
@@ -17,7 +18,6 @@ enum class BuildPlace {
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
                      const rt_topology* tree, const rt_build_output* out, Progress& progress);
 
-// Main function of the worker (`clarity build-worker ...`, which people do not call).
-int build_worker_main(int argc, char** argv);
+extern const worker::JobKind kBuildJob;
 
 }  // namespace clarity

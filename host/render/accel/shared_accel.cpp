@@ -1,115 +1,26 @@
-// Layout: arrays one behind the other, in the order of write_accel() and visit_scene(). Each begins at a multiple of 128 bytes,
-// as the buffers of devices do, with the number of its bytes in the 128 bytes before it.
 #include "render/accel/shared_accel.hpp"
 
-#include <cstring>
-#include <string>
-#include <type_traits>
-#include <utility>
-
 #include "base/error.hpp"
+#include "base/files/packet.hpp"
 
 namespace clarity {
 namespace {
 
-constexpr uint64_t kAlignment = 128;
-
-// The members that are no arrays. They are written as an array of one element.
-struct PlainMembers {
-    uint64_t leaf_count, bytes;
-    double build_ms, pack_ms;
-    std::array<float, 3> min, max;
-    uint32_t slot_count, empty_bounds;
-};
-
-// Names with numbers, as arrays.
-template <class Number>
-struct Named {
-    std::string names;  // each ends with a zero byte
-    std::vector<Number> numbers;
-    template <class Pairs>
-    static Named of(const Pairs& pairs) {
-        Named named;
-        for (const auto& [name, number] : pairs)
-            named.names.append(name.c_str(), name.size() + 1), named.numbers.push_back(number);
-        return named;
-    }
-    // call(name, number) for each.
-    template <class Call>
-    void each(const Call& call) const {
-        size_t at = 0;
-        for (const Number& number : numbers) {
-            const std::string name = names.c_str() + at;
-            call(name, number);
-            at = std::min(names.size(), at + name.size() + 1);
-        }
-    }
-};
-
-// All arrays but slots and leaves.
-template <class Archive, class Accel, class Scene>
-void visit_scene(Archive&& a, Accel& accel, Scene& s) {
-    a(accel.params), a(accel.roots), a(accel.instances);
-    a(s.groups), a(s.instances), a(s.group_of_instance), a(s.world_from_object), a(s.attribute_triangle), a(s.flattened);
-    a(s.instance_leaves), a(s.spheres), a(s.polygons), a(s.shape_leaves), a(s.shapes), a(s.polygon_table), a(s.polygon_corners);
-    a(s.planes), a(s.group_of_mesh), a(s.first_ref_of_group), a(s.number_of_instance);
+// What of a structure is as it is in memory: all but its plugins, its slots and its leaves.
+template <class Packet, class Accel>
+void visit_plain(Packet& packet, Accel& a) {
+    auto& s = a.scene;
+    packet(a.leaf_count, a.bytes, a.build_ms, a.pack_ms, s.bounds.min, s.bounds.max, s.bounds.empty, a.defines, a.stats);
+    packet(a.params, a.roots, a.instances);
+    packet(s.groups, s.instances, s.group_of_instance, s.world_from_object, s.attribute_triangle, s.flattened);
+    packet(s.instance_leaves, s.spheres, s.polygons, s.shape_leaves, s.shapes, s.polygon_table, s.polygon_corners);
+    packet(s.planes, s.group_of_mesh, s.first_ref_of_group, s.number_of_instance);
 }
 
-class AccelWriter {
- public:
-    explicit AccelWriter(MemoryFile& file) : file_(file) {}
-    template <class Array>
-    void operator()(const Array& array) {
-        static_assert(std::is_trivially_copyable_v<typename Array::value_type>, "only plain data goes through shared memory");
-        bytes(array.data(), array.size() * sizeof(typename Array::value_type));
-    }
-    void bytes(const void* data, uint64_t count) {
-        file_.write_at(at_, &count, sizeof count);
-        at_ += kAlignment;
-        file_.write_at(at_, data, count);
-        at_ += (count + kAlignment - 1) / kAlignment * kAlignment;
-    }
-    // Makes the file as long as the last array is with its padding: kernels read whole vectors.
-    void end() {
-        if (at_ > file_.bytes()) file_.write_at(at_ - 1, "", 1);
-        file_.seal();
-    }
-
- private:
-    MemoryFile& file_;
-    uint64_t at_ = 0;
-};
-
-class AccelReader {
- public:
-    AccelReader(const char* data, uint64_t bytes) : data_(data), left_(bytes) {}
-    template <class Array>
-    void operator()(Array& array) {
-        using Element = typename Array::value_type;
-        const auto [data, bytes] = next();
-        const auto* first = reinterpret_cast<const Element*>(data);
-        array.assign(first, first + bytes / sizeof(Element));
-    }
-    AlignedBytes borrow() {
-        const auto [data, bytes] = next();
-        return AlignedBytes::borrow(const_cast<char*>(data), bytes);
-    }
-
- private:
-    std::pair<const char*, uint64_t> next() {
-        uint64_t bytes = 0;
-        if (left_ >= kAlignment) std::memcpy(&bytes, data_, sizeof bytes);
-        if (left_ < kAlignment || bytes > left_ - kAlignment)
-            throw Error(Exit::failed,
-                        "the shared memory holds no structure of this program: do all processes run the same version?");
-        const char* const here = data_ + kAlignment;
-        const uint64_t step = kAlignment + std::min(left_ - kAlignment, (bytes + kAlignment - 1) / kAlignment * kAlignment);
-        data_ += step, left_ -= step;
-        return {here, bytes};
-    }
-    const char* data_;
-    uint64_t left_;
-};
+AlignedBytes borrow(PacketReader& packet) {
+    const uint64_t bytes = packet.begin_array();
+    return AlignedBytes::borrow(const_cast<char*>(packet.borrow(bytes)), bytes);
+}
 
 const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) {
     if (const rt_plugin* plugin = plugins.accel(id)) return plugin;
@@ -120,54 +31,43 @@ const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) 
 }  // namespace
 
 void write_accel(MemoryFile& file, const AccelData& accel) {
-    AccelWriter writer(file);
-    writer(std::string(accel.plugin->id)), writer(std::string(accel.layout->id));
-    writer(std::vector<PlainMembers>{{accel.leaf_count, accel.bytes, accel.build_ms, accel.pack_ms, accel.scene.bounds.min,
-                                      accel.scene.bounds.max, static_cast<uint32_t>(accel.slots.size()),
-                                      accel.scene.bounds.empty}});
-    const auto defines = Named<rt_u32>::of(accel.defines);
-    const auto stats = Named<double>::of(accel.stats);
-    writer(defines.names), writer(defines.numbers), writer(stats.names), writer(stats.numbers);
-    visit_scene(writer, accel, accel.scene);
-    writer.bytes(accel.leaves.data(), accel.leaves.bytes());
+    PacketWriter packet(file);
+    packet(std::string(accel.plugin->id), std::string(accel.layout->id), uint64_t{accel.slots.size()});
+    visit_plain(packet, accel);
+    packet.bytes(accel.leaves.data(), accel.leaves.bytes());
     for (const AccelData::Slot& slot : accel.slots) {
-        writer(std::vector<uint64_t>{slot.count});
-        writer.bytes(slot.memory.data(), slot.memory.bytes());
+        packet(slot.count);
+        packet.bytes(slot.memory.data(), slot.memory.bytes());
     }
-    writer.end();
+    packet.finish();
+    file.seal();
 }
 
-std::shared_ptr<const AccelData> map_accel(const MemoryFile& file, const PluginRegistry& plugins) {
+std::shared_ptr<const AccelData> map_accel(const MemoryFile& file, const PluginRegistry& plugins) try {
     struct Mapped {
         std::shared_ptr<const char> memory;  // of slots and leaves
         AccelData accel;
     };
     const auto mapped = std::make_shared<Mapped>();
-    mapped->memory = map_file(file.fd(), file.bytes());
     AccelData& accel = mapped->accel;
-    AccelReader reader(mapped->memory.get(), file.bytes());
+    PacketReader packet(file, PacketReader::How::mapped);
+    mapped->memory = packet.memory();
     std::string plugin, layout;
-    std::vector<PlainMembers> plain;
-    Named<rt_u32> defines;
-    Named<double> stats;
-    reader(plugin), reader(layout), reader(plain);
-    reader(defines.names), reader(defines.numbers), reader(stats.names), reader(stats.numbers);
+    uint64_t slots = 0;
+    packet(plugin, layout, slots);
     accel.plugin = accel_of(plugins, plugin);
     accel.layout = accel_of(plugins, layout);
-    const PlainMembers& values = plain.at(0);
-    accel.leaf_count = values.leaf_count, accel.bytes = values.bytes;
-    accel.build_ms = values.build_ms, accel.pack_ms = values.pack_ms;
-    accel.scene.bounds = {values.min, values.max, values.empty_bounds != 0};
-    defines.each([&](const std::string& name, rt_u32 value) { accel.defines[name] = value; });
-    stats.each([&](const std::string& label, double value) { accel.stats.emplace_back(label, value); });
-    visit_scene(reader, accel, accel.scene);
-    accel.leaves = reader.borrow();
-    for (uint32_t s = 0; s < values.slot_count; ++s) {
-        std::vector<uint64_t> count;
-        reader(count);
-        accel.slots.push_back({reader.borrow(), count.at(0)});
+    visit_plain(packet, accel);
+    accel.leaves = borrow(packet);
+    for (uint64_t s = 0; s < slots; ++s) {
+        uint64_t count = 0;
+        packet(count);
+        accel.slots.push_back({borrow(packet), count});
     }
+    packet.end();
     return {mapped, &accel};
+} catch (const PacketDamaged&) {
+    throw Error(Exit::failed, "the shared memory holds no structure of this program: do all processes run the same version?");
 }
 
 }  // namespace clarity

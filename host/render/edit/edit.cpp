@@ -8,6 +8,8 @@
 #include "base/numbers.hpp"
 #include "render/settings/settings.hpp"
 #include "render/view/camera_text.hpp"
+#include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
 
 namespace clarity {
 namespace {
@@ -24,6 +26,17 @@ std::vector<std::string> split(const std::string& text, char at) {
     return parts;
 }
 
+std::string key_names(const std::vector<Key>& keys) {
+    std::string names;
+    for (const Key& key : keys) names += (names.empty() ? "" : ", ") + std::string(key.name);
+    return names;
+}
+
+std::string number_word(size_t count) {
+    constexpr const char* kWords[] = {"no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"};
+    return count < std::size(kWords) ? kWords[count] : std::to_string(count);
+}
+
 // Reads `count` numbers with commas between them.
 void read_floats(const std::string& key, const std::string& text, float* values, size_t count, const char* expected) {
     const std::vector<float> numbers = read_numbers<float>(text);
@@ -33,7 +46,7 @@ void read_floats(const std::string& key, const std::string& text, float* values,
 
 void read_camera(Camera& camera, const std::string& text, const std::array<double, 3>& origin) {
     const std::optional<CameraNumbers> numbers = read_camera_numbers(text);
-    if (!numbers || !numbers->up) refuse_value("camera", text, "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz");
+    if (!numbers || !numbers->up) refuse_value("camera", text, "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz[,aperture,focus]");
     const double fov_deg = *numbers->fov_deg;
     if (fov_deg <= 0 || fov_deg >= 180)
         refuse_value("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
@@ -41,68 +54,99 @@ void read_camera(Camera& camera, const std::string& text, const std::array<doubl
     camera.target = scene_point(numbers->target, origin);
     camera.fov_y_rad = static_cast<float>(fov_deg * kRadPerDegree);
     camera.up = *numbers->up;
+    camera.aperture = numbers->aperture;
+    camera.focus = numbers->focus;
+}
+
+bool is_number(const Key& key) {
+    return !key.alias && key.kind != RT_KEY_WORD && key.kind != RT_KEY_FLAG;
+}
+
+// "x,y,z,r,g,b": the numbers of a kind of lights, and how many they are.
+std::string numbers_form(const LightKind& kind, size_t& count) {
+    std::string form;
+    count = 0;
+    for (const Key& key : kind.keys) {
+        if (!is_number(key)) continue;
+        const char* what = count_of(key) == 1 ? key.name : key.kind == RT_KEY_COLOR ? "r,g,b" : "x,y,z";
+        form += (form.empty() ? "" : ",") + std::string(what);
+        count += count_of(key);
+    }
+    return form;
+}
+std::string light_forms() {
+    std::string forms = "off";
+    size_t count = 0;
+    for (const LightKind& kind : light_kinds()) forms += " or " + std::string(kind.name) + "," + numbers_form(kind, count);
+    return forms;
+}
+
+// Reads the text of one key. Throws Error(usage).
+std::array<float, 3> read_key(const Key& key, const std::string& name, const std::string& text,
+                              const std::array<double, 3>& origin) {
+    std::array<float, 3> value{};
+    std::string expected;
+    if (!read_value(key, text, value, expected)) refuse_value(name, text, expected);
+    if (key.moves != Moves::point) return value;
+    const std::vector<double> exact = read_numbers<double>(text);
+    return scene_point({exact[0], exact[1], exact[2]}, origin);
+}
+
+// kind: "point"; numbers: "x,y,z,r,g,b", or empty for those of the table.
+rt_light read_light_numbers(const LightKind& kind, const std::string& name, const std::string& numbers,
+                            const std::array<double, 3>& origin) {
+    rt_light light = default_light(kind.kind);
+    if (numbers.empty()) return light;
+    size_t count = 0;
+    const std::string form = numbers_form(kind, count);
+    std::vector<std::string> parts = split(numbers, ',');
+    if (parts.size() != count) refuse_value(name, numbers, number_word(count) + " numbers after its kind: " + form);
+    size_t at = 0;
+    for (const Key& key : kind.keys) {
+        if (!is_number(key)) continue;
+        std::string text = parts[at];
+        for (size_t k = 1; k < count_of(key); ++k) text += "," + parts[at + k];
+        at += count_of(key);
+        set_edit_value(key, light, read_key(key, name, text, origin));
+    }
+    return light;
 }
 
 void read_light(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
+    const std::vector<std::string> path = split(key, '.');
     rt_u32 at = 0;
-    if (!read_number(key.substr(6), at)) refuse_value(key, value, "for a light: light.N counts from 0");
+    if (path.size() > 3 || !read_number(path[1], at)) refuse_value(key, value, "for a light: light.N counts from 0");
     auto& lights = edited.view.lights;
-    if (at > lights.size())
+    if (at > lights.size() || (path.size() == 3 && at == lights.size()))
         throw Error(Exit::usage, key + ": the view has " + std::to_string(lights.size()) +
                                      " lights, counted from 0; the next new one is light." + std::to_string(lights.size()));
     edited.lights_on.resize(std::max<size_t>(lights.size(), at + 1), true);
-    if (value == "off") {
+    if (value == "off" && path.size() == 2) {
         if (at == lights.size()) throw Error(Exit::usage, key + ": there is no such light to switch off");
         edited.lights_on[at] = false;
         return;
     }
-    const char* expected = "off, point,x,y,z,r,g,b or directional,x,y,z,r,g,b";
-    const size_t comma = value.find(',');
-    const std::string kind = value.substr(0, comma);
-    if (comma == std::string::npos || (kind != "point" && kind != "directional")) refuse_value(key, value, expected);
-    float n[6];
-    read_floats(key, value.substr(comma + 1), n, 6, "six numbers after its kind: x,y,z,r,g,b");
-    if (kind == "point") {
-        const std::vector<double> exact = read_numbers<double>(value.substr(comma + 1));
-        const std::array<float, 3> at_scene = scene_point({exact[0], exact[1], exact[2]}, scene.origin);
-        std::copy(at_scene.begin(), at_scene.end(), n);
+    rt_light light;
+    if (path.size() == 3) {
+        light = lights[at];
+        const std::vector<Key>& keys = light_kind_of(light).keys;
+        const Key* part = find_key(keys, path[2]);
+        if (!part)
+            throw Error(Exit::usage,
+                        key + ": a light of the kind " + light_kind_of(light).name + " has the parts " + key_names(keys));
+        set_edit_value(*part, light, read_key(*part, key, value, scene.origin));
+    } else {
+        const size_t comma = value.find(',');
+        const LightKind* kind = find_light_kind(value.substr(0, comma));
+        if (!kind) refuse_value(key, value, light_forms());
+        light = read_light_numbers(*kind, key, comma == std::string::npos ? "" : value.substr(comma + 1), scene.origin);
     }
-    rt_light light{};
-    light.kind = kind == "point" ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL;
-    if (light.kind == RT_LIGHT_DIRECTIONAL) {
-        const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (!(length > 0)) refuse_value(key, value, "a direction: it has no length");
-        // A unit vector must stay exactly as it is.
-        if (std::fabs(length - 1) > 1e-6f)
-            for (int k = 0; k < 3; ++k) n[k] /= length;
-    }
-    for (int k = 0; k < 3; ++k) {
-        if (n[3 + k] < 0) refuse_value(key, value, "a light: its colour is negative");
-        light.position[k] = n[k];
-        light.color[k] = n[3 + k];
-    }
+    if (!make_sound(light, true)) refuse_value(key, value, "a light that has a size");
     if (at == lights.size())
         lights.push_back(light);
     else
         lights[at] = light;
-    edited.lights_on[at] = true;
-}
-
-// The parts of a material that an edit may set, by name. `most` is the largest value allowed.
-struct MaterialPart {
-    const char* name;
-    size_t offset, count;
-    float most;
-};
-constexpr MaterialPart kMaterialParts[] = {
-    {"color", offsetof(rt_material, color), 3, 1e6f},         {"emission", offsetof(rt_material, emission), 3, 1e6f},
-    {"specular", offsetof(rt_material, specular), 3, 1e6f},   {"reflect", offsetof(rt_material, reflect), 1, 1},
-    {"refract", offsetof(rt_material, refract), 1, 1},        {"ior", offsetof(rt_material, ior), 1, 100},
-    {"shininess", offsetof(rt_material, shininess), 1, 1e6f},
-};
-
-float* part_of(rt_material& material, const MaterialPart& part) {
-    return reinterpret_cast<float*>(reinterpret_cast<char*>(&material) + part.offset);
+    if (path.size() == 2) edited.lights_on[at] = true;
 }
 
 std::vector<rt_material> scene_materials(const Scene& scene) {
@@ -114,24 +158,15 @@ std::vector<rt_material> scene_materials(const Scene& scene) {
 void read_material(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
     const std::vector<std::string> path = split(key, '.');
     rt_u32 at = 0;
-    const MaterialPart* part = nullptr;
-    std::string known;
-    for (const MaterialPart& p : kMaterialParts) {
-        known += (known.empty() ? "" : ", ") + std::string(p.name);
-        if (path.size() == 3 && path[2] == p.name) part = &p;
-    }
+    const Key* part = path.size() == 3 ? find_key(material_keys(), path[2]) : nullptr;
     if (!part || !read_number(path[1], at))
-        throw Error(Exit::usage, key + ": expected material.N.PART with N from 0 and PART one of " + known);
+        throw Error(Exit::usage,
+                    key + ": expected material.N.PART with N from 0 and PART one of " + key_names(material_keys()));
     if (at >= scene.materials.size())
         throw Error(Exit::usage, key + ": the scene has materials 0 to " + std::to_string(scene.materials.size() - 1));
-    float n[3];
-    read_floats(key, value, n, part->count, part->count == 3 ? "r,g,b" : "a number");
-    const float least = std::strcmp(part->name, "ior") == 0 ? 1e-3f : 0.0f;
-    for (size_t k = 0; k < part->count; ++k)
-        if (n[k] < least || n[k] > part->most)
-            refuse_value(key, value, "from " + exact_text(least) + " to " + exact_text(part->most));
+    const std::array<float, 3> number = read_key(*part, key, value, scene.origin);
     if (edited.view.materials.empty()) edited.view.materials = scene_materials(scene);
-    std::copy(n, n + part->count, part_of(edited.view.materials[at], *part));
+    set_material_value(edited.view.materials[at], *part, number);
 }
 
 void read_shift(const Scene& scene, InstanceEdits& edits, const std::string& key, const std::string& value) {
@@ -200,10 +235,32 @@ bool begins(const std::string& text, const char* with) {
     return text.compare(0, std::strlen(with), with) == 0;
 }
 
-std::string light_text(const rt_light& light, const std::array<double, 3>& origin) {
-    const bool is_point = light.kind == RT_LIGHT_POINT;
-    return (is_point ? "point," + point_text(light.position, origin, ",") : "directional," + numbers_text(light.position, 3)) +
-           "," + numbers_text(light.color, 3);
+// The words that make a light from nothing.
+void add_light_words(const rt_light& light, size_t number, const std::array<double, 3>& origin, std::vector<Word>& words) {
+    const std::string name = "light." + std::to_string(number);
+    std::string text = light_kind_of(light).name;
+    std::vector<Word> further;
+    for (const Key& key : light_kind_of(light).keys) {
+        const std::array<float, 3> value = edit_value(key, light);
+        if (is_number(key))
+            text += "," + (key.moves == Moves::point ? point_text(value.data(), origin, ",") : value_text(key, value, ","));
+        else if (!key.alias && value != key.def)
+            further.push_back({name + "." + key.name, value_text(key, value, ",")});
+    }
+    words.push_back({name, text});
+    words.insert(words.end(), further.begin(), further.end());
+}
+
+// The words that turn one material into another one. Where a key changes what others follow, those are written, too.
+void add_material_words(const rt_material& was, const rt_material& is, size_t number, std::vector<Word>& words) {
+    bool differs = false;
+    for (const Key& key : material_keys()) {
+        const std::array<float, 3> value = value_of(key, &is);
+        const bool other = value != value_of(key, &was);
+        differs |= other && !key.follows_model;
+        if (other || (key.follows_model && differs && is.model != RT_MODEL_WHITTED))
+            words.push_back({"material." + std::to_string(number) + "." + key.name, value_text(key, value, ",")});
+    }
 }
 
 // The words that turn `from` into `to`.
@@ -228,8 +285,9 @@ void add_instance_words(const InstanceEdits& from, const InstanceEdits& to, std:
 }  // namespace
 
 bool is_edit(const std::string& key) {
-    return key == "camera" || key == "camera_path" || key == "background" || key == "ambient" || key == "hide" ||
-           begins(key, "light.") || begins(key, "material.") || begins(key, "instance.");
+    return key == "camera" || key == "camera.aperture" || key == "camera.focus" || key == "camera_path" ||
+           key == "background" || key == "ambient" || key == "hide" || begins(key, "light.") || begins(key, "material.") ||
+           begins(key, "instance.");
 }
 
 void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
@@ -240,6 +298,10 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
         camera.name.clear();
         view.camera = camera;
         edited.follows_path = false;
+    } else if (key == "camera.aperture" || key == "camera.focus") {
+        float length = 0;
+        if (!read_number(value, length) || length < 0) refuse_value(key, value, "a length, 0 or more");
+        (key == "camera.focus" ? view.camera.focus : view.camera.aperture) = length;
     } else if (key == "camera_path") {
         edited.camera_path = read_path(value, scene.origin);
         edited.follows_path = !edited.camera_path.empty();
@@ -259,7 +321,8 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
         read_material(scene, edited, key, value);
     } else {
         throw Error(Exit::usage, "no edit `" + key +
-                                     "`; there are camera, camera_path, background, ambient, light.N, material.N.PART, hide, "
+                                     "`; there are camera, camera.aperture, camera.focus, camera_path, background, ambient, "
+                                     "light.N, light.N.PART, material.N.PART, hide, "
                                      "instance.N.PART");
     }
 }
@@ -275,17 +338,13 @@ std::vector<Word> edits_between(const Scene& scene, const EditedView& from, cons
         const bool was_off = i < from.lights_on.size() && !from.lights_on[i],
                    off = i < edited.lights_on.size() && !edited.lights_on[i];
         const bool known = i < base.lights.size() && std::memcmp(&view.lights[i], &base.lights[i], sizeof(rt_light)) == 0;
-        if (!known || (was_off && !off))
-            words.push_back({"light." + std::to_string(i), light_text(view.lights[i], scene.origin)});
+        if (!known || (was_off && !off)) add_light_words(view.lights[i], i, scene.origin, words);
         if (off && !(known && was_off)) words.push_back({"light." + std::to_string(i), "off"});
     }
     for (size_t i = view.lights.size(); i < base.lights.size(); ++i) words.push_back({"light." + std::to_string(i), "off"});
     for (size_t i = 0; i < view.materials.size() && i < scene.materials.size(); ++i) {
-        rt_material was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values, is = view.materials[i];
-        for (const MaterialPart& part : kMaterialParts)
-            if (!std::equal(part_of(is, part), part_of(is, part) + part.count, part_of(was, part)))
-                words.push_back(
-                    {"material." + std::to_string(i) + "." + part.name, numbers_text(part_of(is, part), part.count)});
+        const rt_material& was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values;
+        add_material_words(was, view.materials[i], i, words);
     }
     add_instance_words(from.instances, edited.instances, words);
     return words;

@@ -1,10 +1,13 @@
 // edit.hpp -- changes to a scene's view as text. Presets, command lines and the window use the same words.
 //
-//   camera       ex,ey,ez,tx,ty,tz,fov_deg,ux,uy,uz      background, ambient   r,g,b
-//   light.N      off | point,x,y,z,r,g,b | directional,x,y,z,r,g,b             N counts the view's lights from 0; N = their
-//                                                                              number adds one
+//   camera       ex,ey,ez,tx,ty,tz,fov_deg,ux,uy,uz[,aperture,focus]      camera.aperture, camera.focus   a length
+//   background, ambient   r,g,b
+//   light.N      off | KIND | KIND,numbers of its keys in the order of light_kinds.hpp, as point,x,y,z,r,g,b. N counts the
+//   view's
+//                lights from 0; N = their number adds one
+//   light.N.KEY  one key of that light: spot's angle, rect's two_sided (true or false)
 //   camera_path  t:camera;t:camera;...: the camera at times of the clip; see camera_path.hpp
-//   material.N.M where M is color, emission or specular (r,g,b), reflect, refract, ior or shininess (a number)
+//   material.N.KEY  one of material_keys.hpp: color (r,g,b), reflect (a number), model (a word), checker (true or false)
 //   hide         instances that the picture leaves out: 3,5-9
 //   instance.N.M where M is translate (x,y,z), rotate (degrees about x, then y, then z) or scale (x,y,z, or one number): moves
 //                instance N from where its file or pose has it; see instance_edit.hpp. hidden (0 or 1): as in `hide`

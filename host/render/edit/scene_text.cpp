@@ -13,6 +13,7 @@
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
 #include "render/view/camera_text.hpp"
+#include "scene/light_kinds.hpp"
 
 namespace clarity {
 namespace {
@@ -58,7 +59,7 @@ std::string camera_lines(const EditedView& edited, const std::array<double, 3>& 
     const Camera& camera = edited.view.camera;
     return std::string("camera ") + kCamera + "  eye " + point_text(camera.eye.data(), origin, " ") + "  target " +
            point_text(camera.target.data(), origin, " ") + "  up" + spaced(camera.up) + "  fov " +
-           exact_text(std::clamp(degrees_of(camera.fov_y_rad), 0.1f, 179.0f)) + "\n";
+           exact_text(std::clamp(degrees_of(camera.fov_y_rad), 0.1f, 179.0f)) + lens_words(camera) + "\n";
 }
 
 std::string surroundings(const View& view) {
@@ -83,29 +84,35 @@ std::string instance_lines(const InstanceEdits& before, const InstanceEdits& now
     return lines;
 }
 
+// "edit light 3 spot  position 1 2 3  angle 30": all that the light is made of.
+std::string light_line(const std::string& object, const rt_light& light, const std::array<double, 3>& origin) {
+    std::string line = object + " " + light_kind_of(light).name;
+    for (const Key& key : light_kind_of(light).keys) {
+        if (key.alias) continue;
+        const std::array<float, 3> value = edit_value(key, light);
+        line += "  " + std::string(key.name) + " " +
+                (key.moves == Moves::point ? point_text(value.data(), origin, " ") : value_text(key, value, " "));
+    }
+    return line;
+}
+
 // The words of edit.hpp as statements: "material.3.color" and "1,0,0" become "edit material 3  color 1 0 0". Words for one
-// object follow each other, and go into one line. Others than those of materials and lights are left out.
-std::string word_lines(const std::vector<Word>& words) {
+// material follow each other, and go into one line. Others than those of materials and lights are left out.
+std::string word_lines(const std::vector<Word>& words, const View& view, const std::array<double, 3>& origin) {
     std::string lines, last;
     for (const Word& word : words) {
         std::istringstream key(word.key);
         std::string what, number, part, value = word.value;
         std::getline(key, what, '.'), std::getline(key, number, '.'), std::getline(key, part, '.');
-        if (what != "material" && what != "light") continue;
+        // A light's line has all of its parts.
+        if (what != "material" && (what != "light" || !part.empty())) continue;
         std::replace(value.begin(), value.end(), ',', ' ');
         const std::string object = "edit " + what + " " + number;
-        if (what == "material") {
-            lines += (object == last ? "" : (lines.empty() ? "" : "\n") + object) + "  " + part + " " + value;
-        } else {
-            std::istringstream numbers(value);
-            std::string kind, x[6];
-            numbers >> kind;
-            for (std::string& n : x) numbers >> n;
-            lines += (lines.empty() ? "" : "\n") + object + " " + kind;
-            if (kind != "off")
-                lines += (kind == "point" ? "  position " : "  direction ") + x[0] + " " + x[1] + " " + x[2] + "  color " +
-                         x[3] + " " + x[4] + " " + x[5];
-        }
+        if (object != last) lines += lines.empty() ? "" : "\n";
+        if (what == "material")
+            lines += (object == last ? "" : object) + "  " + part + " " + value;
+        else
+            lines += value == "off" ? object + " off" : light_line(object, view.lights[std::stoul(number)], origin);
         last = what == "material" ? object : "";
     }
     return lines.empty() ? "" : lines + "\n";
@@ -114,7 +121,7 @@ std::string word_lines(const std::vector<Word>& words) {
 // base: what the statements that are loaded show without these lines.
 std::string edit_lines(const SceneToSave& scene, const EditedView& base) {
     const std::vector<Word> words = edits_between(scene.imported, base, scene.edited);
-    return instance_lines(base.instances, scene.edited.instances) + word_lines(words);
+    return instance_lines(base.instances, scene.edited.instances) + word_lines(words, scene.edited.view, scene.imported.origin);
 }
 
 // The view without any edit; a scene without lights has none to start from.

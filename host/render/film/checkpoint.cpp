@@ -19,6 +19,7 @@ using CheckpointJson = nlohmann::ordered_json;
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are written as they are in memory");
 constexpr char kCheckpointMagic[9] = "ClCheck1";
 constexpr uint64_t kMostHeadBytes = 1 << 20, kDigestBytes = 32;
+constexpr unsigned kMostPlanes = 16;
 
 // A file that ends with the digest of all its bytes.
 class CheckedWriter {
@@ -49,8 +50,10 @@ class CheckedWriter {
 
 void save_checkpoint(const std::string& path, const Checkpoint& checkpoint) {
     const FloatImage& sums = *checkpoint.sums;
-    const CheckpointJson json = {{"picture", checkpoint.picture}, {"way", checkpoint.way},         {"width", sums.width},
-                                 {"height", sums.height},         {"samples", checkpoint.samples}, {"of", checkpoint.of}};
+    CheckpointJson json = {{"picture", checkpoint.picture}, {"way", checkpoint.way},
+                           {"width", sums.width},           {"height", sums.height / checkpoint.planes},
+                           {"samples", checkpoint.samples}, {"of", checkpoint.of}};
+    if (checkpoint.planes > 1) json["planes"] = checkpoint.planes;
     const std::string head = json.dump(2, ' ', false, CheckpointJson::error_handler_t::replace) + "\n";
     const uint64_t head_bytes = head.size();
     CheckedWriter file(path);
@@ -92,7 +95,9 @@ Checkpoint load_checkpoint(const std::string& path) {
         checkpoint.samples = json.at("samples").get<unsigned>();
         checkpoint.of = json.at("of").get<unsigned>();
         sums.width = json.at("width").get<unsigned>();
-        sums.height = json.at("height").get<unsigned>();
+        checkpoint.planes = json.value("planes", 1u);
+        if (checkpoint.planes < 1 || checkpoint.planes > kMostPlanes) refuse_checkpoint(path, "its head is damaged");
+        sums.height = json.at("height").get<unsigned>() * checkpoint.planes;
     } catch (const CheckpointJson::exception&) {
         refuse_checkpoint(path, "its head is damaged");
     }

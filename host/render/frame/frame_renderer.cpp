@@ -64,6 +64,7 @@ void divide_sums(const float* sums, float* colors, size_t pixels) {
 // a launch cannot be cancelled, and each of its samples takes a layer of memory.
 constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
 constexpr double kAtOnceMs = 50;
+constexpr unsigned kMostSummed = 16384;  // of a tracer that adds samples by itself, without layers
 
 }  // namespace
 
@@ -86,6 +87,8 @@ struct FrameRenderer::Impl {
     bool bound_moves = false;  // Prepared::is_moved
     std::unique_ptr<FrameTracer> tracer;
     bool debug = false;
+    bool sums_samples = false;  // the tracer has kSumsSamples
+    unsigned in_launch = 1;     // then: samples of the launch of which `launcher` knows the pace
     Launcher launcher;
     // Whether and how a picture was displayed: by read_display() or by begin_display().
     enum class Shown { no, read, begun };
@@ -115,6 +118,7 @@ struct FrameRenderer::Impl {
         if (program != prepared.program || (bound != prepared.on_device && !moves_on) || width != new_width ||
             height != new_height)
             launcher.forget();
+        sums_samples = prepared.program->row.has(kSumsSamples);
         if (program != prepared.program) {
             program.reset();
             tracer.reset();
@@ -135,13 +139,18 @@ struct FrameRenderer::Impl {
             std::iota(rows.begin(), rows.end(), 0u);
         }
         begun = picture.shared ? layout.groups_x(width) * static_cast<unsigned>(picture.shared->begin) : 0;
-        film.fit(device->context(), film_bytes(FilmKernels::room(size_t(width) * height)));
+        const size_t in_plane = size_t(width) * height;
+        film.fit(device->context(), film_bytes((planes() - 1) * in_plane + FilmKernels::room(in_plane)));
         if (tracer->counts_rays())
             distances.fit(device->context(), layout.packets(width, height) * layout.rays() * sizeof(float));
     }
 
     // How many of the `left` samples the next launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
+        if (sums_samples) {
+            const double most = std::min(double(kMostSummed), kAtOnceMs * in_launch / launcher.expected_ms(groups()));
+            return std::min(left, static_cast<unsigned>(std::max(1.0, most)));
+        }
         if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || begun > 0 ||
             !tracer->takes_layers(picture.prepared, picture.view))
             return 1;
@@ -160,13 +169,16 @@ struct FrameRenderer::Impl {
                        const SideWork& side_work) {
         const auto& [prepared, settings, view_of, shared, progress] = picture;
         cl::CommandQueue& queue = device->queue();
+        const unsigned layers = sums_samples ? 1 : at_once;
         std::vector<rt_frame> frames;
-        for (unsigned layer = 0; layer < at_once; ++layer) {
+        for (unsigned layer = 0; layer < layers; ++layer) {
             frames.push_back(make_frame(view_of, settings, layout, *prepared.accel, sample + layer));
-            frames.back().layers = at_once - layer;
-            if (at_once > 1) frames.back().adds = 0;
+            frames.back().layers = layers - layer;
+            frames.back().samples = at_once / layers;
+            if (layers > 1) frames.back().adds = 0;
             if (shared) frames.back().row_count = static_cast<rt_u32>(rows.size());
         }
+        if (sums_samples) launcher.slow_down(double(at_once) / std::exchange(in_launch, at_once));
         std::vector<rt_u32> table;
         if (shared) {
             table = rows;
@@ -178,12 +190,28 @@ struct FrameRenderer::Impl {
         const auto go_on = [&progress = picture.progress] {
             if (progress.cancelled()) throw Cancelled();
         };
-        const unsigned launched = at_once * groups() - begun;
+        const unsigned launched = layers * groups() - begun;
         const FrameLaunch frame{prepared, settings, view_of, view, queue, into, distances.get(), begun, launched, sample};
         return tracer->trace(launcher, frame, go_on, side_work);
     }
 
+    unsigned planes() const { return film_planes(program->row); }
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
+    void read_statistics(FloatImage& image) {
+        const size_t plane = size_t(width) * height * 4;
+        scratch.resize(plane * planes());
+        for (unsigned p = 0; p < planes(); ++p)
+            read_bands(device->queue(), film.get(), in_plane(p, group_rows().bands()), film_bytes(width), scratch.data());
+        finish(*device, device->queue(), "reading the film");
+        for (const Band& band : group_rows().bands())
+            for (size_t i = band.first * size_t(width), end = i + band.count * size_t(width); i < end; ++i)
+                image.pixels[i] = aov->statistic(&scratch[4 * i], &scratch[plane + 4 * i]);
+    }
+    // Rows of a plane, counted from the film's first row on.
+    std::vector<Band> in_plane(unsigned plane, std::vector<Band> bands) const {
+        for (Band& band : bands) band.first += plane * height;
+        return bands;
+    }
     GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
     // Pixels that this call traces.
     uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
@@ -232,19 +260,19 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
         FrameStats stats;
         for (unsigned sample = samples.first, end = sample + samples.count; sample < end;) {
             const unsigned at_once = im.samples_at_once(picture, end - sample);
+            const bool in_layers = at_once > 1 && !im.sums_samples;
             const cl::Buffer& film = im.film.get();
             const cl::Buffer& into =
-                at_once == 1 ? film
-                             : im.layers.fit(im.device->context(), im.film_bytes(size_t(im.width) * im.height * at_once));
+                !in_layers ? film : im.layers.fit(im.device->context(), im.film_bytes(size_t(im.width) * im.height * at_once));
             const bool first = sample == samples.first, last = sample + at_once == end;
             uint8_t* const display = shared && last ? shared->display : nullptr;
             cl::Event added;
             SideWork side_work;
             if (first) side_work.while_it_works = meanwhile;
-            if (at_once > 1 || sum || display || (show && last))
+            if (in_layers || sum || display || (show && last))
                 side_work.behind = [&] {
                     cl::Event behind;
-                    if (at_once > 1)
+                    if (in_layers)
                         behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
                     if (sum) behind = im.tracer->begin_count(im.film_kernels);
                     if (display) behind = im.begin_rows(settings, display);
@@ -291,6 +319,7 @@ FloatImage FrameRenderer::read_values() {
 void FrameRenderer::read_values(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
+        if (im.aov->film == Aov::Film::statistics) return im.read_statistics(image);
         const bool color = im.aov->is_color();
         const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats in a row of pixels
         if (color) im.scratch.resize(stored * im.height);
@@ -317,7 +346,9 @@ void FrameRenderer::read_values(FloatImage& image) {
 void FrameRenderer::read_sums(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
-        read_bands(im.device->queue(), im.film.get(), im.group_rows().bands(), im.film_bytes(im.width), image.pixels.data());
+        for (unsigned plane = 0; plane < im.planes(); ++plane)
+            read_bands(im.device->queue(), im.film.get(), im.in_plane(plane, im.group_rows().bands()), im.film_bytes(im.width),
+                       image.pixels.data());
         finish(*im.device, im.device->queue(), "reading the film");
     });
 }
@@ -330,9 +361,12 @@ void FrameRenderer::write_sums(const Prepared& prepared, const Settings& setting
         im.begin({prepared, settings, View{}, shared, never_cancelled});
         const std::vector<rt_u32> rows(im.rows.begin() + std::ptrdiff_t(shared ? shared->begin : 0), im.rows.end());
         const size_t row_bytes = im.film_bytes(im.width);
-        for (const Band& band : GroupRows{im.width, im.height, im.layout.row_height(), rows}.bands())
-            im.device->queue().enqueueWriteBuffer(im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
-                                                  reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
+        const std::vector<Band> bands = GroupRows{im.width, im.height, im.layout.row_height(), rows}.bands();
+        for (unsigned plane = 0; plane < im.planes(); ++plane)
+            for (const Band& band : im.in_plane(plane, bands))
+                im.device->queue().enqueueWriteBuffer(
+                    im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
+                    reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
         finish(*im.device, im.device->queue(), "reading the film");
     });
 }

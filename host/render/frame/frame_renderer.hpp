@@ -61,7 +61,8 @@ class FrameRenderer {
     // false if the distance is not known.
     void read_values(FloatImage& image);
     bool read_distance(FloatImage& image);
-    // The film as it is, for checkpoints of colours: 4 channels, sums of r, g and b and the number of samples. read_sums()
+    // The film as it is, for checkpoints of colours: 4 channels, sums of r, g and b and the number of samples; where the film
+    // has more planes (film_planes()), the rows of each follow those of the one before. read_sums()
     // writes the traced rows into an image of the whole picture. write_sums() puts rows back, those of `shared` from its
     // `begin` on, so that trace() goes on with the sample after them. The arguments are those of that trace().
     void read_sums(FloatImage& image);

@@ -19,7 +19,8 @@ enum : unsigned {
     kFrame = 16,          // traces frames; so on a frame of no size it ends at once
     kCountsRays = 32,     // traces more than camera rays: it has `counters`, and the `distances` of the camera rays
     kLayers = 64,         // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
-    kPicksLights = 128    // has the table of emitters and the sky: cl/shading/emitters.h
+    kPicksLights = 128,   // has the table of emitters and the sky: cl/shading/emitters.h
+    kSumsSamples = 256    // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
 };
 
 struct KernelRow {
@@ -35,5 +36,10 @@ struct KernelRow {
     unsigned rays_per_item = 0;  // for kernels that trace a warp's rays together
     bool has(unsigned trait) const { return (traits & trait) != 0; }
 };
+
+// Planes of the film of colours that a kernel traces into.
+inline unsigned film_planes(const KernelRow& row) {
+    return row.has(kSumsSamples) ? 2 : 1;
+}
 
 }  // namespace clarity

@@ -16,6 +16,13 @@ bool normalize(Vec& v) {
     return true;
 }
 
+// The number of a choice, in the order of RT_BY_* or RT_FIRST_*. RT_NONE: it is none of them.
+rt_u32 number_or_none(const std::string& chosen, const std::vector<const char*>& choices) {
+    for (rt_u32 i = 0; i < choices.size(); ++i)
+        if (chosen == choices[i]) return i;
+    return RT_NONE;
+}
+
 }  // namespace
 
 rt_frame make_frame(const View& view, const Settings& settings, const Layout& layout, const AccelData& accel, unsigned sample) {
@@ -23,6 +30,7 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     const Camera& camera = view.camera;
     Vec w{double(camera.target[0]) - camera.eye[0], double(camera.target[1]) - camera.eye[1],
           double(camera.target[2]) - camera.eye[2]};
+    const double camera_distance = length(w);
     if (!normalize(w)) w = {0, 0, -1};
     Vec up{camera.up[0], camera.up[1], camera.up[2]};
     Vec u = cross(w, up);
@@ -61,6 +69,20 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     const double x = 0.5 + sample * 0.7548776662466927, y = 0.5 + sample * 0.5698402909980532;
     frame.within_x = static_cast<float>(x - std::floor(x));
     frame.within_y = static_cast<float>(y - std::floor(y));
+    frame.samples = 1;
+    frame.seed = static_cast<rt_u32>(settings.seed);
+    if (settings.sampler == "sobol") frame.path_flags |= RT_PATH_SOBOL;
+    if (settings.strategy != "bsdf") frame.path_flags |= RT_PATH_DRAWS_LIGHTS;
+    if (settings.strategy != "nee") frame.path_flags |= RT_PATH_FINDS_LIGHTS;
+    if (settings.mis == "power") frame.path_flags |= RT_PATH_POWER_WEIGHTS;
+    if (settings.filter == "gaussian") frame.path_flags |= RT_PATH_GAUSSIAN;
+    frame.only_bounce = static_cast<rt_u32>(settings.only_bounce);
+    frame.only_by = number_or_none(settings.only_by, {"nee", "bsdf"});
+    frame.only_first = number_or_none(settings.only_first, {"diffuse", "glossy", "transmission"});
+    frame.only_light = static_cast<rt_u32>(settings.only_light);
+    frame.focus = camera.focus > 0 ? camera.focus : static_cast<float>(camera_distance);
+    frame.lens_x = static_cast<float>(0.5 * camera.aperture / (tangent * aspect));
+    frame.lens_y = static_cast<float>(0.5 * camera.aperture / tangent);
     frame.min_weight = static_cast<float>(settings.min_weight);
     frame.shadows = settings.shadows;
     frame.aov = number_of(find_aov(settings.aov));

@@ -41,6 +41,7 @@ class Launcher {
                     unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0,
                     const SideWork& side_work = {});
     void forget() { pace_.forget(); }
+    void slow_down(double times) { pace_.slow_down(times); }
     // Expected time of that many groups, in ms; infinite if nothing is known.
     double expected_ms(unsigned groups) const { return pace_.expected_ms(groups); }
 

@@ -10,6 +10,8 @@ namespace clarity {
 class Pace {
  public:
     void forget() { known_ = 0; }
+    // Groups take so many times as long from now on.
+    void slow_down(double times) { known_ /= times; }
     void begin_picture();
     // Returns the number of groups of the next piece: at least 1, at most `left` and `most`.
     unsigned next(unsigned left, unsigned most) const;

@@ -7,6 +7,7 @@
 #include "render/film/film.hpp"
 #include "render/film/pinned_memory_pool.hpp"
 #include "render/frame/frame_stats.hpp"
+#include "render/kernels/program_cache.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/settings/aov.hpp"
 
@@ -97,14 +98,21 @@ FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>&
                            meanwhile);
 }
 
+unsigned MultiFrameRenderer::planes() const {
+    return film_planes(impl_->prepared->first()->program->row);
+}
+
 FloatImage MultiFrameRenderer::read_sums() {
     Impl& im = *impl_;
     FloatImage image = im.image(im.aov().film_channels());
+    image.height *= planes();
+    image.pixels.resize(image.pixels.size() * planes());
     if (im.alone)
         im.alone->read_sums(image);
     else
         im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_sums(image); });
-    im.collect(image.channels * sizeof(float), image.pixels.data());
+    for (unsigned plane = 0; plane < planes(); ++plane)
+        im.collect(image.channels * sizeof(float), &image.pixels[plane * (image.pixels.size() / planes())]);
     return image;
 }
 

@@ -38,6 +38,7 @@ class MultiFrameRenderer {
     // samples. Call it between two trace(), because a cancelled one leaves a film in which some pixels have a sample more.
     // resume(): puts such sums back. The next trace(), with these arguments and `samples` as its first sample, goes on with the
     // bits that the picture would have had; also on other devices, which then share the picture anew.
+    unsigned planes() const;  // of the film: FrameRenderer::read_sums()
     FloatImage read_sums();
     void resume(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
                 std::shared_ptr<const FloatImage> sums, unsigned samples);

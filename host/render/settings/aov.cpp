@@ -1,5 +1,6 @@
 #include "render/settings/aov.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -64,6 +65,29 @@ Aov generations() {
     return aov;
 }
 
+// Of a sample; of one sample it is not known.
+float variance(const float* sum, const float* rest) {
+    return sum[3] > 1 ? rest[3] / (sum[3] - 1) : 0.0f;
+}
+
+// What the tracer `path` knows of its noise.
+Aov noise(const char* name, const char* help, FalseColorScale scale, float (*of)(const float*, const float*)) {
+    Aov aov = first_hit(name, help, Film::statistics, Paint::scale);
+    aov.about = Aov::About::noise;
+    aov.tracer = "path";
+    aov.scale = std::move(scale);
+    aov.statistic = of;
+    return aov;
+}
+
+// The share of light that came by next-event estimation.
+Aov by_next_event() {
+    Aov aov = noise("mis", "share of light by next-event estimation", bar(Map::heat, "By next event", "share of light"),
+                    [](const float* sum, const float*) { return sum[1] > 0 ? sum[0] / sum[1] : 0.0f; });
+    aov.range = Aov::Range::share;
+    return aov;
+}
+
 }  // namespace
 
 const std::vector<Aov>& aov_table() {
@@ -80,6 +104,12 @@ const std::vector<Aov>& aov_table() {
         cost("lanes", "share of lanes alive per visit", Aov::Range::share,
              bar(Map::heat, "Lanes alive", "share per node visit")),
         generations(),
+        noise("variance", "variance of the samples", bar(Map::heat, "Variance", "of a sample's luminance"), variance),
+        noise("error", "standard error of the mean", bar(Map::heat, "Standard error", "of the mean luminance"),
+              [](const float* sum, const float* rest) { return std::sqrt(variance(sum, rest) / sum[3]); }),
+        noise("samples", "number of samples", bar(Map::heat, "Samples", "per pixel", true),
+              [](const float* sum, const float*) { return sum[3]; }),
+        by_next_event(),
     };
     return table;
 }
@@ -115,7 +145,7 @@ std::string aov_help() {
         return list;
     };
     return all_about(Aov::About::color) + ", or of the first hit: " + all_about(Aov::About::first_hit) +
-           "; or what it cost: " + all_about(Aov::About::cost);
+           "; or what it cost: " + all_about(Aov::About::cost) + "; or, of `path`, its noise: " + all_about(Aov::About::noise);
 }
 
 }  // namespace clarity

@@ -11,8 +11,9 @@ namespace clarity {
 // One row of the table.
 struct Aov {
     // The format of a film's pixel. colors: sums of r, g, b and the number of samples. numbers: the bits of an int, -1: none.
-    // vectors: three floats. distances, amounts: one float.
-    enum class Film { colors, distances, amounts, numbers, vectors };
+    // vectors: three floats. distances, amounts: one float. statistics: as colors, with the second plane of
+    // cl/tracers/path/sum.h; of them comes one float.
+    enum class Film { colors, distances, amounts, numbers, vectors, statistics };
     // How values become colours. tones: exposure and tone mapping. scale: a position on the colour bar. hash: one colour for
     // each number. direction: x, y, z to r, g, b. texture: u, v to r, g.
     enum class Paint { tones, scale, hash, direction, texture };
@@ -20,7 +21,7 @@ struct Aov {
     // 0 to 1.
     enum class Range { measured, counts, share };
     // What the quantity describes, for the help text.
-    enum class About { color, first_hit, cost };
+    enum class About { color, first_hit, cost, noise };
 
     const char* name;  // as in --aov; aov.cl has it in capitals: RT_AOV_NAME
     const char* help;
@@ -33,8 +34,13 @@ struct Aov {
     FalseColorScale scale = {};  // without the ends, which depend on the picture
 
     bool is_color() const { return film == Film::colors; }
+    // Whether it needs several samples.
+    bool adds_samples() const { return is_color() || film == Film::statistics; }
+    // Of statistics. sum: light of the samples and their number; rest: the second plane, whose last number is the sum of
+    // squared deviations of luminance.
+    float (*statistic)(const float* sum, const float* rest) = nullptr;
     // Floats for each pixel: in the film, and in an image of its values.
-    unsigned film_channels() const { return film == Film::colors ? 4 : film == Film::vectors ? 3 : 1; }
+    unsigned film_channels() const { return adds_samples() ? 4 : film == Film::vectors ? 3 : 1; }
     unsigned value_channels() const { return film == Film::colors || film == Film::vectors ? 3 : 1; }
 };
 

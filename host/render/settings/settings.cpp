@@ -130,7 +130,7 @@ Setting lanes_setting() {
 }  // namespace
 
 bool blurs(const Settings& settings) {
-    return settings.shutter > 0 && settings.spp > 1 && settings.aov == "color";
+    return settings.shutter > 0 && settings.spp > 1 && find_aov(settings.aov).adds_samples();
 }
 
 void refuse_value(const std::string& key, const std::string& value, const std::string& expected) {
@@ -153,13 +153,66 @@ Setting Setting::only_ways() const {
     return s;
 }
 
+Setting Setting::only_of(const char* shown) const {
+    Setting s = *this;
+    s.picture = shown;
+    return s;
+}
+
+bool Setting::used(const Settings& settings) const {
+    return picture.empty() || picture == picture_of_tracer(settings.tracer);
+}
+
+namespace {
+
+// Those of the tracer `path`.
+std::vector<Setting> settings_of_paths() {
+    std::vector<Setting> table = {
+        choice("strategy", "Strategy",
+               "how `path` finds light. nee: each event draws a point of a lamp; bsdf: rays that surfaces scatter find lamps "
+               "and sky; mis: both, with weights. Lamps without a size are always drawn",
+               {"nee", "bsdf", "mis"}, Effect::frame, &Settings::strategy),
+        choice("mis", "Weights", "of the strategy mis: by densities (balance) or by their squares (power)",
+               {"balance", "power"}, Effect::frame, &Settings::mis),
+        choice(
+            "sampler", "Sampler",
+            "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers that are "
+            "spread evenly over the samples of a pixel, with less noise",
+            {"independent", "sobol"}, Effect::frame, &Settings::sampler),
+        integer("seed", "Seed", "of `path`: pictures of two seeds have independent noise", 0, 1 << 30, Effect::frame,
+                &Settings::seed),
+        choice("filter", "Pixel filter",
+               "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and those of "
+               "its neighbours too (deviation half a pixel, cut at one and a half)",
+               {"box", "gaussian"}, Effect::frame, &Settings::filter),
+        integer("only_bounce", "Only bounce",
+                "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all", -1,
+                kMostDepth, Effect::frame, &Settings::only_bounce),
+        choice("only_by", "Only by", "of `path`: light of points that were drawn on lamps (nee), or that rays found (bsdf)",
+               {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by),
+        choice("only_first", "Only first",
+               "of `path`: light whose last event before the camera was of this kind; mirrors are glossy",
+               {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first),
+        integer("only_light", "Only light", "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1,
+                1 << 20, Effect::frame, &Settings::only_light),
+    };
+    for (Setting& row : table) row = row.in(SettingGroup::paths).only_of(kPathPicture);
+    return table;
+}
+
+}  // namespace
+
 const std::vector<Setting>& settings_table() {
     constexpr auto kTracing = SettingGroup::tracing, kPicture = SettingGroup::picture;
-    static const std::vector<Setting> table = {
+    static const std::vector<Setting> general = {
         choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer)
             .in(kTracing)
             .only_ways(),  // what a tracer's pictures show: TracerChoice::picture
-        integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth)
+        integer(
+            "depth", "Depth",
+            "generations of rays, 1: camera rays only; of `path` the most events of scattering, each lit by lamps, and a last "
+            "ray that may only find light",
+            1, kMostDepth, Effect::frame, &Settings::depth)
             .in(kTracing),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,
@@ -169,11 +222,13 @@ const std::vector<Setting>& settings_table() {
         lanes_setting().in(kTracing).only_ways(),
         integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
                 Effect::recompile, &Settings::ray_slots)
-            .in(kTracing),
+            .in(kTracing)
+            .only_of(kWhittedPicture),
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows).in(kTracing),
         real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
              &Settings::min_weight)
-            .in(kTracing),
+            .in(kTracing)
+            .only_of(kWhittedPicture),
         choice("poses", "Each pose",
                "how the structure follows a scene that plays. refit: its boxes are fitted to what moved; build: a new tree; "
                "auto: refits until a build pays; clip: as auto, from the best of five trees. `render` builds each frame, and "
@@ -183,7 +238,7 @@ const std::vector<Setting>& settings_table() {
             .only_ways(),
         size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height)
             .in(kPicture),
-        integer("spp", "Samples", "samples a pixel", 1, 65536, Effect::samples, &Settings::spp).in(kPicture),
+        integer("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::samples, &Settings::spp).in(kPicture),
         real("shutter", "Shutter",
              "motion blur: the share of a frame's time that the shutter is open, half of it before the frame's time; 0: none. "
              "Each sample shows the scene at a time of its own, so take 16 samples or more. While the window plays, pictures "
@@ -211,6 +266,14 @@ const std::vector<Setting>& settings_table() {
                {"auto", "on", "off"}, Effect::recompile, &Settings::trial)
             .only_ways(),
     };
+    static const std::vector<Setting> table = [] {
+        std::vector<Setting> all = general;
+        const auto first_of_picture =
+            std::find_if(all.begin(), all.end(), [](const Setting& row) { return row.group == kPicture; });
+        const std::vector<Setting> of_paths = settings_of_paths();
+        all.insert(first_of_picture, of_paths.begin(), of_paths.end());
+        return all;
+    }();
     return table;
 }
 

@@ -11,7 +11,10 @@ namespace clarity {
 enum class Effect { display, samples, frame, recompile, rebuild };
 
 // Where the Render tab has the row. Both sides of a comparison share the rows of `picture`: their pictures must be comparable.
-enum class SettingGroup { more, tracing, picture };
+enum class SettingGroup { more, tracing, paths, picture };
+
+// The greatest `depth`.
+constexpr int kMostDepth = 128;
 
 // The values of all settings.
 struct Settings {
@@ -21,7 +24,7 @@ struct Settings {
     std::string poses = "auto";        // how the structure follows a scene that plays: auto|refit|build
     // How rays are traced.
     std::string tracer = "auto";
-    int depth = 5;  // generations of rays, 1 = camera rays only
+    int depth = 5;  // generations of rays, 1 = camera rays only; of `path` events of scattering
     // Pixels of one work-item. 0: automatic, 1x1 on a GPU; lanes x lanes on a CPU, but at least 4x4.
     int packet_w = 0, packet_h = 0;
     int lanes = 0;               // 1, 4, 8 or 16; 0: automatic
@@ -35,6 +38,17 @@ struct Settings {
     int spp = 1;         // samples per pixel
     double shutter = 0;  // share of a frame's time that the shutter is open; 0: no motion blur
     bool shadows = true;
+    // Of the tracer `path`.
+    std::string strategy = "mis";   // nee|bsdf|mis
+    std::string mis = "power";      // balance|power
+    std::string sampler = "sobol";  // independent|sobol
+    int seed = 0;
+    std::string filter = "box";  // box|gaussian
+    // The paths that count: those of so many events, -1: any; found by nee|bsdf|any; whose first event is
+    // diffuse|glossy|transmission|any; from the light of that number, -1: any.
+    int only_bounce = -1;
+    std::string only_by = "any", only_first = "any";
+    int only_light = -1;
     double min_weight = 1.0 / 512.0;  // rays that would add a smaller share are not followed
     std::string aov = "color";        // a name of aov_table()
     // The display.
@@ -66,9 +80,14 @@ struct Setting {
 
     bool shared() const { return group == SettingGroup::picture; }
     bool at_once() const { return effect <= Effect::frame; }  // nothing must be prepared
+    bool used(const Settings& settings) const;                // whether it is for the tracer that is chosen
     // For the table.
     Setting in(SettingGroup of) const;
     Setting only_ways() const;  // changes_picture is false
+    Setting only_of(const char* shown) const;
+
+    // TracerChoice::picture of the tracers that it is for; empty: for all.
+    std::string picture = {};
 };
 
 // All settings but accel and its parameters, which come from the plugins (see parameters.hpp).

@@ -7,6 +7,8 @@ namespace clarity {
 
 // What Whitted's model gives: of tracers that shade by cl/shading/shading.h.
 inline constexpr const char* kWhittedPicture = "whitted";
+// What physics gives: of the tracer `path`.
+inline constexpr const char* kPathPicture = "path";
 
 struct TracerChoice {
     const char* id = "";    // of the setting `tracer`, and the name of its folders

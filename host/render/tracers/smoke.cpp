@@ -28,10 +28,12 @@ struct SmallFrame {
             return cl::Buffer(device->context(), CL_MEM_READ_WRITE, std::max<size_t>(bytes, 4096));
         };
         queue = cl::CommandQueue(device->context(), device->info().cl_device, CL_QUEUE_PROFILING_ENABLE);
-        film = buffer(size_t(width) * height * find_aov(settings.aov).film_channels() * sizeof(float));
+        film = buffer(size_t(width) * height * find_aov(settings.aov).film_channels() * sizeof(float) *
+                      film_planes(prepared->program->row));
         distances = buffer(layout.packets(width, height) * layout.rays() * sizeof(float));
         buffers.write(queue, *prepared->scene, *prepared->on_device, {make_frame(view, settings, layout, *prepared->accel, 0)},
                       view);
+        if (prepared->program->row.has(kPicksLights)) buffers.write_emitters(queue, *prepared->scene, prepared->accel, view);
         tracer = open_tracer(device, prepared->program);
         const unsigned groups = layout.groups_x(width) * layout.groups_y(height);
         const FrameLaunch frame{*prepared, settings, view, buffers, queue, film, distances, 0, groups, 0};

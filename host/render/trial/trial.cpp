@@ -1,36 +1,25 @@
 #include "render/trial/trial.hpp"
 
-#include <filesystem>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
+#include "base/physical_memory.hpp"
 #include "base/printable.hpp"
 #include "compile/compile.hpp"
 #include "device/kernel_files.hpp"
-#include "plugin/registry.hpp"
+#include "plugin/trust.hpp"
 #include "render/film/film.hpp"
 #include "render/trial/passed_programs.hpp"
-#include "render/trial/trial_arguments.hpp"
-#include "render/trial/trial_supervisor.hpp"
-#include "worker/child.hpp"
+#include "render/trial/trial_job.hpp"
 
 namespace clarity {
 namespace {
 
-namespace fs = std::filesystem;
-
 bool is_wanted(const DeviceInfo& info, const Settings& settings) {
-    if (std::getenv(worker::kWorkerVariable) || settings.trial == "off") return false;
+    if (worker::in_worker() || settings.trial == "off") return false;
     return settings.trial == "on" || (info.cpu && compiles_in_worker());
-}
-
-// The file that a plugin was loaded from; empty: it is part of this program.
-std::string library_of(const rt_plugin& plugin) {
-    const std::string file = loaded_file_of(plugin.id);
-    std::error_code error;
-    return file.empty() || fs::equivalent(file, program_file(), error) ? std::string() : file;
 }
 
 // The plugins whose kernels are in programs for this scene and structure.
@@ -56,8 +45,8 @@ Suspects suspects_of(const DeviceInfo& info, const std::string& source, const st
         add(edited.path + (edited.line ? ", changed from line " + std::to_string(edited.line) + " on" : ""));
     }
     for (const rt_plugin* plugin : plugins) {
-        const std::string library = library_of(*plugin);
-        if (!library.empty() && !is_own_library(original_of(library))) add("the kernels of " + original_of(library));
+        const std::string library = library_of(plugin->id);
+        if (!library.empty() && trust_of(original_of(library)) != Trust::own) add("the kernels of " + original_of(library));
     }
     // It makes wrong code of some kernels: those of bvh4 pop more from their stack than they have pushed (Mesa 22.3).
     if (info.llvmpipe && found.text.empty())
@@ -74,7 +63,7 @@ struct Subject {
     std::vector<const rt_plugin*> plugins;  // with kernels in it
 };
 
-void try_subject(const Subject& subject, const std::function<TrialArguments()>& arguments, Progress& progress) {
+void try_subject(const Subject& subject, const std::function<TrialJob()>& work, Progress& progress) {
     const Suspects suspects = suspects_of(subject.info, subject.source, subject.plugins);
     if (suspects.text.empty()) return;
     const PassedProgram passed(subject.options + '\n' + subject.info.name + '\n' + subject.info.driver + '\n' +
@@ -82,10 +71,10 @@ void try_subject(const Subject& subject, const std::function<TrialArguments()>& 
     if (passed.known()) return;
     if (progress.cancelled()) throw Cancelled();
     progress.stage("trying kernels in a worker");
-    worker::WorkerProcess process(worker::worker_program(), "trial-worker", words_of(arguments()), Exit::kernel_build_failed);
-    TrialSupervisor supervisor(process, progress);
+    worker::Job job(kTrialJob, "the trial of kernels", {60, 0, physical_memory_bytes() / 4 * 3});
+    std::string not_tried;
     try {
-        supervisor.follow();
+        job.run(work(), not_tried, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
@@ -97,38 +86,50 @@ void try_subject(const Subject& subject, const std::function<TrialArguments()>& 
                         "; --trial off (in the window: Try kernels) runs kernels untried",
                     {}, place);
     }
-    if (supervisor.not_tried().empty())
+    if (not_tried.empty())
         passed.keep();
     else
-        log(LogLevel::debug, "kernels were not tried: " + printable_line(supervisor.not_tried()));
+        log(LogLevel::debug, "kernels were not tried: " + printable_line(not_tried));
 }
 
-TrialArguments arguments_for(const DeviceInfo& info, const Settings& settings, const char* kernels) {
-    TrialArguments arguments;
-    arguments.kernels = kernels;
-    arguments.device = info.id();
-    arguments.device_name = info.name;
-    arguments.settings = settings;
-    return arguments;
+TrialJob job_for(const DeviceInfo& info, const Settings& settings, const char* kernels) {
+    TrialJob job;
+    job.kernels = kernels;
+    job.device = info.id();
+    job.device_name = info.name;
+    job.settings = settings;
+    return job;
 }
 
-TrialArguments arguments_of(const Prepared& prepared, const DeviceInfo& info, const KernelRow& row) {
+TrialJob job_of(const Prepared& prepared, const DeviceInfo& info, const KernelRow& row) {
     const AccelData& accel = *prepared.accel;
-    TrialArguments arguments = arguments_for(info, prepared.settings, row.tracer);
+    TrialJob job = job_for(info, prepared.settings, row.tracer);
     std::vector<const rt_plugin*> plugins = plugins_with_kernels(prepared);
     plugins.push_back(accel.plugin);
     for (const rt_plugin* plugin : plugins) {
-        const std::string library = library_of(*plugin);
-        if (!library.empty()) arguments.libraries[library] = original_of(library);
+        const std::string library = library_of(plugin->id);
+        if (!library.empty()) job.libraries[library] = original_of(library);
     }
-    arguments.features = features_of(*prepared.scene, accel.scene);
-    arguments.shapes = sample_shapes(*prepared.scene);
-    arguments.settings.accel = accel.plugin->id;
-    arguments.settings.accel_params = accel.params;
-    return arguments;
+    job.features = features_of(*prepared.scene, accel.scene);
+    job.shapes = sample_shapes(*prepared.scene);
+    job.settings.accel = accel.plugin->id;
+    job.settings.accel_params = accel.params;
+    return job;
 }
 
+constexpr const char* kKilled = "were killed from outside, maybe for want of memory, while {step}";
+
 }  // namespace
+
+const worker::JobKind kTrialJob = {"trial",
+                                   "to try kernels, run `clarity check`",
+                                   Exit::kernel_build_failed,
+                                   true,
+                                   LogLevel::debug,
+                                   {"crashed ({how}) while {step}", "ended the process ({how}) while {step}",
+                                    "did not come to an end within {how} of processor time while {step}", kKilled,
+                                    "took more than {how} of memory while {step}", kKilled},
+                                   trial_job};
 
 std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepared& prepared, const KernelRow& row,
                                             Progress& progress, bool* fresh) {
@@ -141,13 +142,13 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
     // A worker cannot load a structure that is part of this program.
     const rt_plugin& layout = *prepared.accel->layout;
     try {
-        if (!library_of(layout).empty())
+        if (!library_of(layout.id).empty())
             try_subject(
                 {info, source.what, source.text, source.options, prepared.accel->plugin->id,
                  std::string(info.llvmpipe ? "; take another structure" : "") + "; `clarity check " + layout.id +
                      "` looks closer, with oclgrind if that is installed",
                  plugins_with_kernels(prepared)},
-                [&] { return arguments_of(prepared, info, row); }, progress);
+                [&] { return job_of(prepared, info, row); }, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
@@ -163,7 +164,7 @@ void try_film(const DeviceInfo& info, const Settings& settings, Progress& progre
     const CompileRequest program = film_program();
     try_subject(
         {info, program.what, program.source, program.options, {}, {}, {}},
-        [&] { return arguments_for(info, settings, kFilmKernels); }, progress);
+        [&] { return job_for(info, settings, kFilmKernels); }, progress);
 }
 
 }  // namespace clarity

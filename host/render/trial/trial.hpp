@@ -10,6 +10,7 @@
 #include "base/progress.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/launch/prepared.hpp"
+#include "worker/job.hpp"
 
 namespace clarity {
 
@@ -24,7 +25,6 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
 // The same for the film's program, which is not compiled here. For any thread.
 void try_film(const DeviceInfo& info, const Settings& settings, Progress& progress);
 
-// Main function of the worker (`clarity trial-worker ...`, which people do not call).
-int trial_worker_main(int argc, char** argv);
+extern const worker::JobKind kTrialJob;
 
 }  // namespace clarity

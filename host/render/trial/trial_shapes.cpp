@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace clarity {
 namespace {
 
 constexpr size_t kShapesOfKind = 3, kParts = 4;
-// A word of a command line may have 128 KiB on Linux, all words of a program 2 MiB. A number takes 16 bytes at most.
+// The scene of a trial stays small.
 constexpr size_t kNumbersOfPart = 7000, kNumbers = 60000;
 
 }  // namespace
@@ -59,40 +57,6 @@ void add_shape(Scene& scene, const TrialShape& shape, rt_u32 kind, rt_u32 materi
         placed.world_from_object[4 * axis + 3] = center[axis] - scale * 0.5f * (box.min[axis] + box.max[axis]);
     }
     scene.shapes.push_back(placed);
-}
-
-std::string text_of(const TrialShape::Part& part) {
-    std::string text;
-    const auto add = [&](const auto& numbers) {
-        for (const float number : numbers) {
-            char word[32];
-            std::snprintf(word, sizeof word, "%.9g ", double(number));
-            text += word;
-        }
-    };
-    add(part.part.min);
-    add(part.part.max);
-    add(part.part.numbers);
-    add(part.more);
-    return text;
-}
-
-TrialShape::Part read_part(const std::string& text) {
-    std::vector<float> numbers;
-    const char* at = text.c_str();
-    for (char* end = nullptr;; at = end) {
-        const float number = std::strtof(at, &end);
-        if (end == at) break;
-        numbers.push_back(number);
-    }
-    constexpr size_t kFixed = 6 + RT_SHAPE_NUMBERS;
-    TrialShape::Part part;
-    if (numbers.size() < kFixed) numbers.resize(kFixed);
-    std::copy_n(numbers.begin(), 3, part.part.min.begin());
-    std::copy_n(numbers.begin() + 3, 3, part.part.max.begin());
-    std::copy_n(numbers.begin() + 6, RT_SHAPE_NUMBERS, part.part.numbers.begin());
-    part.more.assign(numbers.begin() + kFixed, numbers.end());
-    return part;
 }
 
 }  // namespace clarity

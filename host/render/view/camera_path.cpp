@@ -44,7 +44,10 @@ Camera between(const Camera& a, const Camera& b, double x) {
     camera.eye = to_floats(eye);
     camera.target = to_floats(eye + direction(turn, {0, 0, -far}));
     camera.up = to_floats(direction(turn, {0, 1, 0}));
-    camera.fov_y_rad = static_cast<float>((1 - x) * double(a.fov_y_rad) + x * double(b.fov_y_rad));
+    const auto mix = [x](float from, float to) { return static_cast<float>((1 - x) * double(from) + x * double(to)); };
+    camera.fov_y_rad = mix(a.fov_y_rad, b.fov_y_rad);
+    camera.aperture = mix(a.aperture, b.aperture);
+    camera.focus = mix(a.focus, b.focus);
     return camera;
 }
 
@@ -72,6 +75,8 @@ CameraKey read_key(const std::string& text, const std::string& all, const std::a
     key.camera.target = scene_point(numbers->target, origin);
     key.camera.fov_y_rad = static_cast<float>(*numbers->fov_deg * kRadPerDegree);
     key.camera.up = *numbers->up;
+    key.camera.aperture = numbers->aperture;
+    key.camera.focus = numbers->focus;
     return key;
 }
 
@@ -143,7 +148,7 @@ std::string animate_lines(const CameraPath& path, const std::string& name, const
     }
     std::string lines = "camera " + name + " eye " + point_text(first.eye.data(), origin, " ") + " target " +
                         point_text(first.target.data(), origin, " ") + " up " + three(first.up) + " fov " +
-                        exact_text(static_cast<float>(first.fov_y_rad / kRadPerDegree)) + "\n";
+                        exact_text(static_cast<float>(first.fov_y_rad / kRadPerDegree)) + lens_words(first) + "\n";
     lines += "animate " + name + " translate" + moves + "\nanimate " + name + " rotate" + turns + "\n";
     if (zooms) lines += "animate " + name + " fov" + angles + "\n";
     return lines;

@@ -8,6 +8,7 @@
 #include "base/numbers.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/camera.hpp"
+#include "scene/light_kinds.hpp"
 
 namespace clarity {
 namespace {
@@ -69,7 +70,11 @@ View make_view(const Scene& scene, float aspect, const std::string& camera, cons
     if (!light.empty()) {
         const std::vector<double> n = read_numbers<double>(light);
         if (n.size() != 3) throw Error(Exit::usage, "--light: `" + light + "` is not x,y,z");
-        view.lights[0].kind = RT_LIGHT_POINT;
+        if (!light_kind_of(view.lights[0]).has_place) {
+            rt_light point = default_light(RT_LIGHT_POINT);
+            std::copy_n(view.lights[0].color, 3, point.color);
+            view.lights[0] = point;
+        }
         const std::array<float, 3> at = scene_point({n[0], n[1], n[2]}, scene.origin);
         std::copy(at.begin(), at.end(), view.lights[0].position);
     }

@@ -18,7 +18,8 @@ struct View {
 // Makes a view from the scene's camera, lights, ambient light and background. If the scene has no lights, it gets two that suit
 // its size.
 // camera: "" (the scene's first camera, or one that frames the scene), a camera's name, or "ex,ey,ez,tx,ty,tz[,fov_deg]".
-// light: "" or "x,y,z", which moves the first light and makes it a point light. Throws Error(usage) if it cannot read either.
+// light: "" or "x,y,z", which moves the first light, and makes it a point light if it lies in a direction. Throws Error(usage)
+// if it cannot read either.
 View make_view(const Scene& scene, float aspect, const std::string& camera = {}, const std::string& light = {});
 
 }  // namespace clarity

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "scene/camera.hpp"
 #include "scene/instance_edit.hpp"
+#include "scene/light_kinds.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
@@ -61,15 +62,9 @@ void pose_cameras(const std::vector<PlacedNode>& nodes, std::vector<Camera>& cam
 void pose_lights(const std::vector<PlacedNode>& nodes, std::vector<Light>& lights) {
     for (Light& light : lights) {
         if (light.node == RT_NONE) continue;
-        const Matrix& m = nodes[light.node].world;
-        const bool is_point = light.values.kind == RT_LIGHT_POINT;
-        Vec moved = is_point ? point(m, to_vec(light.at_node)) : direction(m, to_vec(light.at_node));
-        if (!is_point) {
-            const double length = std::sqrt(dot(moved, moved));
-            if (!(length > 0)) continue;
-            for (double& x : moved) x /= length;
-        }
-        for (int i = 0; i < 3; ++i) light.values.position[i] = static_cast<float>(moved[i]);
+        rt_light moved = light.at_node;
+        std::copy_n(light.values.color, 3, moved.color);  // which a clip may change
+        if (move_light(moved, nodes[light.node].world)) light.values = moved;
     }
 }
 

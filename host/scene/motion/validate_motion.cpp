@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/light_kinds.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -178,8 +179,12 @@ std::string check_hung(const Scene& s) {
         if (!all_finite_in(c.node_eye) || !all_finite_in(c.node_target) || !all_finite_in(c.node_up))
             return text("camera", i, "not a finite number");
     }
-    for (size_t i = 0; i < s.lights.size(); ++i)
-        if (bad(s.lights[i].node) || !all_finite_in(s.lights[i].at_node)) return text("light", i, "no such node");
+    for (size_t i = 0; i < s.lights.size(); ++i) {
+        const Light& light = s.lights[i];
+        if (bad(light.node)) return text("light", i, "no such node");
+        const std::string fault = light.node == RT_NONE ? "" : light_fault(light.at_node);
+        if (!fault.empty()) return text("light", i, ("in its node's space " + fault).c_str());
+    }
     return {};
 }
 

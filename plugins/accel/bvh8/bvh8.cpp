@@ -6,7 +6,6 @@
 #include "clarity_bvh/assemble.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/wide/wide_levels.hpp"
-#include "device_refit.hpp"
 #include "incoherent.hpp"
 #include "pack.hpp"
 #include "refit.hpp"

@@ -7,7 +7,6 @@
 #include "clarity_bvh/assemble.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "compressed_levels.hpp"
-#include "device_refit.hpp"
 #include "pack.hpp"
 #include "refit.hpp"
 #include "rt_device.hpp"

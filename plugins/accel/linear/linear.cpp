@@ -7,32 +7,21 @@
 namespace {
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-    const auto is_wanted = [&](rt_u32 g) { return !input->wanted || input->wanted[g]; };
     uint64_t count = 0;
-    rt_u32 groups = 0;
-    for (rt_u32 g = 0; g < input->group_count; ++g)
-        if (is_wanted(g)) {
-            count += input->groups[g].count;
-            ++groups;
-        }
-    if (input->first_leaf + count > RT_REF_INDEX_MAX)
-        throw rt::fail(host, "holds 2^28 - 1 primitives at most: use a tree, and instance meshes");
+    for (rt_u32 g = 0; g < input->group_count; ++g) count += input->groups[g].count;
+    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: use a tree, and instance meshes");
 
-    auto* runs = rt::alloc<linear_run>(out, 0, groups);
+    auto* runs = rt::alloc<linear_run>(out, 0, input->group_count);
     rt_u32* leaves = rt::leaves(out, count);
-    // Other parts of the list may be in front of this one, see rt_build_input.
-    const rt_u32 first_leaf = static_cast<rt_u32>(input->first_leaf);
-    const rt_u32 first_run = input->first_elements ? static_cast<rt_u32>(input->first_elements[0]) : 0;
-    rt_u32 at = 0, run = 0;
+    rt_u32 at = 0;
     for (rt_u32 g = 0; g < input->group_count; ++g) {
-        if (!is_wanted(g)) continue;
         const rt_group& group = input->groups[g];
-        runs[run] = {first_leaf + at, group.count};
+        runs[g] = {at, group.count};
         for (rt_u32 i = 0; i < group.count; ++i) leaves[at++] = input->prims[group.first + i].ref;
-        rt::root(out, g, first_run + run++);
+        rt::root(out, g, g);
         rt::progress(host, static_cast<float>(at) / static_cast<float>(count + 1));
     }
-    rt::stat(out, "nodes", groups);
+    rt::stat(out, "nodes", input->group_count);
     return RT_OK;
 }
 
@@ -42,7 +31,7 @@ constexpr rt_cl_file kFiles[] = {
 constexpr rt_slot kSlots[] = {rt::slot<linear_run>("linear_runs", "linear_run")};
 // There are no bounding volumes, so `levels` is null.
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "linear_types.h"), rt::file(kFiles, "linear.cl"),
-                                      rt::guarded<build>, nullptr, rt::Traits().can(RT_BUILDS_GROUPS).tests_everything());
+                                      rt::guarded<build>, nullptr, rt::Traits().tests_everything());
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 
 }  // namespace

@@ -66,16 +66,18 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
             desc.kind = RT_LIGHT_DIRECTIONAL;
             store(direction, desc.direction);
         } else {
-            if (light.mType != aiLightSource_POINT) {
-                const char* kind = light.mType == aiLightSource_SPOT ? "spot" : "area";
-                const std::string text = "the " + std::string(kind) + " light " + quoted(light.mName) + " became a point light";
-                sink.warn(sink.ctx, text.c_str());
-            }
-            desc.kind = RT_LIGHT_POINT;
+            const bool is_spot = light.mType == aiLightSource_SPOT;
+            if (light.mType != aiLightSource_POINT && !is_spot)
+                sink.warn(sink.ctx, ("the area light " + quoted(light.mName) + " became a point light").c_str());
+            desc.kind = is_spot ? RT_LIGHT_SPOT : RT_LIGHT_POINT;
+            Vec direction = transform_vector(world, light.mDirection);
+            if (!normalize(direction)) direction = {0, -1, 0};
+            store(direction, desc.direction);
             store(transform_point(world, light.mPosition), desc.position);
         }
         const aiColor3D& c = light.mColorDiffuse;
-        if (all_finite(desc.position)) lights.add(desc, light.mName.C_Str(), {c.r, c.g, c.b}, 1);
+        const importers::Cone cone = {light.mAngleOuterCone, light.mAngleInnerCone};  // whole angles
+        if (all_finite(desc.position)) lights.add(desc, light.mName.C_Str(), {c.r, c.g, c.b}, 1, cone);
     }
     lights.pass(&host, sink);
 }

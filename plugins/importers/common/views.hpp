@@ -1,6 +1,7 @@
 // views.hpp -- passes lights and cameras to the host. For importers.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <string>
@@ -10,12 +11,17 @@
 
 namespace importers {
 
+// The cone of a spot light: whole angles in radians. Beyond `angle` it has no light, within `inner` it has its full intensity.
+struct Cone {
+    double angle = 1, inner = 0;
+};
+
 // The lights of a file. Physical intensities (watts, candela, lux) assume falloff with distance. Lights here have none, so all
 // of them are scaled until the brightest is 1.
 class Lights {
  public:
-    // intensity: what the colour is multiplied by.
-    void add(rt_light_desc light, const std::string& name, const double (&color)[3], double intensity) {
+    // intensity: what the colour is multiplied by. cone: of a spot.
+    void add(rt_light_desc light, const std::string& name, const double (&color)[3], double intensity, const Cone& cone = {}) {
         for (int k = 0; k < 3; ++k) {
             const double c = color[k] * intensity;
             light.color[k] = std::isfinite(c) ? static_cast<float>(std::clamp(c, 0.0, 1e30)) : 0;
@@ -23,6 +29,11 @@ class Lights {
         }
         names_.push_back(name);
         light.name = names_.back().c_str();
+        if (light.kind == RT_LIGHT_SPOT) {
+            cones_.push_back({rt::value("angle", degrees(cone.angle)), rt::value("inner", degrees(cone.inner))});
+            light.values = cones_.back().data();
+            light.value_count = static_cast<rt_u32>(cones_.back().size());
+        }
         lights_.push_back(light);
     }
     float scale() const { return 1 / brightest_; }
@@ -39,7 +50,13 @@ class Lights {
 
  private:
     std::vector<rt_light_desc> lights_;
+    static float degrees(double radians) {
+        const double value = radians * 57.29577951308232;
+        return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 180.0)) : 0;
+    }
+
     std::deque<std::string> names_;  // which does not move them
+    std::deque<std::array<rt_key_value, 2>> cones_;
     float brightest_ = 1;
 };
 

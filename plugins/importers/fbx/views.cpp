@@ -19,14 +19,16 @@ LightView light_of(const Context& context, const SceneNode& node, uint32_t attri
     const std::string& name = context.objects[node.object].name;
     const Properties p = context.properties(attribute);
     const int64_t type = p.whole("LightType", 0);
-    rt_light_desc out = rt::light(type == 1 ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT);
-    if (type > 1)
-        context.warn(std::string("the ") + (type == 2 ? "spot" : "area") + " light '" + name + "' became a point light");
+    rt_light_desc out = rt::light(type == 1 ? RT_LIGHT_DIRECTIONAL : type == 2 ? RT_LIGHT_SPOT : RT_LIGHT_POINT);
+    if (type > 2) context.warn("the area light '" + name + "' became a point light");
     out.node = node.id;
     LightView view;
     view.color = p.vector("Color", {1, 1, 1});
     view.intensity = p.number("Intensity", 100) / 100;
-    lights.add(out, name, {view.color[0], view.color[1], view.color[2]}, view.intensity);
+    // OuterAngle and InnerAngle are whole angles in degrees; before version 7 `Cone angle` is the outer one.
+    constexpr double radians = 0.017453292519943295;
+    const double angle = p.number("OuterAngle", p.number("Cone angle", 45)), inner = p.number("InnerAngle", angle);
+    lights.add(out, name, {view.color[0], view.color[1], view.color[2]}, view.intensity, {angle * radians, inner * radians});
     return view;
 }
 

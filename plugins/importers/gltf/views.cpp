@@ -31,17 +31,20 @@ void add_camera(const Value& camera, const NodeTree& tree, size_t node, const rt
     rt::id(sink.camera(sink.ctx, &out));
 }
 
-void add_light(const Value& light, const NodeTree& tree, size_t node, const rt_scene_sink& sink, importers::Lights& passed) {
+void add_light(const Value& light, const NodeTree& tree, size_t node, importers::Lights& passed) {
     const std::string type = light["type"].text();
     if (type != "directional" && type != "point" && type != "spot") light["type"].refuse("'directional', 'point' or 'spot'");
-    rt_light_desc out = rt::light(type == "directional" ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT, nullptr);
+    const bool is_spot = type == "spot";
+    rt_light_desc out = rt::light(type == "directional" ? RT_LIGHT_DIRECTIONAL : is_spot ? RT_LIGHT_SPOT : RT_LIGHT_POINT);
     out.node = tree.id(node);
     out.direction[1] = 0;
     out.direction[2] = -1;
     const std::array<double, 3> color = light.numbers<3>("color", {1, 1, 1});
     const double intensity = light.number("intensity", 1);
-    if (type == "spot") rt::warn(sink, "the spot light " + label(light) + " became a point light");
-    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity);
+    // The angles are those between the axis and the cone.
+    const Value spot = light.object("spot");
+    const importers::Cone cone = {2 * spot.number("outerConeAngle", 0.7853981633974483), 2 * spot.number("innerConeAngle", 0)};
+    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity, cone);
 }
 
 }  // namespace
@@ -64,7 +67,7 @@ void add_lights(const Document& document, const NodeTree& tree, const rt_host* h
             const Value own = tree.list()[node].object("extensions").object(kExtension);
             if (!own.has("light")) return;
             const Value lights = document.root().object("extensions").object(kExtension).list("lights");
-            add_light(lights[own["light"].index(lights)], tree, node, sink, passed);
+            add_light(lights[own["light"].index(lights)], tree, node, passed);
         });
     }
     passed.pass(host, sink);

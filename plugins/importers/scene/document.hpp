@@ -19,16 +19,20 @@ struct Name {
 struct Camera {
     Name name;
     Vec3 eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
-    float fov_deg = 45;  // vertical, degrees
+    float fov_deg = 45;             // vertical, degrees
+    float aperture = 0, focus = 0;  // as in rt_camera
 };
+// Values of keys that come from the host. The names are those of its tables.
+using Looks = std::vector<rt_key_value>;
 struct Light {
     Name name;
     rt_light_desc values{};  // without name
+    Looks looks;
 };
 struct Material {
     Name name;
-    rt_material_desc values{};  // without name and texture
-    std::string texture;        // path as in the file; empty: no texture
+    Looks looks;
+    std::string texture;  // path as in the file; empty: no texture
     rt_u32 wrap_u = RT_WRAP_REPEAT, wrap_v = RT_WRAP_REPEAT;
 };
 struct Sphere {
@@ -91,7 +95,14 @@ struct Item {
     Position position;
 };
 
+// What the sink takes, whose keys are tables of the host.
+struct Kinds {
+    std::vector<const rt_primitive_kind*> shapes, lights;
+    const rt_primitive_kind* material = nullptr;
+};
+
 struct Document {
+    Kinds kinds;
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     std::vector<Material> materials;

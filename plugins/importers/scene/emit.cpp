@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emit_motion.hpp"
+#include "rt_plugin.hpp"
 
 namespace scene_format {
 namespace {
@@ -64,9 +65,9 @@ bool Emitter::materials() {
     std::map<std::tuple<std::string, rt_u32, rt_u32>, rt_u32> texture_ids;
     for (const Material& material : document_.materials) {
         position_ = material.name.position;
-        rt_material_desc desc = material.values;
-        desc.struct_bytes = sizeof desc;
-        desc.name = material.name.text.c_str();
+        rt_material_desc desc = rt::material(material.name.text.c_str());
+        desc.values = material.looks.data();
+        desc.value_count = static_cast<rt_u32>(material.looks.size());
         if (!material.texture.empty()) {
             auto [known, is_new] = texture_ids.insert({{material.texture, material.wrap_u, material.wrap_v}, RT_NONE});
             if (is_new) {
@@ -90,6 +91,8 @@ bool Emitter::lights_and_cameras() {
         rt_light_desc desc = light.values;
         desc.struct_bytes = sizeof desc;
         desc.name = name_or_null(light.name.text);
+        desc.values = light.looks.data();
+        desc.value_count = static_cast<rt_u32>(light.looks.size());
         if (const rt_u32 node = motion_.node_of_light(light)) {
             desc.node = node;
             for (float& x : desc.position) x = 0;  // the node is there
@@ -105,6 +108,8 @@ bool Emitter::lights_and_cameras() {
         std::copy(camera.target.begin(), camera.target.end(), desc.target);
         std::copy(camera.up.begin(), camera.up.end(), desc.up);
         desc.fov_y_rad = camera.fov_deg * rad_per_deg;
+        desc.aperture = camera.aperture;
+        desc.focus = camera.focus;
         desc.node = motion_.node_of_camera(camera);
         for (int i = 0; desc.node != 0 && i < 3; ++i) {
             desc.target[i] -= desc.eye[i];

@@ -15,8 +15,7 @@ namespace {
 
 constexpr uint32_t kLinesBetweenReports = 4096;
 
-void read_statement(Statement& statement, const Token& first, const ShapeKinds& kinds, Document& document,
-                    Diagnostics& diagnostics) {
+void read_statement(Statement& statement, const Token& first, Document& document, Diagnostics& diagnostics) {
     std::vector<std::string_view> words;
     if (first.is_quoted) {
         throw StatementError{first.position,
@@ -30,7 +29,7 @@ void read_statement(Statement& statement, const Token& first, const ShapeKinds& 
         }
         words.push_back(word);
     }
-    for (const rt_primitive_kind* kind : kinds) {
+    for (const rt_primitive_kind* kind : document.kinds.shapes) {
         if (kind->id == first.text) {
             read_shape(statement, *kind, document);
             ++document.statement_count;
@@ -110,8 +109,7 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
 
 }  // namespace
 
-bool parse(std::string_view text, const ShapeKinds& kinds, Document& document, Diagnostics& diagnostics,
-           const std::function<bool(float)>& proceed) {
+bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, const std::function<bool(float)>& proceed) {
     Lexer lexer(text);
     std::vector<Token> tokens;
     uint32_t lines = 0;
@@ -121,7 +119,7 @@ bool parse(std::string_view text, const ShapeKinds& kinds, Document& document, D
         try {
             if (!lexer.next_line(tokens)) break;
             Statement statement(tokens, lexer.line_end());
-            read_statement(statement, tokens[0], kinds, document, diagnostics);
+            read_statement(statement, tokens[0], document, diagnostics);
         } catch (const StatementError& error) {
             diagnostics.error(error);
             is_complete = !error.ends_reading;

@@ -30,9 +30,10 @@ int32_t load_text(std::string_view text, const rt_host& host, const char* path, 
         throw std::runtime_error("the file is larger than " + std::to_string(kMaxFileBytes >> 20) +
                                  " MiB; give large meshes as PLY or OBJ and `load` them");
     Document document;
+    document.kinds = kinds_of(sink);
     Diagnostics diagnostics;
     const auto proceed = [&](float fraction) { return host.progress(host.ctx, 0.5f * fraction) != 0; };
-    if (!parse(text, shape_kinds(sink), document, diagnostics, proceed)) return RT_CANCELLED;
+    if (!parse(text, document, diagnostics, proceed)) return RT_CANCELLED;
     if (diagnostics.failed()) return report(diagnostics, path, host);
     for (const Diagnostic& warning : diagnostics.warnings()) sink.warn(sink.ctx, located(path, warning).c_str());
     return emit(document, path, host, sink);

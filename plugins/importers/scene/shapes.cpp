@@ -1,10 +1,10 @@
 #include "shapes.hpp"
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace scene_format {
-namespace {
 
 const rt_key& key_of(const rt_primitive_kind& kind, size_t index) {
     return *reinterpret_cast<const rt_key*>(reinterpret_cast<const char*>(kind.keys) + index * kind.key_bytes);
@@ -39,13 +39,17 @@ std::vector<float> read_values(Statement& s, const rt_key& key) {
     throw StatementError{s.last(), std::string("key `") + key.name + "` is of a kind that this importer does not know"};
 }
 
-}  // namespace
-
-std::vector<const rt_primitive_kind*> shape_kinds(const rt_scene_sink& sink) {
-    std::vector<const rt_primitive_kind*> kinds;
-    if (!RT_HAS(&sink, rt_scene_sink, primitive) || !sink.primitive_kind || !sink.primitive) return kinds;
-    while (const rt_primitive_kind* kind = sink.primitive_kind(sink.ctx, static_cast<rt_u32>(kinds.size())))
-        kinds.push_back(kind);
+Kinds kinds_of(const rt_scene_sink& sink) {
+    if (!RT_HAS(&sink, rt_scene_sink, material_kind) || !sink.light_kind || !sink.material_kind)
+        throw std::runtime_error(
+            "this importer needs a newer Clarity, which tells it the keys of lights and materials: update the program");
+    Kinds kinds;
+    kinds.material = sink.material_kind(sink.ctx);
+    const auto all = [&](auto kind, std::vector<const rt_primitive_kind*>& list) {
+        while (const rt_primitive_kind* next = kind(sink.ctx, static_cast<rt_u32>(list.size()))) list.push_back(next);
+    };
+    all(sink.light_kind, kinds.lights);
+    if (sink.primitive_kind && sink.primitive) all(sink.primitive_kind, kinds.shapes);
     return kinds;
 }
 

@@ -8,8 +8,12 @@
 
 namespace scene_format {
 
-// All kinds of shapes that the sink takes; none if it is of a host without shapes.
-std::vector<const rt_primitive_kind*> shape_kinds(const rt_scene_sink& sink);
+// All kinds of shapes, lights and materials that the sink takes. Throws std::runtime_error if the host is older than their
+// tables.
+Kinds kinds_of(const rt_scene_sink& sink);
+const rt_key& key_of(const rt_primitive_kind& kind, size_t index);
+// Reads the numbers of a key of a shape, or of a number or vector of a light or material. Throws StatementError.
+std::vector<float> read_values(Statement& s, const rt_key& key);
 
 // Reads the rest of the statement into the document. Throws StatementError.
 void read_shape(Statement& s, const rt_primitive_kind& kind, Document& document);

@@ -1,11 +1,10 @@
 #include "statements.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "geometry.hpp"
+#include "looks.hpp"
 
 namespace scene_format {
 namespace {
@@ -13,10 +12,6 @@ namespace {
 // Below, one function for each statement. Their reference is docs/scene_format.md.
 
 constexpr float kNoLimit = kMaxNumber;
-
-void copy(const Vec3& from, float (&to)[3]) {
-    std::copy(from.begin(), from.end(), to);
-}
 
 void add_item(Document& document, ItemKind kind, size_t index, Position position) {
     document.items.push_back({kind, static_cast<uint32_t>(index), position});
@@ -30,8 +25,8 @@ void once(Statement& s, Position first) {
 }
 
 void read_camera(Statement& s, Document& document, Diagnostics&) {
-    enum { kEye, kTarget, kUp, kFov };
-    s.expect_keys({{"eye"}, {"target"}, {"up"}, {"fov"}});
+    enum { kEye, kTarget, kUp, kFov, kAperture, kFocus };
+    s.expect_keys({{"eye"}, {"target"}, {"up"}, {"fov"}, {"aperture"}, {"focus"}});
     Camera camera;
     camera.name = s.name("the camera's name");
     while (!s.done()) {
@@ -47,6 +42,12 @@ void read_camera(Statement& s, Document& document, Diagnostics&) {
                 break;
             case kFov:
                 camera.fov_deg = s.number_between("`fov` (vertical, degrees)", 0.1f, 179.0f);
+                break;
+            case kAperture:
+                camera.aperture = s.number_between("`aperture` (diameter of the lens)", 0, kNoLimit);
+                break;
+            case kFocus:
+                camera.focus = s.number_between("`focus` (distance along the view)", 0, kNoLimit);
                 break;
         }
     }
@@ -65,41 +66,6 @@ void read_camera(Statement& s, Document& document, Diagnostics&) {
     document.cameras.push_back(std::move(camera));
 }
 
-void read_light(Statement& s, Document& document, Diagnostics&) {
-    enum { kColor, kIntensity, kName, kWhere };
-    const bool is_point = s.choice("kind of light", {"point", "directional"}) == 0;
-    s.expect_keys({{"color"}, {"intensity"}, {"name"}, {is_point ? "position" : "direction"}});
-    Light light;
-    light.values.kind = is_point ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL;
-    Vec3 color{1, 1, 1}, position{0, 10, 0}, direction{0, -1, 0};
-    float intensity = 1;
-    while (!s.done()) {
-        switch (s.key()) {
-            case kColor:
-                color = s.color("`color` (r g b)", kNoLimit);
-                break;
-            case kIntensity:
-                intensity = s.number_between("`intensity`", 0, 1e9f);
-                break;
-            case kName:
-                light.name = s.name("the light's name");
-                break;
-            case kWhere:
-                if (is_point) {
-                    position = s.vector("`position` (x y z)");
-                } else {
-                    direction = s.direction("`direction` (x y z, in which the light travels)");
-                }
-                break;
-        }
-    }
-    for (float& c : color) c = std::min(c * intensity, kMaxNumber);
-    copy(color, light.values.color);
-    copy(position, light.values.position);
-    copy(direction, light.values.direction);
-    document.lights.push_back(std::move(light));
-}
-
 void read_background(Statement& s, Document& document, Diagnostics&) {
     once(s, document.background_position);
     const Vec3 color = s.color("`background` (r g b)", kNoLimit);
@@ -114,88 +80,6 @@ void read_ambient(Statement& s, Document& document, Diagnostics&) {
     s.expect_end();
     document.ambient = color;
     document.ambient_position = s.position();
-}
-
-void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
-    enum { kColor, kReflect, kRefract, kIor, kSpecular, kShininess, kEmission, kTexture, kChecker, kWrap };
-    s.expect_keys({{"color"},
-                   {"reflect"},
-                   {"refract"},
-                   {"ior"},
-                   {"specular"},
-                   {"shininess"},
-                   {"emission"},
-                   {"texture"},
-                   {"checker"},
-                   {"wrap"}});
-    // Register the name before the keys are read, so that an error in a key does not make every use of the name an error.
-    Material& material = document.materials.emplace_back();
-    material.name = s.name("the material's name");
-    rt_material_desc& values = material.values;
-    // The same values as the host's material for objects without one.
-    copy({0.7f, 0.7f, 0.7f}, values.color);
-    copy({0.15f, 0.15f, 0.15f}, values.specular);
-    values.ior = 1.5f;
-    values.shininess = 32;
-    values.texture = RT_NONE;
-    Position refract_position = material.name.position, wrap_position;
-    while (!s.done()) {
-        switch (s.key()) {
-            case kColor:
-                copy(s.color("`color` (r g b)", 1), values.color);
-                break;
-            case kReflect:
-                values.reflect = s.number_between("`reflect`", 0, 1);
-                break;
-            case kRefract:
-                values.refract = s.number_between("`refract`", 0, 1);
-                refract_position = s.last();
-                break;
-            case kIor:
-                values.ior = s.number_between("`ior` (index of refraction)", 0.1f, 10);
-                break;
-            case kSpecular:
-                copy(s.color("`specular` (r g b, or one grey)", 1), values.specular);
-                break;
-            case kShininess:
-                values.shininess = s.number_between("`shininess` (exponent of the highlight)", 0, 100000);
-                break;
-            case kEmission:
-                copy(s.color("`emission` (r g b)", kNoLimit), values.emission);
-                break;
-            case kTexture:
-                material.texture = s.path("the texture's file");
-                break;
-            case kChecker:
-                values.flags |= RT_MATERIAL_CHECKER;
-                break;
-            case kWrap: {
-                const std::vector<std::string_view> modes = {"repeat", "clamp", "mirror"};
-                material.wrap_u = material.wrap_v = static_cast<rt_u32>(s.choice("wrap mode", modes));
-                wrap_position = s.last();
-                if (!s.done() && !s.at_key()) material.wrap_v = static_cast<rt_u32>(s.choice("wrap mode along v", modes));
-                break;
-            }
-        }
-    }
-    // The texture is multiplied by the colour. Without a given colour, white leaves the texture unchanged.
-    if (!material.texture.empty() && !s.given(kColor)) copy({1, 1, 1}, values.color);
-    if (s.given(kWrap) && material.texture.empty())
-        diagnostics.warning(wrap_position,
-                            "`wrap` has no effect, because material " + in_quotes(material.name.text) + " has no `texture`");
-    const float sum = values.reflect + values.refract;
-    if (sum > 1) {
-        // .1 + .9 is not exactly 1, so a small excess is no reason for a warning.
-        if (sum > 1.0001f) {
-            char text[160];
-            std::snprintf(text, sizeof text,
-                          "`reflect` and `refract` of material %s add up to %g; both are scaled down to add up to 1",
-                          in_quotes(material.name.text).c_str(), static_cast<double>(sum));
-            diagnostics.warning(refract_position, text);
-        }
-        values.reflect /= sum;
-        values.refract = 1 - values.reflect;
-    }
 }
 
 void read_sphere(Statement& s, Document& document, Diagnostics&) {
@@ -355,19 +239,6 @@ void read_animate(Statement& s, Document& document, Diagnostics&) {
     document.animations.push_back(std::move(animation));
 }
 
-std::string text_of(const float* numbers, size_t count) {
-    std::string text;
-    for (size_t i = 0; i < count; ++i) {
-        char digits[32];
-        const auto end = std::to_chars(digits, digits + sizeof digits, numbers[i]).ptr;
-        text += (i == 0 ? "" : ",") + std::string(digits, end);
-    }
-    return text;
-}
-std::string text_of(const Vec3& v) {
-    return text_of(v.data(), 3);
-}
-
 void read_instance_edits(Statement& s, const std::string& prefix, Document& document) {
     enum { kTranslate, kRotate, kScale, kHidden };
     s.expect_keys({{"translate"}, {"rotate"}, {"scale"}, {"hidden"}});
@@ -392,64 +263,6 @@ void read_instance_edits(Statement& s, const std::string& prefix, Document& docu
     }
 }
 
-void read_material_edits(Statement& s, const std::string& prefix, Document& document) {
-    enum { kColor, kEmission, kSpecular, kReflect, kRefract, kIor, kShininess };
-    s.expect_keys({{"color"}, {"emission"}, {"specular"}, {"reflect"}, {"refract"}, {"ior"}, {"shininess"}});
-    const auto add = [&](const char* part, const std::string& value) {
-        document.edits.push_back({prefix + part, value, s.position()});
-    };
-    const auto number = [&](const char* part, const char* what, float least, float most) {
-        const float value = s.number_between(what, least, most);
-        add(part, text_of(&value, 1));
-    };
-    constexpr float kMost = 1e6f;
-    while (!s.done()) {
-        switch (s.key()) {
-            case kColor:
-                add("color", text_of(s.color("`color` (r g b)", kMost)));
-                break;
-            case kEmission:
-                add("emission", text_of(s.color("`emission` (r g b)", kMost)));
-                break;
-            case kSpecular:
-                add("specular", text_of(s.color("`specular` (r g b)", kMost)));
-                break;
-            case kReflect:
-                number("reflect", "`reflect`", 0, 1);
-                break;
-            case kRefract:
-                number("refract", "`refract`", 0, 1);
-                break;
-            case kIor:
-                number("ior", "`ior`", 1e-3f, 100);
-                break;
-            case kShininess:
-                number("shininess", "`shininess`", 0, kMost);
-                break;
-        }
-    }
-}
-
-void read_light_edit(Statement& s, const std::string& key, Document& document) {
-    const size_t kind = s.choice("`off` or kind of light", {"off", "point", "directional"});
-    if (kind == 0) {
-        s.expect_end();
-        document.edits.push_back({key, "off", s.position()});
-        return;
-    }
-    enum { kColor, kWhere };
-    s.expect_keys({{"color"}, {kind == 1 ? "position" : "direction"}});
-    Vec3 color{1, 1, 1}, where = kind == 1 ? Vec3{0, 10, 0} : Vec3{0, -1, 0};
-    while (!s.done()) {
-        if (s.key() == kColor)
-            color = s.color("`color` (r g b)", kNoLimit);
-        else
-            where = kind == 1 ? s.vector("`position` (x y z)") : s.direction("`direction` (x y z, in which the light travels)");
-    }
-    document.edits.push_back(
-        {key, (kind == 1 ? "point," : "directional,") + text_of(where) + "," + text_of(color), s.position()});
-}
-
 void read_edit(Statement& s, Document& document, Diagnostics&) {
     const size_t of = s.choice("object to edit", {"instance", "material", "light"});
     const float number = s.number_between("its number, counted from 0", 0, 1e9f);
@@ -457,7 +270,7 @@ void read_edit(Statement& s, Document& document, Diagnostics&) {
     const std::string count = std::to_string(static_cast<uint32_t>(number));
     if (of == 0) return read_instance_edits(s, "instance." + count + ".", document);
     if (of == 1) return read_material_edits(s, "material." + count + ".", document);
-    read_light_edit(s, "light." + count, document);
+    read_light_edits(s, "light." + count, document);
 }
 
 }  // namespace

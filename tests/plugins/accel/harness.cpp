@@ -99,7 +99,7 @@ rt_u32* leaves(void* ctx, uint64_t count) {
 
 }  // namespace
 
-Built build(const rt_plugin& plugin, const Input& input, const Options& options, const Part* part) {
+Built build(const rt_plugin& plugin, const Input& input, const Options& options) {
     const rt_accel& accel = *plugin.accel;
     std::vector<double> params;
     for (rt_u32 i = 0; i < plugin.param_count; ++i) params.push_back(plugin.params[i].def);
@@ -129,11 +129,6 @@ Built build(const rt_plugin& plugin, const Input& input, const Options& options,
     in.geometry = &geometry;
     in.params = params.data();
     in.device = &device;
-    if (part) {
-        in.wanted = part->wanted.data();
-        in.first_elements = part->first_elements.data();
-        in.first_leaf = part->first_leaf;
-    }
     OutputContext out_context{&plugin, &built, {}};
     rt_build_output out{};
     out.struct_bytes = sizeof out;
@@ -150,6 +145,20 @@ Built build(const rt_plugin& plugin, const Input& input, const Options& options,
     built.status = accel.build(&host, &in, &out);
     built.why = host_context.why;
     return built;
+}
+
+void number(Input& input) {
+    for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
+}
+
+bool same_tree(const rt_plugin& plugin, const Built& a, const Built& b) {
+    if (a.leaves != b.leaves || a.roots != b.roots || a.slot_counts != b.slot_counts || a.defines != b.defines ||
+        a.stats != b.stats)
+        return false;
+    for (size_t slot = 0; slot < a.slots.size(); ++slot)
+        if (std::memcmp(a.slots[slot], b.slots[slot], a.slot_counts[slot] * plugin.accel->slots[slot].elem_bytes) != 0)
+            return false;
+    return true;
 }
 
 std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 group, rt_u32 level) {

@@ -24,6 +24,8 @@ struct Input {
     void add_group(const std::vector<rt_prim>& more);
 };
 Input one_group(const std::vector<rt_prim>& prims);
+// Makes each ref the primitive's number.
+void number(Input& input);
 
 // The results of a builder.
 struct Built {
@@ -50,15 +52,9 @@ struct Options {
     std::function<bool(float)> progress;   // returns false to cancel
 };
 
-// A part of a structure: some groups, and what is in front of them. See rt_build_input.
-struct Part {
-    std::vector<uint8_t> wanted;
-    std::vector<uint64_t> first_elements;
-    uint64_t first_leaf = 0;
-};
-
-// part: nullptr to build all groups.
-Built build(const rt_plugin& plugin, const Input& input, const Options& options = {}, const Part* part = nullptr);
+Built build(const rt_plugin& plugin, const Input& input, const Options& options = {});
+// Whether two builds of a plugin wrote the same bytes and numbers.
+bool same_tree(const rt_plugin& plugin, const Built& a, const Built& b);
 
 // One of the volumes of a level.
 struct Volume {

@@ -26,28 +26,6 @@ TEST(Linear, ListsEveryGroupInOrder) {
     EXPECT_EQ(load("linear").accel->levels, nullptr);
 }
 
-// Two parts, one behind the other, are the same list as one build of all groups.
-TEST(Linear, BuildsSomeGroupsBehindOthers) {
-    Input input;
-    input.add_group(scattered(10, 1, 0, 1));
-    input.add_group(scattered(7, 1, 0, 2));
-    input.add_group(scattered(5, 1, 0, 3));
-    const Part meshes{{0, 1, 1}, {0}, 0};
-    const Built first = build(load("linear"), input, {}, &meshes);
-    ASSERT_EQ(first.status, RT_OK) << first.why;
-    EXPECT_EQ(first.leaves.size(), 12u);
-    EXPECT_EQ(first.slot_counts[0], 2u);
-    EXPECT_EQ(first.roots, (std::vector<rt_u32>{RT_NONE, 0, 1}));
-    const Part world{{1, 0, 0}, {first.slot_counts[0]}, first.leaves.size()};
-    const Built second = build(load("linear"), input, {}, &world);
-    ASSERT_EQ(second.status, RT_OK) << second.why;
-    EXPECT_EQ(second.leaves.size(), 10u);
-    EXPECT_EQ(second.roots, (std::vector<rt_u32>{2, RT_NONE, RT_NONE}));
-    EXPECT_EQ(second.slot<linear_run>()[0].first, 12u);
-    EXPECT_EQ(second.slot<linear_run>()[0].count, 10u);
-    EXPECT_EQ(second.leaves[3], input.prims[3].ref);
-}
-
 TEST(Linear, StopsWhenCancelled) {
     Input input;
     input.add_group(scattered(10, 1, 0, 1));

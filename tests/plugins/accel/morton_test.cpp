@@ -138,7 +138,7 @@ TEST(Morton, BuildsManyGroups) {
     Input input;
     for (uint32_t g = 0; g < 3000; ++g) input.add_group(scattered(g % 50, 1, static_cast<float>(g), g));
     input.add_group(scattered(50000, 1, 0, 7));
-    for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
+    number(input);
     EXPECT_EQ(check_bvh2(input, build(load("bvh2"), input, fast()), 4, false), "");
     EXPECT_EQ(check_bvh8(input, build(load("bvh8"), input, fast()), 4), "");
 }
@@ -147,7 +147,7 @@ TEST(Morton, BuildsTheSameTreeOnAnyMachine) {
     Input input;
     input.add_group(bumpy_sphere(120000));
     input.add_group(scattered(70000, 5, 1, 9));
-    for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
+    number(input);
     const Built once = build(load("bvh2"), input, fast(4, 1)), wide = build(load("bvh8"), input, fast(4, 1));
     for (const unsigned threads : {2u, 8u}) {
         EXPECT_TRUE(same_leaves_and_nodes(once, build(load("bvh2"), input, fast(4, threads)), sizeof(bvh2_node))) << threads;

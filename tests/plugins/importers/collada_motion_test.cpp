@@ -50,7 +50,7 @@ const std::string kAnimation =
 
 TEST(ColladaMotion, SaysWhatIsLeftOut) {
     if (!has_importer_for("a.dae")) GTEST_SKIP() << "SKIPPED: the importer for dae was not built";
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Scene still = import_file(folder.write("still.dae", collada("", "<instance_geometry url=\"#g\"/>")));
     EXPECT_TRUE(still.warnings.empty()) << still.warnings[0];
     const std::string skinned = "<instance_controller url=\"#c\"><skeleton>#bone</skeleton></instance_controller>";

@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Forms, FbxCurves, kFbxForms, fbx_form_name);
 
 // A square of version 6.1 that a channel of a take moves along x.
 Scene with_channel(const std::string& channel) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     return import_file(folder.write("six.fbx",
                                     "; FBX 6.1.0 project file\nObjects: {\nModel: \"Model::A\", \"Mesh\" {\n"
                                     "Vertices: 0,0,0,1,0,0,0,1,0\nPolygonVertexIndex: 0,1,-3\nGeometryVersion: 124\n}\n}\n"

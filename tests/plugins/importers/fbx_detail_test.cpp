@@ -183,6 +183,20 @@ TEST_P(FbxDetailForm, MovesColoursOfLightsAndAnglesOfCameras) {
     EXPECT_NEAR(end.cameras[1].fov_y_rad, 2 * std::atan(0.5), 1e-6);
 }
 
+TEST_P(FbxDetailForm, SpotsKeepTheirCones) {
+    const FbxNode light = node(
+        "NodeAttribute", {whole(4), text("NodeAttribute::N"), text("Light")},
+        {node("Properties70", {}, {property("LightType", {2}), property("OuterAngle", {50}), property("InnerAngle", {20})})});
+    const Scene scene =
+        import({geometry(1), model(2, "A"), model(3, "Lamp"), light}, {link(2, 0), link(1, 2), link(3, 0), link(4, 3)});
+    ASSERT_EQ(scene.lights.size(), 1u);
+    const rt_light& spot = scene.lights[0].values;
+    EXPECT_EQ(spot.kind, RT_LIGHT_SPOT);
+    EXPECT_NEAR(spot.normal[1], -1, 1e-6) << "it shines along -y";
+    EXPECT_NEAR(spot.angle, 50, 1e-4);
+    EXPECT_NEAR(spot.inner, 20, 1e-4);
+}
+
 TEST_P(FbxDetailForm, ShowsWhatItsParentHidesOnlyWhereItSays) {
     std::vector<FbxNode> objects = {geometry(1), model(2, "Hidden", {property("Visibility", {0})}), model(3, "Follows"),
                                     model(4, "Own", {property("Visibility Inheritance", {0})})};

@@ -59,7 +59,7 @@ class FbxForms : public testing::TestWithParam<FbxForm> {
             node("Objects", {}, objects), node("Connections", {}, links)};
         return import_file(folder_.write("model.fbx", FbxWriter(GetParam()).file(all)));
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 inline const auto kFbxForms =
     testing::Values(FbxForm{true, false, false, 7400}, FbxForm{true, true, false, 7700}, FbxForm{false, false, false, 7500});

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "fbx_model.hpp"
 #include "scene/motion/pose.hpp"
+#include "support/errors.hpp"
 
 namespace clarity::test {
 namespace {
@@ -130,7 +131,7 @@ TEST_P(FbxModelForm, MovesWithItsCurves) {
 }
 
 TEST(FbxOldModel, TakesNamesAndBlocksForIds) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string body = "\tVertices: 0,0,0,1,0,0,0,1,0\n\tPolygonVertexIndex: 0,1,-3\n\tGeometryVersion: 124\n";
     const std::string takes =
         "Takes: {\nTake: \"Go\" {\nLocalTime: 0,46186158000\nModel: \"Model::A\" {\nChannel: \"Transform\" {\nChannel: \"T\" "
@@ -159,7 +160,7 @@ TEST(FbxOldModel, TakesNamesAndBlocksForIds) {
 
 // Two nodes of each level have one name, so that a connection may mean either.
 TEST(FbxOldModel, RefusesNodesThatMultiplyWithoutEnd) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     std::string objects, links;
     for (int i = 1; i <= 40; ++i) {  // each level hangs twice from the level above: 2^40 copies
         const std::string name = "\"Model::N" + std::to_string(i) + "\"";
@@ -169,13 +170,12 @@ TEST(FbxOldModel, RefusesNodesThatMultiplyWithoutEnd) {
             links += "Connect: \"OO\", " + name + ", " + above + "\n";
         }
     }
-    try {
-        import_file(folder.write("many.fbx",
-                                 "; FBX 6.1.0 project file\nObjects: {\n" + objects + "}\nConnections: {\n" + links + "}\n"));
-        FAIL() << "was imported";
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("too many copies"), std::string::npos) << error.what();
-    }
+    expect_error(
+        [&] {
+            import_file(folder.write(
+                "many.fbx", "; FBX 6.1.0 project file\nObjects: {\n" + objects + "}\nConnections: {\n" + links + "}\n"));
+        },
+        {"too many copies"});
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ const std::string kWeights = "Indexes: 0,1,2\nWeights: 1,1,1\n";
 
 // Clusters, and shapes with the property that has their weight, by names.
 TEST(FbxOldRest, ActsAsVersion6Says) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string take =
         "Takes: {\nTake: \"Go\" {\nLocalTime: 0,46186158000\nModel: \"Model::A\" {\nChannel: \"Lift\" {\n"
         "Key: 0,100,L,46186158000,100,L\n}\n}\n}\n}\n";
@@ -166,7 +166,7 @@ TEST(FbxOldRest, ActsAsVersion6Says) {
 
 // Skins are in the model, and channels have the weights of shapes.
 TEST(FbxOldRest, ActsAsVersion5Says) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string bone =
         "Model: \"Model::Bone\" {\nType: \"Limb\"\nChannel: \"Transform\" {\nChannel: \"R\" {\nChannel: \"Z\" {\nDefault: "
         "90\n}\n}\n}\n}\n";
@@ -193,7 +193,7 @@ TEST(FbxOldRest, ActsAsVersion5Says) {
 
 // Version 7.1 has ids and connections, and still shapes within the geometry, whose properties have their weights.
 TEST(FbxOldRest, ActsAsVersion71Says) {
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string path =
         folder.write("seven.fbx",
                      "; FBX 7.1.0 project file\nObjects: {\nGeometry: 1, \"Geometry::\", \"Mesh\" {\nProperties70: {\n"

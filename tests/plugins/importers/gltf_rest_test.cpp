@@ -43,7 +43,7 @@ class GltfRest : public testing::Test {
             EXPECT_NEAR(scene.bounds().max[k], max[k], 1e-5) << k;
         }
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 TEST_F(GltfRest, IgnoresTheNodeOfASkinnedMesh) {

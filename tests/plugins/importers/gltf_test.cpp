@@ -8,6 +8,7 @@
 #include "gltf_model.hpp"
 #include "import/import.hpp"
 #include "measure.hpp"
+#include "support/errors.hpp"
 
 namespace clarity::test {
 namespace {
@@ -18,15 +19,9 @@ class Gltf : public testing::Test {
         return import_file(folder_.write(name, bytes));
     }
     void expect_refused(const std::string& bytes, const std::string& part, const std::string& name = "model.gltf") {
-        try {
-            import(bytes, name);
-            ADD_FAILURE() << "was imported; expected a message with: " << part;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find(name + ": "), std::string::npos) << error.what();
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-        }
+        expect_error([&] { import(bytes, name); }, {name + ": ", part});
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 TEST_F(Gltf, ReadsStripsAndFans) {
@@ -72,6 +67,31 @@ TEST_F(Gltf, PlacesWhatStandsStill) {
     EXPECT_NEAR(scene.lights[0].values.position[0], 1, 1e-6);  // towards the light
     EXPECT_NEAR(scene.lights[0].values.position[1], 0, 1e-6);
     EXPECT_NEAR(scene.lights[1].values.position[0], 5, 1e-6);
+}
+
+TEST_F(Gltf, SpotsKeepTheirCones) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    const json cone = {{"outerConeAngle", 0.5}, {"innerConeAngle", 0.25}};
+    model["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", cone}}, {{"type", "spot"}}}}}}};
+    const double half = std::sqrt(0.5);
+    model["nodes"] = {{{"mesh", 0}},
+                      {{"translation", {4, 5, 6}},
+                       {"rotation", {0, half, 0, half}},
+                       {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
+                      {{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
+    const Scene scene = import(model.text());
+    EXPECT_TRUE(scene.warnings.empty());
+    ASSERT_EQ(scene.lights.size(), 2u);
+    const rt_light &light = scene.lights[0].values, &usual = scene.lights[1].values;
+    EXPECT_EQ(light.kind, RT_LIGHT_SPOT);
+    EXPECT_NEAR(light.position[2], 6, 1e-6);
+    EXPECT_NEAR(light.normal[0], -1, 1e-6) << "along -z of the turned node";
+    EXPECT_NEAR(light.cos_outer, std::cos(0.5), 1e-6);
+    EXPECT_NEAR(light.cos_inner, std::cos(0.25), 1e-6);
+    EXPECT_EQ(light.flags, 0u);
+    EXPECT_NEAR(usual.cos_outer, half, 1e-6) << "the format's own: a quarter of half a turn";
+    EXPECT_EQ(usual.cos_inner, 1);
 }
 
 TEST_F(Gltf, LeavesPointsAndLinesOutWithOneWarning) {

@@ -43,7 +43,7 @@ class HostileModel : public testing::Test {
     }
 
  private:
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 const std::string kPlyVertices =

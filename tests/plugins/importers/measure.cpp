@@ -23,19 +23,6 @@ Scene import_file(const std::string& path, bool undeformed) {
     return import_scene(plugins, {path}, options, progress);
 }
 
-TemporaryFolder::TemporaryFolder() {
-    path_ = (fs::temp_directory_path() / "clarity_test_XXXXXX").string();
-    if (!mkdtemp(path_.data())) throw std::runtime_error("cannot make a temporary folder " + path_);
-}
-TemporaryFolder::~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-}
-std::string TemporaryFolder::write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-}
-
 std::string shared_scenes() {
     const char* shared = std::getenv("CLARITY_SHARED");
     const std::string folder = (shared ? std::string(shared) : std::string(CLARITY_SOURCE_DIR "/../shared")) + "/scenes/";

@@ -5,27 +5,13 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "support/scratch.hpp"
 
 namespace clarity::test {
 
 // Imports through the built plugins, in the worker process. undeformed: as the option --undeformed does. Throws what
 // import_scene() throws.
 Scene import_file(const std::string& path, bool undeformed = false);
-
-// A folder in the system's folder for temporary files. The destructor removes it and its contents.
-class TemporaryFolder {
- public:
-    TemporaryFolder();
-    ~TemporaryFolder();
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::string path(const std::string& name) const { return path_ + "/" + name; }
-    // Writes a file and returns its path.
-    std::string write(const std::string& name, const std::string& bytes) const;
-
- private:
-    std::string path_;
-};
 
 // Returns the folder of the shared test scenes with a slash at its end, or an empty string if there is none.
 std::string shared_scenes();

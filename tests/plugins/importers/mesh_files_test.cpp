@@ -59,7 +59,7 @@ class MeshFiles : public testing::Test {
     void expect_refused(const std::string& name, const std::string& bytes, const std::string& why) {
         EXPECT_NE(refusal(name, bytes).find(why), std::string::npos) << refusal(name, bytes);
     }
-    TemporaryFolder folder_;
+    Scratch folder_;
 };
 
 bool warns(const Scene& scene, const std::string& of) {

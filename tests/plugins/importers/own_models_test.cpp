@@ -102,7 +102,7 @@ TEST(ObjModel, KeepsAttributesPerCorner) {
 
 TEST(ObjModel, LeavesOutOnlyWhatIsBroken) {
     NEEDS_IMPORTER("broken.obj");
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::string path = folder.write("broken.obj",
                                           "v 0 0 0\nv 1 0 0\nv nan 0 0\nv 0 1 0\nv 1e99 0 0\nv 0 0 1\n"
                                           "f 1 2 4\nf 1 2 3\nf 1 5 2\nf 1 2 77\nf 1 x 2\nf 1 2\nf 1 2 6\n");
@@ -141,7 +141,7 @@ TEST(StlModel, AsciiAndBinaryAgree) {
         put(facet, sizeof facet);
         put("\0", 2);
     }
-    const TemporaryFolder folder;
+    const Scratch folder;
     const Scene binary = import_file(folder.write("binary.stl", bytes));
     EXPECT_EQ(binary.triangle_count(), 2u);
     EXPECT_NEAR(binary.surface_area(), 1, 1e-6);
@@ -192,7 +192,7 @@ std::string binary_ply(bool big_endian, const char* count_type, size_t count_byt
 
 TEST(PlyModel, ReadsBothByteOrdersAndAllCountTypes) {
     NEEDS_IMPORTER("roof.ply");
-    const TemporaryFolder folder;
+    const Scratch folder;
     const std::pair<const char*, size_t> counts[] = {{"uchar", 1}, {"int8", 1}, {"ushort", 2},
                                                      {"int16", 2}, {"uint", 4}, {"int32", 4}};
     for (const bool big_endian : {false, true}) {
@@ -215,7 +215,7 @@ TEST(OmModel, ReadsWhatOpenMeshWrites) {
     mesh.add_face(v[0], v[3], v[2], v[1]);
     mesh.add_face(v[0], v[1], v[4]);
     mesh.add_face(v[1], v[2], v[4]);
-    const TemporaryFolder folder;
+    const Scratch folder;
     ASSERT_TRUE(OpenMesh::IO::write_mesh(mesh, folder.path("pyramid.om")));
     const Scene scene = import_file(folder.path("pyramid.om"));
     EXPECT_EQ(scene.triangle_count(), 4u);
@@ -255,8 +255,8 @@ TEST(FbxModel, GivesEachNodeItsOwnMaterials) {
 }
 
 // box.dae with a texture, some text in its element and in its sampler, and further effects.
-Scene textured_box(const TemporaryFolder& folder, const std::string& maya, const std::string& sampler,
-                   const std::string& effects = "", const std::string& picture = "dot.ppm") {
+Scene textured_box(const Scratch& folder, const std::string& maya, const std::string& sampler, const std::string& effects = "",
+                   const std::string& picture = "dot.ppm") {
     std::ifstream file(data("box.dae"));
     std::string text((std::istreambuf_iterator<char>(file)), {});
     folder.write("dot.ppm", "P6 1 1 255\nabc");
@@ -280,7 +280,7 @@ Scene textured_box(const TemporaryFolder& folder, const std::string& maya, const
 // assimp gives the wrap modes that Maya writes, and does not read those of the standard.
 TEST(ColladaModel, TakesWrapModesOfSamplersAndOfMaya) {
     NEEDS_IMPORTER("a.dae");
-    const TemporaryFolder folder;
+    const Scratch folder;
     const auto wrap_of = [&](const std::string& maya, const std::string& sampler, const std::string& picture = "dot.ppm") {
         const Scene scene = textured_box(folder, maya, sampler, "", picture);
         EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
@@ -298,7 +298,7 @@ TEST(ColladaModel, TakesWrapModesOfSamplersAndOfMaya) {
 
 TEST(ColladaModel, SaysThatSamplersOfOnePictureDiffer) {
     NEEDS_IMPORTER("a.dae");
-    const TemporaryFolder folder;
+    const Scratch folder;
     const auto effect = [](const std::string& wrap) {
         return "<effect id=\"other\"><profile_COMMON><newparam sid=\"s\"><surface "
                "type=\"2D\"><init_from>dot</init_from></surface>"
@@ -319,7 +319,7 @@ TEST(ColladaModel, NamesColoursOfVerticesThatAreLeftOut) {
     NEEDS_IMPORTER("a.dae");
     std::ifstream file(data("box.dae"));
     std::string text((std::istreambuf_iterator<char>(file)), {});
-    const TemporaryFolder folder;
+    const Scratch folder;
     EXPECT_TRUE(import_file(folder.write("plain.dae", text)).warnings.empty());
     const std::string input = "<input semantic=\"VERTEX\"";
     ASSERT_NE(text.find(input), text.npos);

@@ -41,7 +41,7 @@ class ModelFile {
 
  private:
     std::string path_;
-    std::optional<TemporaryFolder> folder_;
+    std::optional<Scratch> folder_;
 };
 
 class Truth : public testing::TestWithParam<std::string> {};

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
+
 namespace {
 
 Recording& recording_of(void* ctx) {
@@ -90,13 +93,23 @@ void add_look_calls(rt_scene_sink& sink) {
         return r.refuse_textures ? RT_NONE : id_of(r.textures.size());
     };
     sink.material = [](void* ctx, const rt_material_desc* material) -> rt_u32 {
-        recording_of(ctx).materials.push_back({material->name, *material});
+        Recording& r = recording_of(ctx);
+        std::string problem;
+        r.materials.push_back({material->name, clarity::material_of(*material, problem)});
+        if (!problem.empty()) r.warnings.push_back(problem);
         return id_of(recording_of(ctx).materials.size());
     };
     sink.light = [](void* ctx, const rt_light_desc* light) -> rt_u32 {
-        recording_of(ctx).lights.push_back({text_or_empty(light->name), *light});
+        Recording& r = recording_of(ctx);
+        std::string problem;
+        rt_light made{};
+        if (clarity::light_of(*light, made, problem)) clarity::make_sound(made);
+        r.lights.push_back({text_or_empty(light->name), *light, made});
+        if (!problem.empty()) r.warnings.push_back(problem);
         return id_of(recording_of(ctx).lights.size());
     };
+    sink.light_kind = [](void*, rt_u32 kind) { return clarity::light_kind_for_plugins(kind); };
+    sink.material_kind = [](void*) { return clarity::material_kind_for_plugins(); };
     sink.camera = [](void* ctx, const rt_camera* camera) -> rt_u32 {
         recording_of(ctx).cameras.push_back({camera->name, *camera});
         return id_of(recording_of(ctx).cameras.size());
@@ -188,13 +201,15 @@ std::string Recording::unsound() const {
         if (std::any_of(m.face_materials.begin(), m.face_materials.end(), bad_material)) return "face material";
     }
     for (const auto& m : materials) {
-        const rt_material_desc& v = m.values;
+        const rt_material& v = m.values;
+        if (!clarity::material_fault(v).empty()) return "material keys";
         if (!all_finite(v.color) || !all_finite(v.emission) || !all_finite(v.specular)) return "material";
         if (!(v.reflect >= 0 && v.refract >= 0 && v.reflect + v.refract <= 1.0001f && v.ior > 0)) return "material shares";
         if (v.texture != RT_NONE && v.texture >= textures.size()) return "texture";
     }
     for (const auto& l : lights) {
         if (!all_finite(l.values.position) || !all_finite(l.values.direction) || !all_finite(l.values.color)) return "light";
+        if (!clarity::light_fault(l.light).empty()) return "light keys";
     }
     for (const auto& c : cameras) {
         if (!all_finite(c.values.eye) || !all_finite(c.values.target) || !all_finite(c.values.up)) return "camera";

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "rt_plugin.h"
+#include "rt_types.h"
 
 struct RecordedMaterial {
     std::string name;
-    rt_material_desc values;  // its name pointer is not valid any more
+    rt_material values;  // its texture is an id of the sink
 };
 struct RecordedMesh {
     std::vector<float> positions;
@@ -31,7 +32,8 @@ struct RecordedPolygon {
 };
 struct RecordedLight {
     std::string name;
-    rt_light_desc values;  // its name pointer is not valid any more
+    rt_light_desc values;  // its pointers are not valid any more
+    rt_light light;        // what the host makes of it
 };
 struct RecordedCamera {
     std::string name;

@@ -123,7 +123,7 @@ TEST(SceneFormat, FillsInDefaults) {
     expect_near(r.lights[0].values.color, {1, 1, 1});
     EXPECT_EQ(r.lights.at(1).values.kind, RT_LIGHT_DIRECTIONAL);
     expect_near(r.lights[1].values.direction, {0, -1, 0});
-    const rt_material_desc& m = r.materials.at(0).values;
+    const rt_material& m = r.materials.at(0).values;
     expect_near(m.color, {0.7f, 0.7f, 0.7f});
     expect_near(m.specular, {0.15f, 0.15f, 0.15f});
     expect_near(m.emission, {0, 0, 0});
@@ -148,7 +148,7 @@ TEST(SceneFormat, ReadsEveryMaterialKey) {
         "material a color .1 .2 .3 reflect .25 refract .5 ior 2.4 specular .5 shininess 80 emission 1 2 3 checker\n"
         "material b specular .1 .2 .3 texture \"my wood.png\"\n"
         "material c texture \"my wood.png\" color .5\n");
-    const rt_material_desc& a = r.materials.at(0).values;
+    const rt_material& a = r.materials.at(0).values;
     expect_near(a.color, {0.1f, 0.2f, 0.3f});
     EXPECT_EQ(a.reflect, 0.25f);
     EXPECT_EQ(a.refract, 0.5f);
@@ -157,7 +157,7 @@ TEST(SceneFormat, ReadsEveryMaterialKey) {
     EXPECT_EQ(a.shininess, 80);
     expect_near(a.emission, {1, 2, 3});
     EXPECT_EQ(a.flags, RT_MATERIAL_CHECKER);
-    const rt_material_desc& b = r.materials.at(1).values;
+    const rt_material& b = r.materials.at(1).values;
     expect_near(b.specular, {0.1f, 0.2f, 0.3f});
     EXPECT_EQ(b.texture, 0u);
     expect_near(b.color, {1, 1, 1});  // a texture without a colour is shown unchanged
@@ -332,6 +332,83 @@ TEST(SceneFormat, EditsBecomeTheWordsOfTheCommandLine) {
     EXPECT_NE(import_text("edit instance 1 radius 3\n").why, "");
     EXPECT_NE(import_text("edit material 1 ior 0\n").why, "");
     EXPECT_NE(import_text("edit camera 1\n").why, "");
+}
+
+TEST(SceneFormat, LightsOfAllKinds) {
+    const Recording r = import_good(
+        "light spot position 1 2 3 direction 0 -2 0 color 4 5 6 angle 60 inner 40 falloff square\n"
+        "light sun direction 0 -1 0 irradiance 3 angle .53\n"
+        "light rect center 0 2 0 u 1 0 0 v 0 0 .5 radiance 17 12 4 name panel\n"
+        "light disc center 1 1 1 normal 0 -3 0 radius 2 radiance 1 two_sided\n"
+        "light sphere center 0 1 0 radius .5 radiance 2 intensity 3\n"
+        "light point falloff none\n");
+    ASSERT_EQ(r.lights.size(), 6u);
+    for (rt_u32 i = 0; i < 5; ++i) EXPECT_EQ(r.lights[i].light.kind, RT_LIGHT_SPOT + i);
+    const rt_light &spot = r.lights[0].light, &sun = r.lights[1].light, &rect = r.lights[2].light, &disc = r.lights[3].light,
+                   &sphere = r.lights[4].light;
+    expect_near(spot.position, {1, 2, 3});
+    expect_near(spot.normal, {0, -1, 0});
+    expect_near(spot.color, {4, 5, 6});
+    EXPECT_EQ(spot.flags, RT_LIGHT_FALLOFF);
+    EXPECT_FLOAT_EQ(spot.cos_outer, 0.8660254f) << "30 degrees: half of the angle";
+    EXPECT_FLOAT_EQ(spot.cos_inner, 0.9396926f) << "20 degrees";
+    expect_near(sun.position, {0, 1, 0});
+    expect_near(sun.color, {3, 3, 3});
+    EXPECT_NEAR(sun.area / 6.72056e-5, 1, 1e-4) << "pi sin^2 of 0.265 degrees";
+    expect_near(rect.normal, {0, -1, 0});
+    EXPECT_FLOAT_EQ(rect.area, 2);
+    expect_near(rect.color, {17, 12, 4});
+    EXPECT_EQ(r.lights[2].name, "panel");
+    expect_near(disc.normal, {0, -1, 0});
+    EXPECT_EQ(disc.flags, RT_LIGHT_TWO_SIDED);
+    EXPECT_FLOAT_EQ(disc.area, 25.132741f) << "both sides";
+    EXPECT_FLOAT_EQ(sphere.area, 3.1415927f);
+    expect_near(sphere.color, {6, 6, 6});
+    EXPECT_EQ(r.lights[5].light.flags, 0u);
+}
+
+TEST(SceneFormat, ModelsHaveSharesForWhittedsTracers) {
+    const Recording r = import_good(
+        "material wall model lambert color .5\n"
+        "material gold model conductor color 1 .8 .3 roughness .25 compensate false\n"
+        "material mirror model conductor color .9\n"
+        "material glass model dielectric absorption 1 2 3 ior 1.33\n"
+        "material own roughness .25 reflect .1 model conductor one_sided\n"
+        "material plain roughness .5 absorption 1\n");
+    const auto& m = r.materials;
+    ASSERT_EQ(m.size(), 6u);
+    EXPECT_EQ(m[0].values.model, RT_MODEL_LAMBERT);
+    expect_near(m[0].values.specular, {0, 0, 0});
+    EXPECT_EQ(m[1].values.model, RT_MODEL_CONDUCTOR);
+    EXPECT_EQ(m[1].values.flags, RT_MATERIAL_SINGLE_SCATTER);
+    EXPECT_FLOAT_EQ(m[1].values.reflect, 0.75f) << "1 - roughness";
+    expect_near(m[1].values.specular, {1, 0.8f, 0.3f});
+    EXPECT_EQ(m[2].values.reflect, 1);
+    EXPECT_EQ(m[3].values.refract, 1);
+    EXPECT_FLOAT_EQ(m[3].values.ior, 1.33f);
+    expect_near(m[3].values.absorption, {1, 2, 3});
+    EXPECT_FLOAT_EQ(m[4].values.reflect, 0.1f) << "the statement says it, wherever it stands";
+    EXPECT_EQ(m[4].values.flags, RT_MATERIAL_ONE_SIDED);
+    EXPECT_EQ(m[5].values.model, RT_MODEL_WHITTED);
+    EXPECT_EQ(m[5].values.reflect, 0) << "Whitted's own shares stay";
+}
+
+TEST(SceneFormat, CamerasHaveALens) {
+    const Recording r = import_good("camera a aperture .02 focus 7\ncamera b\n");
+    EXPECT_FLOAT_EQ(r.cameras.at(0).values.aperture, 0.02f);
+    EXPECT_FLOAT_EQ(r.cameras[0].values.focus, 7);
+    EXPECT_EQ(r.cameras.at(1).values.aperture, 0);
+}
+
+TEST(SceneFormat, EditsOfAllKinds) {
+    const Recording r = import_good(
+        "edit material 1 model conductor roughness .25 one_sided checker false\n"
+        "edit light 0 spot position 1 2 3 angle 50 falloff square\n"
+        "edit light 1 sun color .5\n");
+    EXPECT_EQ(r.edits,
+              (std::vector<std::string>{"material.1.model=conductor", "material.1.roughness=0.25", "material.1.one_sided=true",
+                                        "material.1.checker=false", "light.0=spot,1,2,3,0,-1,0,1,1,1,50,45",
+                                        "light.0.falloff=square", "light.1=sun,0,-1,0,0.5,0.5,0.5,0.53"}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
+#include "support/errors.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 
@@ -45,13 +46,7 @@ TEST(AccelChoice, ResolvedSettingsNameTheStructureAndItsParameters) {
     settings.accel = "spheres";
     EXPECT_STREQ(resolve_accel(plugins(), DeviceKind::gpu, settings).id, "spheres") << "named ones stay";
     settings.accel = "nothing";
-    try {
-        resolve_accel(plugins(), DeviceKind::cpu, settings);
-        ADD_FAILURE() << "there is no such structure";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), Exit::usage);
-        EXPECT_NE(std::string(error.what()).find("bvh2"), std::string::npos) << error.what();
-    }
+    expect_error([&] { resolve_accel(plugins(), DeviceKind::cpu, settings); }, {"bvh2"}, Exit::usage);
 }
 
 TEST(AccelChoice, PreparedSettingsNameTheStructure) {

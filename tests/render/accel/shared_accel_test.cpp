@@ -86,13 +86,15 @@ TEST(SharedAccel, DamageIsRefused) {
     for (const size_t bytes : {size_t(1), size_t(127), size_t(128), size_t(300), whole.size() / 2, whole.size() - 129}) {
         MemoryFile cut;
         cut.write_at(0, whole.data(), bytes);
+        cut.seal();
         EXPECT_NE(failure_of(cut).find("holds no structure"), std::string::npos) << bytes << ": " << failure_of(cut);
     }
     std::vector<char> other = whole;
-    const auto id = std::search(other.begin(), other.end(), whole.begin() + 128, whole.begin() + 132);
+    const auto id = std::search(other.begin(), other.end(), whole.begin() + 8, whole.begin() + 12);  // behind its length
     *id = 'x';
     MemoryFile unknown;
     unknown.write_at(0, other.data(), other.size());
+    unknown.seal();
     EXPECT_NE(failure_of(unknown).find("accel xvh2"), std::string::npos) << failure_of(unknown);
 }
 

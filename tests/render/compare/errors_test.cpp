@@ -8,6 +8,7 @@
 #include "render/compare/flip.hpp"
 #include "render/compare/picture_errors.hpp"
 #include "render/compare/picture_read.hpp"
+#include "support/errors.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;
@@ -61,12 +62,7 @@ TEST(PictureErrors, LeaveOutWhatIsNotFinite) {
 }
 
 TEST(PictureErrors, OtherSizesAreRefused) {
-    try {
-        picture_errors(filled(8, 4, 0, 0, 0), filled(4, 8, 0, 0, 0));
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_NE(std::string(e.what()).find("8x4 and 4x8"), std::string::npos) << e.what();
-    }
+    expect_error([&] { picture_errors(filled(8, 4, 0, 0, 0), filled(4, 8, 0, 0, 0)); }, {"8x4 and 4x8"});
 }
 
 TEST(SignedErrors, AreRedWhereBrighterAndBlueWhereDarker) {

@@ -7,6 +7,8 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
 #include "support/generated.hpp"
 
 namespace clarity::test {
@@ -70,6 +72,49 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
     }
 }
 
+TEST(Edit, LightsAndModelsOfAllKindsAreRestoredBitByBit) {
+    const Scene scene = two_boxes();
+    EditedView edited = first_view(scene);
+    View& view = edited.view;
+    for (const Material& material : scene.materials) view.materials.push_back(material.values);
+    view.camera.aperture = 0.1f;
+    view.camera.focus = 1.0f / 3.0f;
+    for (const LightKind& kind : light_kinds()) {
+        rt_light light = default_light(kind.kind);
+        for (const Key& key : kind.keys)
+            if (key.kind == RT_KEY_WORD || key.kind == RT_KEY_FLAG || key.kind == RT_KEY_NUMBER)
+                set_value(key, &light, {1, 0, 0});
+        ASSERT_TRUE(make_sound(light));
+        view.lights.push_back(light);
+    }
+    rt_material& metal = view.materials[1];
+    set_material_value(metal, material_key("model"), {RT_MODEL_CONDUCTOR, 0, 0});
+    set_material_value(metal, material_key("roughness"), {0.3f, 0, 0});
+    set_material_value(metal, material_key("reflect"), {scene.materials[1].values.reflect, 0, 0});  // as before: must be kept
+    set_material_value(metal, material_key("compensate"), {0, 0, 0});
+    set_material_value(metal, material_key("absorption"), {0.1f, 0.2f, 1.0f / 3.0f});
+    const EditedView again = replay(scene, edits_between(scene, first_view(scene), edited));
+    EXPECT_TRUE(same_lights(again.view.lights, view.lights));
+    ASSERT_EQ(again.view.materials.size(), view.materials.size());
+    EXPECT_EQ(std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(rt_material)), 0);
+    EXPECT_EQ(again.view.camera.aperture, 0.1f);
+    EXPECT_EQ(again.view.camera.focus, view.camera.focus);
+}
+
+TEST(Edit, OneKeyOfALight) {
+    const Scene scene = two_boxes();
+    EditedView edited = first_view(scene);
+    apply_edit(scene, edited, "light.2", "disc");
+    apply_edit(scene, edited, "light.2.radius", "3");
+    apply_edit(scene, edited, "light.2.two_sided", "true");
+    apply_edit(scene, edited, "light.0.falloff", "square");
+    const std::vector<rt_light>& lights = edited.view.lights;
+    ASSERT_EQ(lights.size(), 3u);
+    EXPECT_EQ(lights[2].kind, RT_LIGHT_DISC);
+    EXPECT_FLOAT_EQ(lights[2].area, 56.548668f) << "2 pi 3^2";
+    EXPECT_EQ(lights[0].flags, RT_LIGHT_FALLOFF);
+}
+
 TEST(Edit, UnchangedValuesAreNotWritten) {
     const Scene scene = two_boxes();
     const EditedView edited = first_view(scene);
@@ -117,7 +162,13 @@ TEST(Edit, RefusalsNameTheAllowedValues) {
         {"light.9", "off", "2 lights"},
         {"light.2", "off", "no such light"},
         {"light.x", "off", "counts from 0"},
-        {"light.0", "spot,1,2,3,1,1,1", "point,x,y,z"},
+        {"light.0", "beam,1,2,3,1,1,1", "point,x,y,z"},
+        {"light.0", "spot,1,2,3,1,1,1", "11 numbers"},
+        {"light.0.radius", "1", "position, color, falloff"},
+        {"light.2.color", "1,1,1", "2 lights"},
+        {"light.0", "rect,0,1,0,1,0,0,1,0,0,1,1,1", "has a size"},
+        {"material.0.model", "wood", "conductor"},
+        {"camera.aperture", "-1", "0 or more"},
         {"light.0", "point,1,2", "six numbers"},
         {"light.0", "directional,0,0,0,1,1,1", "no length"},
         {"light.0", "point,0,0,0,-1,0,0", "negative"},

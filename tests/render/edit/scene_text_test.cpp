@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "base/error.hpp"
 #include "import/import.hpp"
+#include "scene/light_kinds.hpp"
 #include "support/scratch.hpp"
 #include "support/workbench.hpp"
 
@@ -122,6 +124,26 @@ TEST_F(SceneTextTest, ATextSceneKeepsItsTextAndGetsTheEdits) {
     EXPECT_EQ(twice.find("translate 0.25"), std::string::npos) << twice;
     EXPECT_NE(twice.find("edit instance 0  hidden 1\n"), std::string::npos) << twice;
     EXPECT_EQ(twice.find("camera saved_view"), twice.rfind("camera saved_view")) << twice;
+}
+
+TEST_F(SceneTextTest, LightsAndModelsOfAllKindsAreSaved) {
+    const std::string path = scratch.write("hand.scene", kScene);
+    const Scene scene = load({path});
+    EditedView edited = first(scene);
+    std::vector<Word> words = {
+        {"material.1.model", "conductor"}, {"material.1.roughness", "0.3"}, {"camera.aperture", "0.125"}};
+    size_t next = edited.view.lights.size();
+    for (const LightKind& kind : light_kinds()) words.push_back({"light." + std::to_string(next++), kind.name});
+    words.push_back({"light." + std::to_string(next - 3) + ".two_sided", "true"});
+    words.push_back({"light." + std::to_string(next - 5) + ".falloff", "square"});
+    edit(scene, edited, words);
+    const std::string text = expect_saved(scene, {path}, edited, "hand.scene");
+    const EditedView again = first(load({path}));
+    ASSERT_EQ(again.view.lights.size(), edited.view.lights.size()) << text;
+    for (size_t i = 0; i < again.view.lights.size(); ++i)
+        EXPECT_EQ(std::memcmp(&again.view.lights[i], &edited.view.lights[i], sizeof(rt_light)), 0) << i << "\n" << text;
+    EXPECT_EQ(std::memcmp(&again.view.materials[1], &edited.view.materials[1], sizeof(rt_material)), 0) << text;
+    EXPECT_EQ(again.view.camera.aperture, 0.125f);
 }
 
 TEST_F(SceneTextTest, NodesOfALoadedFileAreMovedAndHidden) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "support/errors.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;
@@ -20,18 +21,11 @@ Checkpoint sample_checkpoint() {
     for (size_t i = 0; i < 7 * 5 * 4; ++i) sums.pixels.push_back(std::ldexp(1.0f + float(i) * 0.013f, int(i % 41) - 20));
     sums.pixels[3] = std::numeric_limits<float>::infinity();
     sums.pixels[4] = std::numeric_limits<float>::quiet_NaN();
-    return {"0123456789abcdef", "a device, bvh8", 388, 4000, std::make_shared<const FloatImage>(sums)};
+    return {"0123456789abcdef", "a device, bvh8", 388, 4000, 1, std::make_shared<const FloatImage>(sums)};
 }
 
 std::string why_refused(const std::string& path) {
-    try {
-        load_checkpoint(path);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Exit::failed);
-        EXPECT_NE(std::string(e.what()).find(path), std::string::npos) << e.what();
-        return e.what();
-    }
-    return {};
+    return expect_error([&] { load_checkpoint(path); }, {path}, Exit::failed);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "support/errors.hpp"
 #include "support/faults.hpp"
 #include "support/scenes.hpp"
 
@@ -31,14 +32,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
     // Returns the message of the error that `work` must end with.
     template <class Work>
     static std::string message(Work&& work) {
-        try {
-            work();
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), Exit::failed) << error.what();
-            return error.what();
-        }
-        ADD_FAILURE() << "it did not fail";
-        return {};
+        return expect_error(work, {}, Exit::failed);
     }
     void expect_all_is_well(const std::string& after) {
         faults.end();

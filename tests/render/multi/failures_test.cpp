@@ -4,6 +4,7 @@
 
 #include "base/log.hpp"
 #include "render/multi/team.hpp"
+#include "support/errors.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -144,13 +145,8 @@ TEST_F(FailingDevice, ThrowsIfAllDevicesFail) {
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
     lose(team, 0);
     lose(team, 1);
-    try {
-        team.frames.trace(prepared, settings_, view_, 0, false, team.progress);
-        FAIL();
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), Exit::failed);
-        EXPECT_NE(std::string(e.what()).find("OpenCL error"), std::string::npos) << e.what();
-    }
+    expect_error([&] { team.frames.trace(prepared, settings_, view_, 0, false, team.progress); }, {"OpenCL error"},
+                 Exit::failed);
     EXPECT_THROW(team.frames.trace(prepared, settings_, view_, 0, false, team.progress), Error);
 }
 

@@ -77,26 +77,37 @@ TEST_F(SharedPictures, EqualOneDevicesForAllPacketsAndLanes) {
 // Sums that were read after some samples, put back on the same or other devices, give the bits of a picture in one go.
 TEST_F(SharedPictures, GoOnFromSumsOnOneDeviceAndOnSeveral) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
-    const Settings settings = settings_of({{"size", "200x131"}, {"spp", "5"}});
-    const View view = make_view(*scene, 200.0f / 131);
-    one_->trace(scene, settings, view, 0, 5);
-    const FloatImage whole = one_->frames.read_values();
-    for (Team* from : {one_, two_}) {
-        from->trace(scene, settings, view, 0, 2);
-        const auto sums = std::make_shared<const FloatImage>(from->frames.read_sums());
-        ASSERT_EQ(sums->pixels.size(), size_t(200) * 131 * 4);
-        for (size_t i = 3; i < sums->pixels.size(); i += 4) ASSERT_EQ(sums->pixels[i], 2.0f) << "samples of a pixel";
-        for (Team* to : {one_, two_}) {
-            // Another picture in the film must leave no trace.
-            to->trace(scene, settings_of({{"size", "300x200"}}), view, 0, 3);
-            to->frames.resume(to->preparer.prepare(scene, settings, to->progress), settings, sums, 2);
-            to->trace(scene, settings, view, 2, 1);
-            to->trace(scene, settings, view, 3, 2);
-            EXPECT_EQ(to->frames.samples(), 5u);
-            const std::string what = std::string(from == one_ ? "one" : "two") + " to " + (to == one_ ? "one" : "two");
-            EXPECT_EQ(differing(to->frames.read_values().pixels, whole.pixels), 0u) << what;
+    for (const char* tracer : {"iterative", "path"}) {
+        const Settings settings = settings_of({{"size", "200x131"}, {"spp", "5"}, {"tracer", tracer}, {"lanes", "8"}});
+        const View view = make_view(*scene, 200.0f / 131);
+        one_->trace(scene, settings, view, 0, 5);
+        const FloatImage whole = one_->frames.read_values();
+        for (Team* from : {one_, two_}) {
+            from->trace(scene, settings, view, 0, 2);
+            const auto sums = std::make_shared<const FloatImage>(from->frames.read_sums());
+            const size_t plane = size_t(200) * 131 * 4;
+            ASSERT_EQ(sums->pixels.size(), plane * from->frames.planes());
+            for (size_t i = 3; i < plane; i += 4) ASSERT_EQ(sums->pixels[i], 2.0f) << "samples of a pixel";
+            for (Team* to : {one_, two_}) {
+                // Another picture in the film must leave no trace.
+                to->trace(scene, settings_of({{"size", "300x200"}}), view, 0, 3);
+                to->frames.resume(to->preparer.prepare(scene, settings, to->progress), settings, sums, 2);
+                to->trace(scene, settings, view, 2, 1);
+                to->trace(scene, settings, view, 3, 2);
+                EXPECT_EQ(to->frames.samples(), 5u);
+                const std::string what =
+                    std::string(tracer) + ", " + (from == one_ ? "one" : "two") + " to " + (to == one_ ? "one" : "two");
+                EXPECT_EQ(differing(to->frames.read_values().pixels, whole.pixels), 0u) << what;
+            }
         }
     }
+}
+
+TEST_F(SharedPictures, PathsAreEqualOneDevices) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    for (const auto& [lanes, packet] : std::vector<std::pair<const char*, const char*>>{{"8", "8x8"}, {"4", "3x5"}})
+        expect_same(scene, settings_of({{"tracer", "path"}, {"lanes", lanes}, {"packet", packet}, {"size", "120x91"}}),
+                    std::string("path, ") + lanes + " lanes, packet " + packet, 3);
 }
 
 TEST_F(SharedPictures, EqualOneDevicesForOddSizes) {

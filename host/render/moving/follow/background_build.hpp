@@ -1,4 +1,7 @@
 // background_build.hpp -- a build on a thread of its own, while the structure that is there goes on.
+//
+// It builds the trees of all meshes. rt_build_input::wanted would allow for those that have decayed alone: docs/experiments.md
+// (Refits) says what that would gain.
 #pragma once
 #include <atomic>
 #include <functional>

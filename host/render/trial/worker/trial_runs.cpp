@@ -37,17 +37,17 @@ cl::Buffer guarded_buffer(Device& device, std::list<GuardedBytes>& memory, const
 
 }  // namespace
 
-std::string try_on_small_scene(const TrialArguments& arguments, const PluginRegistry& plugins,
-                               const std::shared_ptr<Device>& device, const TrialSteps& say_step) {
+std::string try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, const std::shared_ptr<Device>& device,
+                               const TrialSteps& say_step) {
     std::vector<ShapeKind> kinds;
-    for (const TrialShape& shape : arguments.shapes) {
+    for (const TrialShape& shape : job.shapes) {
         const auto same = [&](const ShapeKind& kind) { return kind.id == shape.id; };
         if (std::any_of(kinds.begin(), kinds.end(), same)) continue;
         kinds.push_back({shape.id, plugins.primitive(shape.id)});
         if (!kinds.back().plugin) return "there is no plugin for shapes `" + shape.id + "`";
     }
-    const auto scene = std::make_shared<const Scene>(trial_scene(arguments.features, kinds, arguments.shapes));
-    Settings settings = arguments.settings;
+    const auto scene = std::make_shared<const Scene>(trial_scene(job.features, kinds, job.shapes));
+    Settings settings = job.settings;
     settings.debug = true;  // stacks are checked
     settings.width = kWidth;
     settings.height = kHeight;
@@ -59,7 +59,7 @@ std::string try_on_small_scene(const TrialArguments& arguments, const PluginRegi
     const GuardedAccel guarded(*preparer.build(scene, settings, progress));
     const auto prepared = prepare_queries(*device, scene, guarded.accel(), settings, progress);
     const Smoke smoke{device, *prepared, make_view(*scene, float(kWidth) / float(kHeight)), say_step};
-    const Tracer& tracer = find_tracer(arguments.kernels);
+    const Tracer& tracer = find_tracer(job.kernels);
     if (tracer.smoke)
         tracer.smoke(smoke);
     else

@@ -1,0 +1,44 @@
+/* point.h -- where rays meet surfaces, with normals on the side that they come from. */
+#ifndef RT_POINT_H
+#define RT_POINT_H
+
+/* Where the ray of each lane meets a surface. Normals are on the side that the ray comes from. */
+typedef struct rt_point {
+    vmask hits;
+    vmask leaving;    /* the ray comes from inside, so the normals were reversed */
+    rt_vec at;        /* the hit point, world */
+    rt_vec incoming;  /* unit direction of the ray */
+    rt_vec geometric; /* unit geometric normal */
+    rt_vec normal;    /* unit shading normal */
+    vfloat cos_in;    /* cosine of the angle between normal and reversed ray, positive */
+#ifdef RT_SPLITS_INCOHERENT
+    vfloat area;      /* rt_surface.area */
+#endif
+    vfloat outward;   /* rays that stay on this side start at: at + outward geometric */
+    vfloat inward;    /* rays that go through the surface start at: at + inward geometric */
+} rt_point;
+
+RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hits)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_point p;
+    p.hits = hits;
+#ifdef RT_SPLITS_INCOHERENT
+    p.area = s->area;
+#endif
+    p.incoming = rt_vec_of(ray->dx, ray->dy, ray->dz);
+    p.at = s->at;
+    p.leaving = RT_MASK(rt_dot(s->geometric, p.incoming) > zero);
+    const vfloat side = rt_select(p.leaving, -one, one);
+    p.geometric = rt_scale(side, s->geometric);
+    p.normal = rt_scale(side, s->normal);
+    /* At silhouettes an interpolated normal may point away from the viewer. Then the geometric normal replaces it. */
+    p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
+    p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
+    const vfloat height = side * s->height;
+    p.outward = rt_max(s->error - height, zero);
+    p.inward = -s->error - height;
+    return p;
+}
+
+#endif

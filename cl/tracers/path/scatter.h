@@ -1,0 +1,236 @@
+/* scatter.h -- one segment of each path: what its ray finds, light by next-event estimation, and the next direction.
+ *
+ * Kajiya 1986, The Rendering Equation; weights of two strategies by Veach, Guibas 1995, Optimally Combining Sampling Techniques
+ * for Monte Carlo Rendering. */
+#ifndef RT_PATH_SCATTER_H
+#define RT_PATH_SCATTER_H
+
+/* Numbers of a work-item's rays: shadow rays, rays after the camera's, samples that were not finite, and full traversal stacks. */
+typedef struct rt_tally {
+    uint shadow, secondary, dropped, overflow;
+} rt_tally;
+
+/* Where a path meets a surface, and how the surface scatters there. */
+typedef struct rt_meeting {
+    rt_point point;
+    rt_vec s, t;  /* with point.normal, z, the frame of the surface's directions */
+    rt_vec wo;    /* towards where the path comes from, in that frame */
+    rt_bsdf bsdf;
+} rt_meeting;
+
+/* Paths of fewer events than this end by roulette nowhere. */
+#define RT_ROULETTE_EVENT 3
+
+/* The weight of what a strategy has found whose density is `mine`, where the other one had `other`. */
+RT_INLINE vfloat rt_mis_weight(const constant rt_frame *frame, vfloat mine, vfloat other)
+{
+    vfloat ratio = other / mine;
+    if (frame->path_flags & RT_PATH_POWER_WEIGHTS) ratio *= ratio;
+    return rt_vfloat(1.0f) / (rt_vfloat(1.0f) + ratio);
+}
+
+/* The weight of light that a drawn point of a light sends. surface_pdf: with which the surface would have drawn that direction. */
+RT_INLINE vfloat rt_drawn_weight(const constant rt_frame *frame, const rt_light_sample *s, vfloat surface_pdf)
+{
+    vfloat weight = rt_vfloat(frame->path_flags & RT_PATH_DRAWS_LIGHTS ? 1.0f : 0.0f);
+    if ((frame->path_flags & RT_PATH_DRAWS_LIGHTS) && (frame->path_flags & RT_PATH_FINDS_LIGHTS))
+        weight = rt_mis_weight(frame, s->pdf, surface_pdf);
+    return rt_select(s->delta, rt_vfloat(1.0f), weight);
+}
+
+/* The weight of light that a path's ray finds. light_pdf: with which a light would have been drawn there; 0: it could not. */
+RT_INLINE vfloat rt_found_weight(const constant rt_frame *frame, const rt_path *p, vfloat light_pdf)
+{
+    vfloat weight = rt_vfloat(frame->path_flags & RT_PATH_FINDS_LIGHTS ? 1.0f : 0.0f);
+    if ((frame->path_flags & RT_PATH_DRAWS_LIGHTS) && (frame->path_flags & RT_PATH_FINDS_LIGHTS))
+        weight = rt_mis_weight(frame, p->pdf, light_pdf);
+    return rt_select(p->sharp | RT_MASK(light_pdf == rt_vfloat(0.0f)), rt_vfloat(1.0f), weight);
+}
+
+/* How the first event of a path scatters, by whether its ray goes through the surface. */
+RT_INLINE vint rt_first_kind(const rt_path *p, const rt_bsdf *bsdf, vmask sharp, vmask through)
+{
+    const vint kind = rt_select(through, rt_vint(RT_FIRST_TRANSMISSION),
+                                rt_select(sharp | RT_MASK(bsdf->diffuse <= rt_vfloat(0.0f)), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
+    return rt_select(RT_MASK(p->event == rt_vint(0)), kind, p->first);
+}
+
+/* Counts light that paths have found, if it is of the kinds that are asked for. bounce: events between it and the camera. by:
+ * RT_BY_*. */
+RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lanes, rt_vec light, vint bounce, uint by, vint first, vint number)
+{
+    if (frame->only_bounce != RT_NONE) lanes &= RT_MASK(bounce == rt_vint((int)frame->only_bounce));
+    if (frame->only_by != RT_NONE && frame->only_by != by) return;
+    if (frame->only_first != RT_NONE) lanes &= RT_MASK(first == rt_vint((int)frame->only_first));
+    if (frame->only_light != RT_NONE) lanes &= RT_MASK(number == rt_vint((int)frame->only_light));
+    light = rt_mul(p->weight, light);
+#ifdef RT_SHOW_MIS
+    const vfloat all = RT_LUMINANCE(light);
+    light = rt_vec_of(by == RT_BY_NEE ? all : rt_vfloat(0.0f), all, rt_vfloat(0.0f));
+#endif
+    p->light = rt_choose(lanes, rt_add(p->light, light), p->light);
+}
+
+/* What is left of light after a way through the medium that a path is in (Beer-Lambert). */
+RT_INLINE rt_vec rt_passed(const rt_path *p, vfloat distance)
+{
+    const vfloat way = -rt_min(distance, rt_vfloat(1e30f));
+    return rt_vec_of(rt_exp(way * p->absorption.x), rt_exp(way * p->absorption.y), rt_exp(way * p->absorption.z));
+}
+RT_INLINE vmask rt_in_medium(const rt_path *p) { return RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)); }
+
+/* The medium of paths that go through a surface: that of the material inside, nothing outside. */
+RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, uint bits)
+{
+    int material[RT_LANES];
+    rt_store(surface->material, material);
+    for (uint left = bits; left != 0u;) {
+        const int id = material[rt_lowest(left)];
+        const vmask mine = rt_mask_of_bits(bits) & RT_MASK(surface->material == rt_vint(id));
+        left &= ~rt_bits(mine);
+        const rt_vec inside = rt_choose(entering, rt_spread(ctx->materials[id].absorption), rt_splat(0.0f, 0.0f, 0.0f));
+        p->absorption = rt_choose(mine, inside, p->absorption);
+    }
+}
+
+/* Adds the light that arrives directly, by one shadow ray for each lane. */
+RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_meeting *m,
+                             const rt_sampler *sampler, rt_tally *tally)
+{
+    const rt_point *point = &m->point;
+    const vfloat zero = rt_vfloat(0.0f);
+    const rt_numbers n = rt_draw_set(sampler, RT_LIGHT_SET(p->event));
+    const rt_vec outside = rt_along(point->outward, point->geometric, point->at);
+    const rt_light_sample s = rt_light_draw(ctx, frame, outside, n.a, n.b, n.c, lanes);
+    const rt_vec wi = rt_to_local(m->s, m->t, point->normal, s.towards);
+    vfloat surface_pdf;
+    rt_vec light = rt_bsdf_eval(&m->bsdf, m->wo, wi, lanes, &surface_pdf);
+    light = rt_scale(rt_drawn_weight(frame, &s, surface_pdf), rt_mul(light, s.radiance_over_pdf));
+    /* Shading normal and surface must agree on the side: else light would leak through, or come from behind. */
+    const vmask above = RT_MASK(rt_dot(point->geometric, s.towards) > zero), agree = ~(above ^ RT_MASK(wi.z > zero));
+    const vmask asked = lanes & s.valid & agree & RT_MASK(rt_largest(light) > zero);
+    const uint bits = rt_bits(asked);
+    if (bits == 0u) return;
+    const rt_vec from = rt_along(rt_select(above, point->outward, point->inward), point->geometric, point->at);
+    rt_rays ray;
+    rt_hits hit;
+    ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
+    ray.dx = s.towards.x, ray.dy = s.towards.y, ray.dz = s.towards.z;
+    ray.t_min = zero;
+    rt_clear_hits(&hit, asked);
+    hit.t = rt_select(asked, s.distance, rt_vfloat(-1.0f));
+    if (frame->shadows != 0u) {
+        rt_prepare(&ray, bits);
+#ifdef RT_SPLITS_INCOHERENT
+        ray.incoherent = rt_incoherent(&ray, point->area, bits);
+#endif
+        rt_trace_any(ctx, frame, &ray, &hit);
+        tally->shadow += popcount(bits);
+        RT_TALLY_OVERFLOW(tally, &hit)
+    }
+    const vmask lit = asked & RT_MASK(hit.t >= zero);
+    if (rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
+    const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
+    rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
+}
+
+/* Draws the next directions. Returns the lanes that go on. */
+RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, const rt_surface *surface, const rt_meeting *m,
+                                  const rt_sampler *sampler)
+{
+    const rt_point *point = &m->point;
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const rt_numbers n = rt_draw_set(sampler, RT_SURFACE_SET(p->event));
+    const rt_bsdf_sample s = rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes);
+    const rt_vec direction = rt_normalize(rt_to_world(m->s, m->t, point->normal, s.wi));
+    const vmask above = RT_MASK(rt_dot(point->geometric, direction) > zero), agree = above ^ s.transmitted;
+    rt_vec weight = rt_mul(p->weight, s.weight);
+    vmask on = lanes & s.valid & agree & RT_MASK(rt_largest(weight) > zero);
+    /* Roulette: a path of small weight ends by chance, and those that go on stand for it. What radiance loses by entering glass
+     * it gains again by leaving. */
+    const vfloat scale = rt_select(s.transmitted, p->scale * m->bsdf.eta * m->bsdf.eta, p->scale);
+    const vfloat chance = rt_select(RT_MASK(p->event + rt_vint(1) < rt_vint(RT_ROULETTE_EVENT)), one, rt_max(rt_min(scale * rt_largest(weight), one), rt_vfloat(0.05f)));
+    on &= RT_MASK(n.d < chance);
+    weight = rt_scale(one / chance, weight);
+
+    const rt_vec from = rt_along(rt_select(above, point->outward, point->inward), point->geometric, point->at);
+    p->origin = rt_choose(on, from, p->origin);
+    p->direction = rt_choose(on, direction, p->direction);
+    p->weight = rt_choose(on, weight, p->weight);
+    p->pdf = rt_select(on, s.pdf, p->pdf);
+    p->sharp = rt_select(on, s.delta, p->sharp);
+    p->scale = rt_select(on, scale, p->scale);
+    const uint through = rt_bits(on & s.transmitted);
+    if (through != 0u) rt_change_medium(ctx, p, surface, ~point->leaving, through);
+    p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
+    p->event += rt_vint(1);
+#ifdef RT_SPLITS_INCOHERENT
+    p->area = rt_select(on, point->area, p->area);
+#endif
+    return on;
+}
+
+/* Traces the rays of the paths that are alive. Returns the lanes whose paths go on. distances: of the packet's camera rays. */
+RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, global float *distances, rt_tally *tally)
+{
+    const uint bits = rt_bits(p->alive);
+    rt_rays ray;
+    rt_hits hit;
+    ray.ox = p->origin.x, ray.oy = p->origin.y, ray.oz = p->origin.z;
+    ray.dx = p->direction.x, ray.dy = p->direction.y, ray.dz = p->direction.z;
+    ray.t_min = rt_vfloat(0.0f);
+    rt_prepare(&ray, bits);
+#ifdef RT_SPLITS_INCOHERENT
+    ray.incoherent = rt_incoherent(&ray, p->area, bits);
+#endif
+    rt_clear_hits(&hit, p->alive);
+    rt_trace_closest(ctx, frame, &ray, &hit);
+    RT_TALLY_OVERFLOW(tally, &hit)
+    if (frame->sample == 0u) {
+        const uint first = bits & rt_bits(RT_MASK(p->event == rt_vint(0)) & RT_MASK(p->sample == rt_vint(0)));
+        if (first != 0u) RT_FOR_LANES_STORE(distances, p->slot, hit.t, first)
+    }
+
+    vfloat t = hit.t;
+    vint light;
+    rt_hit_lights(ctx, frame, &ray, &t, &light);
+    if (rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
+    const vmask lights = p->alive & RT_MASK(light >= rt_vint(0)), hits = p->alive & ~lights & RT_MASK(hit.prim >= rt_vint(0));
+    const vmask missed = p->alive & ~lights & ~hits;
+    vfloat pdf;
+    if (rt_any(lights)) {
+        const rt_vec found = rt_emission_of_light(ctx, &ray, t, light, lights, &pdf);
+        rt_collect(frame, p, lights, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, light);
+    }
+    if (rt_any(missed)) {
+        const vmask seen = missed & RT_MASK(p->event == rt_vint(0));
+        rt_vec found = rt_scale(rt_vfloat(0.0f), p->direction);
+        if (rt_any(missed & ~seen)) {
+            found = rt_sky(ctx, frame, p->direction, missed, &pdf);
+            found = rt_scale(rt_found_weight(frame, p, pdf), found);
+        }
+        if (rt_any(seen)) found = rt_choose(seen, rt_seen_sky(ctx, frame, p->direction, seen), found);
+        rt_collect(frame, p, missed, found, p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SKY));
+    }
+    const uint hit_bits = rt_bits(hits);
+    if (hit_bits == 0u) return hits;
+    const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
+    rt_meeting m;
+    m.point = rt_point_of(&ray, &surface, hits);
+    const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
+    rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
+
+    const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
+    const uint scattered_bits = rt_bits(scattered);
+    if (scattered_bits == 0u) return scattered;
+    const rt_sampler sampler = rt_sampler_of(frame, p);
+    rt_basis(m.point.normal, &m.s, &m.t);
+    m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
+    m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, scattered_bits, m.point.at);
+    if (ctx->lighting->emitter_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
+    const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);
+    tally->secondary += popcount(rt_bits(on));
+    return on;
+}
+
+#endif

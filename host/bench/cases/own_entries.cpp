@@ -1,0 +1,153 @@
+#include "bench/cases/own_entries.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/elapsed.hpp"
+#include "bench/baselines/speedup.hpp"
+#include "bench/cases/analysis.hpp"
+#include "bench/cases/moving.hpp"
+
+namespace clarity::bench {
+namespace {
+
+// Times of a frame's parts in ms by name, one entry per repetition; the record gets the medians.
+using PartTimes = std::map<std::string, std::vector<double>>;
+
+void set_medians(BenchRecord& row, const PartTimes& parts) {
+    for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, median(ms));
+}
+
+// Renders one frame, from the call to tone-mapped pixels in host memory. Returns its wall time in ms. Appends the kernels'
+// times to `parts`; its "waiting" is the wall time in which the device ran none of them.
+double show_frame(CaseState& state, const Settings& settings, const Fixture::Held& held, const View& view, FrameStats& stats,
+                  PartTimes& parts) {
+    const auto begin = std::chrono::steady_clock::now();
+    stats = held.frames->trace(*held.prepared, settings, view, 0, false, state.progress);
+    held.frames->read_display(settings, &stats);
+    const double ms = ms_since(begin);
+    double busy = 0;
+    for (const KernelTime& kernel : stats.kernels) {
+        parts[kernel.name].push_back(kernel.ms);
+        busy += kernel.ms;
+    }
+    parts["waiting"].push_back(std::max(ms - busy, 0.0));
+    return ms;
+}
+
+}  // namespace
+
+void add_build(Entry& entry, std::function<AccelData()> build) {
+    const auto last = std::make_shared<BenchRecord>(entry.row);
+    entry.once = [last, build = std::move(build)] {
+        const auto begin = std::chrono::steady_clock::now();
+        const AccelData built = build();
+        describe(*last, built);
+        return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
+    };
+    entry.finish = [=](BenchRecord& row) {
+        row.build_ms = last->build_ms;
+        row.pack_ms = last->pack_ms;
+        row.accel_bytes = last->accel_bytes;
+        row.bytes_per_triangle = last->bytes_per_triangle;
+        row.nodes = last->nodes;
+        row.sah_cost = last->sah_cost;
+    };
+}
+
+void time_rays(CaseState& state, Entry& entry, const Fixture::Held& held, const RaySet& set) {
+    const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+    std::shared_ptr<const RayBlocks>& packed = state.packed[lanes];
+    if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
+    entry.once = [=, &set, blocks = packed] {
+        Sample sample;
+        sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
+        const RayTuning tuning = held.queries->tuning();
+        sample.trial = tuning.trial;
+        sample.settled = tuning.settled;
+        sample.variant = tuning.variant;
+        return sample;
+    };
+    set_ray_counts(entry.row, set);
+}
+
+void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
+    const RaySet& set = state.fixture.rays(state.definition.measure, held);
+    state.rays = &set;
+    time_rays(state, entry, held, set);
+    entry.finish = [=, &set, &state](BenchRecord& row) {
+        const auto hits = held.queries->trace(*held.prepared, set.rays, RayQuery{set.any_hit, true});
+        const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+        const rt_accel& accel = *held.prepared->accel->layout->accel;
+        row.analysis = analyze(set.rays, hits, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
+        std::vector<float> distances;
+        for (const rt_hit& hit : hits) distances.push_back(hit.t);
+        state.agreement.check_hits(row, set, distances);
+    };
+}
+
+void set_ray_counts(BenchRecord& row, const RaySet& set) {
+    (set.kind == "primary" ? row.rays_primary : set.kind == "shadow" ? row.rays_shadow : row.rays_secondary) = set.active;
+}
+
+void add_frame(CaseState& state, Entry& entry, const Settings& settings, const Fixture::Held& held) {
+    const auto parts = std::make_shared<PartTimes>();
+    entry.once = [=, &state] {
+        FrameStats stats;
+        const double ms = show_frame(state, settings, held, state.fixture.view(), stats, *parts);
+        return Sample{stats.device_ms, ms};
+    };
+    entry.finish = [=, &state](BenchRecord& row) {
+        set_medians(row, *parts);
+        count_rays(state, row, settings, held, state.fixture.view());
+    };
+}
+
+void add_whitted(CaseState& state, Entry& entry, const Settings& settings, const Fixture::Held& held) {
+    const View view = whitted_view(*state.fixture.scene(), state.fixture.view());
+    state.whitted = whitted_scene(view, settings);
+    const auto parts = std::make_shared<PartTimes>();
+    entry.once = [=, &state] {
+        FrameStats stats;
+        show_frame(state, settings, held, view, stats, *parts);
+        return Sample{stats.device_ms, stats.wall_ms};
+    };
+    entry.finish = [=, &state](BenchRecord& row) {
+        set_medians(row, *parts);
+        count_rays(state, row, settings, held, view);
+        state.agreement.check_picture(row, held.frames->read_values());
+    };
+}
+
+void add_moving(CaseState& state, Entry& entry, const Settings& settings, const Fixture::Held& held, bool overlapped) {
+    const auto parts = std::make_shared<PartTimes>();
+    entry.once = [=, &state] {
+        std::vector<KernelTime> times;
+        const Sample sample =
+            show_moving(*held.frames, *held.prepared, settings, state.fixture.view(), overlapped, state.progress, &times);
+        for (const KernelTime& time : times) (*parts)[time.name].push_back(time.ms);
+        return sample;
+    };
+    entry.finish = [=, &state](BenchRecord& row) {
+        set_medians(row, *parts);
+        uint64_t digest = 0;
+        show_moving(*held.frames, *held.prepared, settings, state.fixture.view(), overlapped, state.progress, nullptr, &digest);
+        state.agreement.check_sequence(row, digest, overlapped);
+    };
+}
+
+void count_rays(CaseState& state, BenchRecord& row, const Settings& settings, const Fixture::Held& held, const View& view) {
+    set_ray_counts(row, held.frames->trace(*held.prepared, settings, view, 0, true, state.progress));
+}
+
+void compare_with_one_by_one(std::vector<BenchRecord>& rows) {
+    for (size_t i = 0; i < rows.size(); ++i)
+        for (size_t k = 0; k < i; ++k) {
+            if (rows[i].status != RowStatus::ok || rows[k].fps <= 0 ||
+                structure_and_device(rows[k]) != structure_and_device(rows[i]))
+                continue;
+            rows[i].speedup = speedup(rows[i], rows[k]);
+        }
+}
+
+}  // namespace clarity::bench

@@ -1,0 +1,38 @@
+#include "cli/render/reference_run.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "render/compare/picture_read.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
+#include "render/settings/aov.hpp"
+
+namespace clarity {
+
+ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings) : file_(file), reference_(read_picture(file)) {
+    if (reference_.width != unsigned(settings.width) || reference_.height != unsigned(settings.height))
+        throw Error(Exit::usage, "--reference " + file + ": has " + std::to_string(reference_.width) + "x" +
+                                     std::to_string(reference_.height) + " pixels and the picture " +
+                                     std::to_string(settings.width) + "x" + std::to_string(settings.height) + "; take --size " +
+                                     std::to_string(reference_.width) + "x" + std::to_string(reference_.height));
+    if (!find_aov(settings.aov).is_color())
+        throw Error(Exit::usage, "--reference " + file + ": is compared with colours; leave out --aov " + settings.aov);
+}
+
+void ReferenceRun::offer(MultiFrameRenderer& frames, unsigned samples, bool finished) {
+    const unsigned last = points_.empty() ? 0 : points_.back().samples;
+    if (samples < 2 * last && !(finished && samples > last)) return;
+    points_.push_back({samples, picture_errors(frames.read_values(), reference_)});
+}
+
+double ReferenceRun::slope() const {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const Point& point : points_) {
+        if (!(point.errors.rmse > 0)) continue;
+        const double of_samples = std::log(double(point.samples)), of_error = std::log(point.errors.rmse);
+        n += 1, x += of_samples, y += of_error, xx += of_samples * of_samples, xy += of_samples * of_error;
+    }
+    return n < 2 ? NAN : (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace clarity

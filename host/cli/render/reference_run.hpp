@@ -1,0 +1,39 @@
+// reference_run.hpp -- how the error of a picture against a reference falls while its samples are traced (--reference).
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/compare/picture_errors.hpp"
+#include "render/settings/settings.hpp"
+
+namespace clarity {
+
+class MultiFrameRenderer;
+
+class ReferenceRun {
+ public:
+    // Reads the reference. Throws Error(failed); with a size that is not the picture's, Error(usage).
+    ReferenceRun(const std::string& file, const Settings& settings);
+
+    struct Point {
+        unsigned samples;
+        PictureErrors errors;
+    };
+    // Begins a picture anew.
+    void begin() { points_.clear(); }
+    // Compares the picture so far, if it has twice the samples of the last comparison, or is finished.
+    void offer(MultiFrameRenderer& frames, unsigned samples, bool finished);
+    const std::vector<Point>& points() const { return points_; }
+    const std::string& file() const { return file_; }
+    // The exponent of the samples by which RMSE falls, -0.5 of independent samples: a line through the logarithms. NaN if there
+    // are fewer than two points.
+    double slope() const;
+
+ private:
+    std::string file_;
+    FloatImage reference_;
+    std::vector<Point> points_;
+};
+
+}  // namespace clarity

@@ -1,0 +1,41 @@
+// compile_job.hpp -- what a compilation in a worker takes and returns.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/files/packet.hpp"
+
+namespace clarity {
+
+// Program to worker.
+struct CompileJob {
+    std::string source, options;
+    std::string device, name, driver;  // id as `--device` takes it; the worker refuses a device of another name or driver
+    bool ends_on_zeros = false;
+    bool wants_binary = false;
+    std::string pocl_cache;  // the folder that PoCL compiles into; empty: its own
+    template <class Packet, class Self>
+    static void visit(Packet& packet, Self& self) {
+        packet(self.source, self.options, self.device, self.name, self.driver, self.ends_on_zeros, self.wants_binary,
+               self.pocl_cache);
+    }
+};
+
+// Worker to program.
+struct CompileOutcome {
+    enum State : uint32_t { compiled, failed, no_device };
+    uint32_t state = compiled;
+    int32_t error = 0;         // OpenCL's, if failed
+    std::string log;           // the compiler's; why, if there is no device
+    std::vector<char> binary;  // empty: not asked for, or the driver gives none
+    template <class Packet, class Self>
+    static void visit(Packet& packet, Self& self) {
+        packet(self.state, self.error, self.log, self.binary);
+    }
+};
+
+// The work of kCompileJob.
+void compile_job(PacketReader& arguments);
+
+}  // namespace clarity

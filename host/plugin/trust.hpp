@@ -1,0 +1,21 @@
+// trust.hpp -- where the code of a plugin library runs: at once in this process, or in a worker first. One rule for opening it,
+// for its builds and for its kernels.
+#pragma once
+#include <string>
+
+namespace clarity {
+
+enum class Trust {
+    none,    // in a worker first
+    proven,  // a build of a library with this content has come to its end in a worker. Its kernels are tried all the same
+    own      // in a plugin folder of this program, or of the program that CLARITY_WORKER names
+};
+
+// Of a library. With CLARITY_PLUGINS=worker there is none for any library, so that each is opened, and each structure built, in
+// a worker every time. Thread-safe; may read the file.
+Trust trust_of(const std::string& path);
+
+// Makes a library proven, in this process and later ones ($XDG_CACHE_HOME/clarity/known_plugins).
+void remember_library(const std::string& path);
+
+}  // namespace clarity

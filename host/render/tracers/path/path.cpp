@@ -1,0 +1,44 @@
+// path.cpp -- the tracer `path`: a path of light at a time in each lane; a lane whose path has ended takes the next pixel.
+#include "render/emitters/emitter_table.hpp"
+#include "render/tracers/tracer.hpp"
+
+namespace clarity {
+namespace {
+
+KernelRow row_of(const std::vector<std::string>& defines) {
+    KernelRow r;
+    r.tracer = "path";
+    r.what = "tracer path";
+    r.file = "tracers/path/path.cl";
+    r.entry = "trace_path";
+    r.headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h", "sampling/math.h", "sampling/warps.h"};
+    const auto add = [&](const std::vector<const char*>& more) { r.headers.insert(r.headers.end(), more.begin(), more.end()); };
+    add({"shading/material.h", "shading/lost_metal.h", "shading/lost_glass_outside.h", "shading/lost_glass_inside.h",
+         "shading/microfacets.h", "shading/bsdf.h", "shading/bsdf_of.h"});
+    add(emitter_headers());
+    add({"tracers/path/sum.h", "tracers/path/camera_rays.h", "tracers/path/state.h", "tracers/path/scatter.h"});
+    r.defines = defines;
+    r.traits = kFrame | kCountsRays | kPicksLights | kSumsSamples;
+    return r;
+}
+
+const KernelRow& kernel(const Settings& settings, const Layout&) {
+    static const KernelRow light = row_of({}), shares = row_of({"RT_SHOW_MIS"});
+    return settings.aov == "mis" ? shares : light;
+}
+
+}  // namespace
+
+const Tracer& path_tracer() {
+    static const Tracer tracer = [] {
+        Tracer t;
+        t.id = "path";
+        t.help = "paths of light: lamps with a size, light from surface to surface; depth counts events of scattering";
+        t.picture = kPathPicture;
+        t.kernel = kernel;
+        return t;
+    }();
+    return tracer;
+}
+
+}  // namespace clarity

@@ -1,0 +1,141 @@
+#include "scene/material_keys.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace clarity {
+namespace {
+
+using M = rt_material;
+
+constexpr const char* kModels[] = {"whitted", "lambert", "conductor", "dielectric", nullptr};
+
+// More than a surface can send back, but files have such colours. A colour of 8 bits a channel is beyond it.
+constexpr double kMostColor = 100;
+
+Key of_model(Key key) {
+    key.follows_model = true;
+    return key;
+}
+Key on_log_scale(Key key) {
+    key.logarithmic = true;
+    return key;
+}
+
+std::vector<Key> make_keys() {
+    return {
+        shown(word_key("model", offsetof(M, model), 0, kModels), "Model", "what `path` takes the surface for",
+              "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `whitted` is the mixture "
+              "below"),
+        shown(color_key("color", offsetof(M, color), kMostColor, 0.7f), "Colour", "r g b",
+              "share of light that is scattered; also tints what is refracted. Of a conductor: what it mirrors straight on"),
+        shown(number_key("roughness", offsetof(M, roughness), 0, 1, 0), "Roughness", "of a conductor or dielectric",
+              "0 is smooth; GGX with alpha = roughness^2"),
+        of_model(shown(number_key("reflect", offsetof(M, reflect), 0, 1, 0), "Mirror", "share that is mirrored")),
+        of_model(shown(number_key("refract", offsetof(M, refract), 0, 1, 0), "Refraction",
+                       "share that Fresnel's equations divide into reflected and refracted")),
+        on_log_scale(shown(number_key("ior", offsetof(M, ior), 1e-3, 100, 1.5f), "Index", "index of refraction",
+                           "of the inside: water 1.33, glass 1.5, diamond 2.4")),
+        of_model(shown(color_key("specular", offsetof(M, specular), kMostColor, 0.15f), "Highlight", "r g b",
+                       "colour of the Blinn-Phong highlight of Whitted's tracers")),
+        of_model(on_log_scale(shown(number_key("shininess", offsetof(M, shininess), 0, 1e6, 32), "Shininess",
+                                    "exponent of the highlight", "larger is smaller and sharper"))),
+        shown(color_key("emission", offsetof(M, emission), kMostNumber, 0), "Emission", "r g b",
+              "light of its own, a radiance. With `path` it lights other surfaces"),
+        shown(color_key("absorption", offsetof(M, absorption), kMostNumber, 0), "Absorption", "r g b",
+              "inside of a dielectric, per unit of length: light falls by exp(-absorption length)"),
+        shown(flag_key("compensate", offsetof(M, flags), RT_MATERIAL_SINGLE_SCATTER, true), "Compensate",
+              "whether light that is scattered several times between facets is kept", "of conductors and rough dielectrics"),
+        shown(flag_key("one_sided", offsetof(M, flags), RT_MATERIAL_ONE_SIDED), "One-sided",
+              "whether only the side that its normal points to emits light"),
+        shown(flag_key("checker", offsetof(M, flags), RT_MATERIAL_CHECKER), "Checker", "whether it is a board of unit squares",
+              "in world x and z, of `color` and a third of it; for floors"),
+    };
+}
+
+// What Whitted's tracers read, as the material's model has it. Unchanged if that is Whitted's own.
+rt_material whitted_view(const rt_material& material) {
+    rt_material m = material;
+    if (m.model == RT_MODEL_WHITTED) return m;
+    m.reflect = m.model == RT_MODEL_CONDUCTOR ? 1 - m.roughness : 0.0f;
+    m.refract = m.model == RT_MODEL_DIELECTRIC ? 1.0f : 0.0f;
+    const rt_material usual = default_material();
+    const bool is_smooth = m.roughness == 0, is_metal = m.model == RT_MODEL_CONDUCTOR;
+    for (int k = 0; k < 3; ++k)
+        m.specular[k] = m.model == RT_MODEL_DIELECTRIC ? usual.specular[k] : is_metal && !is_smooth ? m.color[k] : 0.0f;
+    // Blinn's highlight is about as wide as a GGX lobe with this exponent (Walter et al. 2007, section 5.3: 2 / alpha^2 - 2).
+    const float alpha = m.roughness * m.roughness;
+    m.shininess = is_smooth ? usual.shininess : std::clamp(2 / std::max(alpha * alpha, 1e-6f) - 2, 1.0f, 1e6f);
+    return m;
+}
+
+bool same_bytes(const rt_material& a, const rt_material& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+}  // namespace
+
+const std::vector<Key>& material_keys() {
+    static const std::vector<Key> keys = make_keys();
+    return keys;
+}
+
+const Key& material_key(const char* name) {
+    return *find_key(material_keys(), name);
+}
+
+const rt_primitive_kind* material_kind_for_plugins() {
+    static const PluginKeys keys("material", material_keys());
+    return &keys.kind;
+}
+
+rt_material default_material() {
+    rt_material m{};
+    m.texture = RT_NONE;
+    for (const Key& key : material_keys()) set_value(key, &m, key.def);
+    return m;
+}
+
+void set_material_value(rt_material& material, const Key& key, const std::array<float, 3>& value) {
+    const bool follows = same_bytes(material, whitted_view(material));
+    set_value(key, &material, value);
+    if (follows && !key.follows_model) material = whitted_view(material);
+    if (std::strcmp(key.name, "model") == 0) material = whitted_view(material);
+}
+
+rt_material material_of(const rt_material_desc& d, std::string& problem) {
+    rt_material m = default_material();
+    std::copy_n(d.color, 3, m.color);
+    std::copy_n(d.emission, 3, m.emission);
+    std::copy_n(d.specular, 3, m.specular);
+    m.reflect = d.reflect;
+    m.refract = d.refract;
+    m.shininess = d.shininess;
+    m.ior = d.ior;
+    m.texture = d.texture;
+    m.flags = d.flags & (RT_MATERIAL_CHECKER | RT_MATERIAL_ONE_SIDED | RT_MATERIAL_SINGLE_SCATTER);
+    problem.clear();
+    for (const Key& key : material_keys())
+        for (rt_u32 i = 0; d.values && i < d.value_count; ++i)
+            if (d.values[i].key && std::strcmp(key.name, d.values[i].key) == 0) {
+                const float* n = d.values[i].numbers;
+                set_material_value(m, key, nearest_value(key, {n[0], n[1], n[2]}));
+            }
+    for (rt_u32 i = 0; d.values && i < d.value_count; ++i)
+        if (!d.values[i].key || !find_key(material_keys(), d.values[i].key))
+            problem = "has a key that this host does not know, which is left out";
+    for (const Key& key : material_keys()) {
+        const std::array<float, 3> value = value_of(key, &m);
+        if (!std::all_of(value.begin(), value.end(), [](float x) { return std::isfinite(x); }))
+            problem = "has values that are not finite numbers; they are replaced by defaults";
+        set_value(key, &m, nearest_value(key, value));
+    }
+    return m;
+}
+
+std::string material_fault(const rt_material& material) {
+    return fault_of(material_keys(), &material);
+}
+
+}  // namespace clarity
