@@ -141,8 +141,7 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const CheckJob& job
     if (job.phase == "accesses") return access_checks(*record.plugin, layout, open, options);
     std::vector<Check> checks = hits_checks(*record.plugin, layout, open, options);
     checks.insert(checks.begin(), device_check(*record.plugin, open, job.quick));
-    if (!job.rays.empty())
-        checks.push_back(own_scene_check({*record.plugin, layout, open, options}, std::move(scene), rays));
+    if (!job.rays.empty()) checks.push_back(own_scene_check({*record.plugin, layout, open, options}, std::move(scene), rays));
     return checks;
 }
 

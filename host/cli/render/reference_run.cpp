@@ -13,9 +13,8 @@ ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings) : 
     if (reference_.width != unsigned(settings.width) || reference_.height != unsigned(settings.height))
         throw Error(Exit::usage, "--reference " + file + ": has " + std::to_string(reference_.width) + "x" +
                                      std::to_string(reference_.height) + " pixels and the picture " +
-                                     std::to_string(settings.width) + "x" + std::to_string(settings.height) +
-                                     "; take --size " + std::to_string(reference_.width) + "x" +
-                                     std::to_string(reference_.height));
+                                     std::to_string(settings.width) + "x" + std::to_string(settings.height) + "; take --size " +
+                                     std::to_string(reference_.width) + "x" + std::to_string(reference_.height));
     if (!find_aov(settings.aov).is_color())
         throw Error(Exit::usage, "--reference " + file + ": is compared with colours; leave out --aov " + settings.aov);
 }
