@@ -109,7 +109,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                 ++top;
 #else
 #ifdef BROKEN_UNASKED_DEEP
-                if (top >= 8u)
+                if (top >= 3u)
                     ++top;
                 else
 #endif

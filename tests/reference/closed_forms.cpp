@@ -133,10 +133,11 @@ Scene slab(const rt_material& m) {
 class List {
  public:
     std::vector<ClosedForm> forms;
+    std::string group;
     void add(const std::string& name, const Scene& scene, View view, const std::vector<rt_light>& lights, unsigned depth,
              const Vec& expected, double rounding = 1e-5) {
         view.lights = lights;
-        forms.push_back({name, scene, std::move(view), depth, expected, rounding});
+        forms.push_back({group, name, scene, std::move(view), depth, expected, rounding});
     }
     void add(const std::string& name, const Scene& scene, View view, const std::vector<rt_light>& lights, unsigned depth,
              double expected, double rounding = 1e-5) {
@@ -145,6 +146,7 @@ class List {
 };
 
 void add_furnaces(List& list) {
+    list.group = "furnaces";
     // Inside of a closed body that emits 1, n events leave (1 - r^(n+1)) / (1 - r).
     View inside = looking_at({0.3, 0, 0}, {1, 0, 0}, 0.2, 0, 40);
     for (const unsigned n : {1u, 2u, 4u, 8u})
@@ -166,6 +168,7 @@ void add_furnaces(List& list) {
 }
 
 void add_lights(List& list) {
+    list.group = "lights";
     // A ball of albedo 0.5 under a spherical light of radiance 10 and radius 0.5, 3 above: r L R^2 cos / d^2; by quadrature
     // where the horizon cuts the light. Angles from the top.
     const struct {
@@ -214,6 +217,7 @@ void add_lights(List& list) {
 }
 
 void add_rooms(List& list) {
+    list.group = "rooms";
     // Radiosity in double precision, extrapolated: ceiling of radiance 1, five faces of albedo 0.5.
     const std::vector<rt_light> ceiling = {rect(1, 0.5f, 0.5f, 1)};
     const Scene gray = room(lambert(0.5f));
@@ -228,6 +232,7 @@ void add_rooms(List& list) {
 }
 
 void add_glass(List& list) {
+    list.group = "glass";
     const std::vector<rt_light> below = {rect(-2, 90, 90, 1, false)};
     const struct {
         double deg, passed, tinted[3];

@@ -10,7 +10,7 @@
 namespace clarity::reference {
 
 struct ClosedForm {
-    std::string name;
+    std::string group, name;  // groups: "furnaces", "lights", "rooms", "glass"
     Scene scene;
     View view;       // a picture whose mean is `expected`; mostly of one point
     unsigned depth;  // scattering events

@@ -4,7 +4,7 @@
  * With RT_COUNT_STEPS the program has those that are counted, else the others. out: 1 or 3 floats a pixel as the table says, top row
  * first. prim and instance are ints in the bits of floats. Steps, leaf tests and lanes are counted for the packet that the pixel's
  * ray belongs to. */
-#if RT_AOV_COUNT != 10
+#if RT_AOV_COUNT != 8 /* those that this tracer makes */
 #error "rt_store_aov() has no branch for the new AOV: add one, and count it here"
 #endif
 

@@ -64,7 +64,7 @@ void divide_sums(const float* sums, float* colors, size_t pixels) {
 // a launch cannot be cancelled, and each of its samples takes a layer of memory.
 constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
 constexpr double kAtOnceMs = 50;
-constexpr unsigned kMostSummed = 1024;  // of a tracer that adds samples by itself, without layers
+constexpr unsigned kMostSummed = 16384;  // of a tracer that adds samples by itself, without layers
 
 }  // namespace
 

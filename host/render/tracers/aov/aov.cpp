@@ -10,8 +10,12 @@ namespace {
 // Defines a number for each AOV: RT_AOV_T, ... One program computes all that need no counters, another one those that do, so
 // that changing from one to the next compiles nothing.
 void define_aovs(SourceWriter& out, const Settings& settings) {
-    for (const Aov& aov : aov_table()) out.define_int(kernel_macro(aov), number_of(aov));
-    out.define_int("RT_AOV_COUNT", static_cast<unsigned>(aov_table().size()));
+    unsigned count = 0;
+    for (const Aov& aov : aov_table()) {
+        out.define_int(kernel_macro(aov), number_of(aov));
+        count += aov.tracer && aov.tracer == std::string("aov");
+    }
+    out.define_int("RT_AOV_COUNT", count);
     out.line("#define RT_AOV");
     if (find_aov(settings.aov).counts_steps) out.line("#define RT_COUNT_STEPS");
 }
