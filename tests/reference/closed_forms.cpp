@@ -162,6 +162,9 @@ void add_furnaces(List& list) {
     list.add("rough metal that scatters once, cosine 0.2", bare,
              looking_at({0, 0, 0}, slanted(std::acos(0.2) / kRadPerDegree), 3, 1), {}, 1, 0.6416, 1e-4);
     list.add("rough metal that scatters once, cosine 1", bare, looking_at({0, 0, 0}, slanted(0), 3, 1), {}, 1, 0.3069, 1e-4);
+    list.add("metal of roughness 0.5 that scatters once, cosine 0.5",
+             ground(material(RT_MODEL_CONDUCTOR, 1, 0.5f, RT_MATERIAL_SINGLE_SCATTER)),
+             looking_at({0, 0, 0}, slanted(60), 3, 1), {}, 1, 0.8573, 1e-4);
     rt_material mixture = material(RT_MODEL_WHITTED, 0.5f);
     mixture.reflect = 0.3f;
     list.add("Whitted's mixture under a uniform sky", ground(mixture), looking_at({0, 0, 0}, slanted(40), 3, 1), {}, 3, 0.65);

@@ -75,7 +75,7 @@ TEST_F(Gltf, SpotsKeepTheirCones) {
     const json cone = {{"outerConeAngle", 0.5}, {"innerConeAngle", 0.25}};
     model["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", cone}}, {{"type", "spot"}}}}}}};
     const double half = std::sqrt(0.5);
-    model["nodes"] = {{{"mesh", 0}},
+    model["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}},
                       {{"translation", {4, 5, 6}},
                        {"rotation", {0, half, 0, half}},
                        {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
