@@ -1,6 +1,7 @@
 // view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
 #pragma once
 #include "render/accel/accel_build.hpp"
+#include "render/emitters/sky_table.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/launch/device_scene.hpp"
 #include "render/view/view.hpp"
@@ -49,9 +50,12 @@ class ViewBuffers {
         std::vector<rt_light> lights;
         std::vector<rt_material> materials;
         std::array<float, 3> background{};
+        SkyValues sky;
     };
     UploadedBuffer frame_, lights_, materials_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
     EmittersOf emitters_of_;
+    SharedArray<float> sky_of_;  // the picture that sky_ was made from
+    SkyTable sky_;
     std::vector<unsigned char> frames_and_rows_;
     bool own_materials_ = false;
 };
