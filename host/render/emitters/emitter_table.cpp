@@ -217,7 +217,8 @@ const std::vector<const char*>& emitter_headers() {
     return headers;
 }
 
-EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky) {
+EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
+                                bool knows_leaves) {
     EmitterTable out;
     std::vector<double> powers;
     const double radius = scene_radius(accel.scene.bounds);
@@ -239,7 +240,7 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         out.emitters.push_back(emitter);
         powers.push_back(flux * kPi * radius * radius);
     }
-    Collector(scene, accel, view, out, powers).collect();
+    if (knows_leaves) Collector(scene, accel, view, out, powers).collect();
     const bool any = std::any_of(powers.begin(), powers.end(), [](double power) { return power > 0; });
     out.lighting.emitter_count = any ? rt_u32(powers.size()) : 0;
     out.lighting.cell_bits = fill_pick_table(powers, out.emitters);
