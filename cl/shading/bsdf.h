@@ -99,7 +99,7 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
 }
 
 /* f(wo, wi) |cos wi| of the lobes that are no deltas. *pdf: the density with which rt_bsdf_draw() gives wi. Both are 0 in other lanes. */
-RT_INLINE rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lanes, vfloat *pdf)
+RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lanes, vfloat *pdf)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo.z);

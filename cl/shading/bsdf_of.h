@@ -30,6 +30,8 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
             alpha = m->roughness * m->roughness;
             if (m->model == RT_MODEL_CONDUCTOR) metal = 1.0f;
             else glass = 1.0f;
+            /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
+            if (glass > 0.0f && fabs(m->ior - 1.0f) < 1e-3f) alpha = 0.0f;
         }
         out.color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out.color);
         out.diffuse = rt_select(mine, rt_vfloat(diffuse), out.diffuse);

@@ -89,7 +89,7 @@ RT_INLINE vfloat rt_mix(vfloat a, vfloat b, vfloat share) { return fma(share, b 
 RT_INLINE vfloat rt_facet_axis(vfloat mu, vfloat alpha) { return sqrt(mu * (rt_vfloat(1.0f) + alpha) / (mu + alpha)); }
 
 /* The share of the light from a direction of cosine mu that a metal with F = 1 loses when light meets one facet only. */
-RT_INLINE vfloat rt_lost_by_metal(vfloat mu, vfloat alpha)
+RT_CALLED vfloat rt_lost_by_metal(vfloat mu, vfloat alpha)
 {
     const rt_between c = rt_between_nodes(rt_facet_axis(mu, alpha), RT_METAL_COSINES), r = rt_between_nodes(sqrt(alpha), RT_METAL_ROUGHNESSES);
     const vint first = c.low * rt_vint(RT_METAL_ROUGHNESSES) + r.low;
@@ -97,7 +97,7 @@ RT_INLINE vfloat rt_lost_by_metal(vfloat mu, vfloat alpha)
                   rt_from_pair(rt_lost_metal, first + rt_vint(RT_METAL_ROUGHNESSES), r.share), c.share);
 }
 /* Its mean over the hemisphere. */
-RT_INLINE vfloat rt_lost_by_metal_mean(vfloat alpha)
+RT_CALLED vfloat rt_lost_by_metal_mean(vfloat alpha)
 {
     const rt_between r = rt_between_nodes(sqrt(alpha), 2 * RT_METAL_ROUGHNESSES - 1);
     return rt_vfloat(RT_LOST_MEAN_SCALE) * alpha * sqrt(alpha) * rt_from_pair(rt_lost_metal_mean, r.low, r.share);
@@ -111,7 +111,7 @@ RT_INLINE rt_between rt_ior_nodes(vfloat eta)
 }
 
 /* As rt_lost_by_metal(), of a dielectric; what it lets through is not lost. eta: ior of the other side / ior of mu's side. */
-RT_INLINE vfloat rt_lost_by_glass(vfloat mu, vfloat alpha, vfloat eta)
+RT_CALLED vfloat rt_lost_by_glass(vfloat mu, vfloat alpha, vfloat eta)
 {
     const vmask inside = RT_MASK(eta < rt_vfloat(1.0f));
     const rt_between c = rt_between_nodes(rt_vfloat(0.5f) * (rt_facet_axis(mu, alpha) + mu), RT_GLASS_COSINES);
@@ -124,7 +124,7 @@ RT_INLINE vfloat rt_lost_by_glass(vfloat mu, vfloat alpha, vfloat eta)
     }
     return rt_mix(found[0], found[1], c.share);
 }
-RT_INLINE vfloat rt_lost_by_glass_mean(vfloat alpha, vfloat eta)
+RT_CALLED vfloat rt_lost_by_glass_mean(vfloat alpha, vfloat eta)
 {
     const vmask inside = RT_MASK(eta < rt_vfloat(1.0f));
     const rt_between r = rt_between_nodes(sqrt(alpha), 2 * RT_GLASS_ROUGHNESSES - 1), n = rt_ior_nodes(eta);

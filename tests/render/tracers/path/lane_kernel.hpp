@@ -1,6 +1,7 @@
 // lane_kernel.hpp -- runs parts of cl/ by themselves: a kernel that reads and writes rows of floats, one row a lane.
 #pragma once
 #include <CL/opencl.hpp>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,15 +11,17 @@
 
 namespace clarity::test {
 
-// A body of OpenCL C that computes an array of vfloat `out[writes]` from `in[reads]`, for any number of lanes.
+// A body of OpenCL C that computes an array of vfloat `out[writes]` from `in[reads]`, for any number of lanes. All rows are
+// `given`.
 class LaneKernel {
  public:
-    LaneKernel(const std::vector<std::string>& headers, unsigned reads, unsigned writes, const std::string& body,
-               unsigned lanes, const std::string& defines = "")
+    // parts: files of cl/, and text, which has an end of a line.
+    LaneKernel(const std::vector<std::string>& parts, unsigned reads, unsigned writes, const std::string& body, unsigned lanes)
         : reads_(reads), writes_(writes), lanes_(lanes) {
-        std::string text = "#define RT_LANES " + std::to_string(lanes) + "\n#define RT_CPU " +
-                           std::to_string(int(device().info().cpu)) + "\n" + defines;
-        for (const std::string& name : headers) text += "#line 1 \"cl/" + name + "\"\n" + kernel_text(name) + "\n";
+        std::string text =
+            "#define RT_LANES " + std::to_string(lanes) + "\n#define RT_CPU " + std::to_string(int(device().info().cpu)) + "\n";
+        for (const std::string& part : parts)
+            text += part.find('\n') != std::string::npos ? part : "#line 1 \"cl/" + part + "\"\n" + kernel_text(part) + "\n";
         text +=
             "#line 1 \"test\"\n#define READS " + std::to_string(reads) + "u\n#define WRITES " + std::to_string(writes) + "u\n";
         text +=
@@ -59,5 +62,10 @@ class LaneKernel {
     const unsigned reads_, writes_, lanes_;
     cl::Kernel kernel_;
 };
+
+// IEC 61966-2-1.
+inline double srgb_to_linear(double c) {
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 }  // namespace clarity::test

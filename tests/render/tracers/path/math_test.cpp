@@ -39,10 +39,6 @@ std::vector<float> numbers() {
     return rows;
 }
 
-double linear_of(double c) {
-    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 }  // namespace
 
 TEST(PathMath, FunctionsAgreeWithTheLibrary) {
@@ -67,7 +63,7 @@ TEST(PathMath, FunctionsAgreeWithTheLibrary) {
         if (x < -87.4) note(5, r[5], 0, 1);
         note(6, r[6], std::atan2(y == 0 ? 0.0 : y, x == 0 && y == 0 ? 1.0 : x));
         note(7, r[7], std::acos(std::fmax(-1, std::fmin(1, y))));
-        if (y >= 0 && y <= 1) note(8, r[8], linear_of(y));
+        if (y >= 0 && y <= 1) note(8, r[8], srgb_to_linear(y));
     }
     const double bounds[9] = {1.2e-7, 1.2e-7, 1.2e-7, 1.2e-7, 1.5e-7, 2.5e-7, 4e-7, 4e-7, 5e-7};
     const char* const names[9] = {"sin", "cos", "sin of turns", "cos of turns", "exp2", "exp", "atan2", "acos", "sRGB"};

@@ -1,0 +1,23 @@
+// closed_forms.hpp -- scenes whose light is known by a formula: what every path tracer must meet, the reference first of all.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "render/view/view.hpp"
+#include "scene/scene.hpp"
+#include "scene/vec.hpp"
+
+namespace clarity::reference {
+
+struct ClosedForm {
+    std::string name;
+    Scene scene;
+    View view;       // a picture whose mean is `expected`; mostly of one point
+    unsigned depth;  // scattering events
+    Vec expected;
+    double rounding = 1e-5;  // of `expected`, and of the picture's size around the point
+};
+
+std::vector<ClosedForm> closed_forms();
+
+}  // namespace clarity::reference

@@ -1,0 +1,38 @@
+// faults_test.cpp -- the tests of surfaces find what is planted into the kernels.
+#include <gtest/gtest.h>
+
+#include "support/planted_faults.hpp"
+
+using namespace clarity::test;
+
+TEST(PathFaults, AreFound) {
+    const char* const bsdf = "shading/bsdf.h";
+    const PlantedFault faults[] = {
+        {"no cosine", bsdf, "const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * wi.z;",
+         "const vfloat cosine = rt_vfloat(RT_INVERSE_PI);", "PathLobes.Directions*"},
+        {"density off by 2", bsdf, "*pdf = rt_select(above, p.diffuse * cosine, zero);",
+         "*pdf = rt_select(above, rt_vfloat(2.0f) * p.diffuse * cosine, zero);", "PathLobes.WhiteSurfaces*"},
+        {"eta^2 missing, smooth", bsdf, "rt_scale(glass_share / (b->eta * b->eta), b->color)",
+         "rt_scale(glass_share, b->color)", "PathLobes.WhiteSurfaces*"},
+        {"eta^2 missing, rough", bsdf, "(one - reflected) * bent * eta * eta * two", "(one - reflected) * bent * two",
+         "PathLobes.Directions*"},
+        {"eta^2 missing between facets", bsdf, "g.through / (g.mean_there * eta * eta)", "g.through / g.mean_there",
+         "PathLobes.ValuesAreRec*"},
+        {"losses unnormalised", bsdf, "* rt_lost_by_metal(wi.z, alpha) / mean;", "* rt_lost_by_metal(wi.z, alpha);",
+         "PathLobes.WhiteSurfaces*"},
+        {"shadows by the other form of Smith", bsdf, "rt_scale(seen / (smith_o + smith_i), fresnel)",
+         "rt_scale(seen * rt_vfloat(2.0f) / ((one + smith_o) * (one + smith_i)), fresnel)", "PathLobes.SingleScattering*"},
+        {"alpha squared twice", "shading/microfacets.h", "const vfloat alpha2 = alpha * alpha, across",
+         "const vfloat alpha2 = alpha * alpha * alpha * alpha, across", "PathLobes.Directions*"},
+        {"roughness squared twice", "shading/bsdf_of.h", "alpha = m->roughness * m->roughness;",
+         "alpha = m->roughness * m->roughness * m->roughness * m->roughness;", "PathMaterials.*"},
+        {"the inside is the outside", "shading/bsdf_of.h", "rt_select(entering, rt_vfloat(m->ior), rt_vfloat(1.0f / m->ior))",
+         "rt_select(entering, rt_vfloat(1.0f / m->ior), rt_vfloat(m->ior))", "PathMaterials.*"},
+        {"a lane's choice depends on others", bsdf, "*u = rt_select(of, rt_min(rest, rt_vfloat(0.99999994f)), *u);",
+         "*u = rt_min(rest, rt_vfloat(0.99999994f));", "PathLobes.LanesAgree"},
+        {"the disc is an ellipse", "sampling/warps.h", "*y = radius * sine;", "*y = rt_vfloat(0.97f) * radius * sine;",
+         "PathMath.Warps*"},
+        {"a sine with a wrong digit", "sampling/math.h", "-1.666666664e-1f", "-1.666566664e-1f", "PathMath.Functions*"},
+    };
+    for (const PlantedFault& fault : faults) EXPECT_EQ(why_not_found(fault), "") << fault.name;
+}

@@ -1,0 +1,117 @@
+// materials_test.cpp -- what cl/shading/bsdf_of.h makes of materials and textures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "render/tracers/path/lane_kernel.hpp"
+#include "scene/scene.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+constexpr unsigned kWords = 20;  // of a material, and so of a row
+static_assert(sizeof(rt_material) == 4 * kWords);
+
+// The first rows are materials; the next one is a texture and its texels. The others ask for a material, at texture
+// coordinates.
+LaneKernel& loader() {
+    static LaneKernel compiled(
+        {"#define RT_HAS_TEXTURES 1\n", "rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h",
+         "typedef struct rt_ctx { const global rt_material *materials; const global rt_texture *textures; const global uint "
+         "*texels; } rt_ctx;\n"
+         "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
+         "sampling/math.h", "sampling/warps.h", "shading/material.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
+         "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/bsdf.h", "shading/bsdf_of.h"},
+        kWords, 10,
+        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.textures = (const global rt_texture *)(given + 8 * "
+        "READS);"
+        "ctx.texels = (const global uint *)(given + 8 * READS + 4);"
+        "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(7)); s.tex_u = in[1]; s.tex_v = in[2];"
+        "const rt_bsdf b = rt_bsdf_of(&ctx, &s, RT_MASK(in[3] > 0.5f), RT_ALL_LANES, rt_vec_of(in[4], in[5], in[6]));"
+        "out[0] = b.color.x; out[1] = b.color.y; out[2] = b.color.z; out[3] = b.diffuse; out[4] = b.mirror; out[5] = b.metal; "
+        "out[6] = b.glass;"
+        "out[7] = b.alpha; out[8] = b.eta; out[9] = rt_select(b.compensate, rt_vfloat(1.0f), rt_vfloat(0.0f));",
+        8);
+    return compiled;
+}
+
+rt_material material(rt_u32 model, float roughness = 0, rt_u32 flags = 0) {
+    rt_material m = default_material();
+    m.model = model;
+    m.roughness = roughness;
+    m.flags = flags;
+    m.reflect = 0.25f;
+    m.refract = 0.5f;
+    m.ior = 1.25f;
+    m.color[0] = 0.5f;
+    return m;
+}
+
+}  // namespace
+
+TEST(PathMaterials, BecomeLobes) {
+    rt_material checker = material(RT_MODEL_LAMBERT, 0, RT_MATERIAL_CHECKER), textured = material(RT_MODEL_LAMBERT);
+    textured.texture = 0;
+    for (float& c : textured.color) c = 1;
+    rt_material air = material(RT_MODEL_DIELECTRIC, 0.5f);
+    air.ior = 1;
+    const rt_material materials[8] = {material(RT_MODEL_WHITTED),
+                                      material(RT_MODEL_LAMBERT),
+                                      material(RT_MODEL_CONDUCTOR, 0.5f),
+                                      material(RT_MODEL_DIELECTRIC, 0.001f, RT_MATERIAL_SINGLE_SCATTER),
+                                      material(RT_MODEL_DIELECTRIC),
+                                      checker,
+                                      textured,
+                                      air};
+    std::vector<float> rows(8 * kWords);
+    std::memcpy(rows.data(), materials, sizeof materials);
+    // A texture of 16 texels in a row; texel k has k, 16 + k, and 255 - k.
+    rt_u32 texture[kWords] = {0, 16, 1, 0};
+    for (rt_u32 k = 0; k < 16; ++k) texture[4 + k] = k | (16 + k) << 8 | (255 - k) << 16;
+    rows.resize(9 * kWords);
+    std::memcpy(&rows[8 * kWords], texture, sizeof texture);
+    struct Asked {
+        float material, u, v, entering, x, y, z;
+    };
+    std::vector<Asked> asked;
+    for (int i = 0; i < 5; ++i)
+        for (const float entering : {1.0f, 0.0f}) asked.push_back({float(i), 0, 0, entering, 0.5f, 0, 0.5f});
+    asked.push_back({5, 0, 0, 1, 0.5f, 0, 0.5f});
+    asked.push_back({5, 0, 0, 1, 1.5f, 0, 0.5f});
+    for (int k = 0; k < 16; ++k) asked.push_back({6, (float(k) + 0.5f) / 16, 0.5f, 1, 0, 0, 0});
+    asked.push_back({7, 0, 0, 1, 0, 0, 0});
+    for (const Asked& a : asked) {
+        rows.resize(rows.size() + kWords);
+        std::memcpy(&rows[rows.size() - kWords], &a, sizeof a);
+    }
+    const std::vector<float> found = loader().run(rows);
+    const auto lobe = [&](size_t i) { return &found[(9 + i) * 10]; };
+    const float expected[10][7] = {// diffuse, mirror, metal, glass, alpha, eta, compensate
+                                   {0.25f, 0.25f, 0, 0.5f, 0, 1.25f, 1},
+                                   {0.25f, 0.25f, 0, 0.5f, 0, 0.8f, 1},
+                                   {1, 0, 0, 0, 0, 1.25f, 1},
+                                   {1, 0, 0, 0, 0, 0.8f, 1},
+                                   {0, 0, 1, 0, 0.25f, 1.25f, 1},
+                                   {0, 0, 1, 0, 0.25f, 0.8f, 1},
+                                   {0, 0, 0, 1, 1e-4f, 1.25f, 0},
+                                   {0, 0, 0, 1, 1e-4f, 0.8f, 0},
+                                   {0, 0, 0, 1, 0, 1.25f, 1},
+                                   {0, 0, 0, 1, 0, 0.8f, 1}};
+    for (size_t i = 0; i < 10; ++i) {
+        EXPECT_EQ(lobe(i)[0], 0.5f) << i;
+        EXPECT_EQ(lobe(i)[1], 0.7f) << i;
+        for (size_t k = 0; k < 7; ++k) EXPECT_FLOAT_EQ(lobe(i)[3 + k], expected[i][k]) << "question " << i << ", number " << k;
+    }
+    EXPECT_EQ(lobe(28)[7], 0) << "facets that refract nothing";
+    EXPECT_EQ(lobe(28)[8], 1);
+    EXPECT_FLOAT_EQ(lobe(10)[0], 0.5f);
+    EXPECT_FLOAT_EQ(lobe(11)[0], 0.5f / 3);
+    for (int k = 0; k < 16; ++k) {
+        EXPECT_NEAR(lobe(size_t(12 + k))[0], srgb_to_linear(k / 255.0), 5e-7) << k;
+        EXPECT_NEAR(lobe(size_t(12 + k))[1], srgb_to_linear((16 + k) / 255.0), 5e-7) << k;
+        EXPECT_NEAR(lobe(size_t(12 + k))[2], srgb_to_linear((255 - k) / 255.0), 5e-7) << k;
+    }
+}
