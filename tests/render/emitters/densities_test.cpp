@@ -78,7 +78,7 @@ View full_view() {
 TEST(Lights, RaysFindWhatWasDrawn) {
     LightBench bench(full_scene(), full_view());
     size_t seen = 0, of_surfaces = 0, of_sky = 0, of_lights = 0;
-    for (const LightDraw& draw : bench.draw({0.1f, 0.05f, -0.2f}, even_numbers(1 << 16, 1))) {
+    for (const LightDraw& draw : bench.draw({0.1f, 0.05f, -0.2f}, even_numbers(1 << 14, 1))) {
         if (!draw.valid || draw.occluded) continue;
         ASSERT_FALSE(draw.delta);
         if (draw.found_distance < draw.distance * 0.9999f) continue;  // an area light is before it
@@ -93,10 +93,10 @@ TEST(Lights, RaysFindWhatWasDrawn) {
         for (int k = 0; k < 3; ++k)
             ASSERT_NEAR(draw.found[k] / draw.found_pdf, draw.light[k], 3e-4 * draw.light[k]) << draw.number;
     }
-    EXPECT_GT(seen, 20000u);
-    EXPECT_GT(of_surfaces, 4000u);
-    EXPECT_GT(of_sky, 2000u);
-    EXPECT_GT(of_lights, 500u);
+    EXPECT_GT(seen, 5000u);
+    EXPECT_GT(of_surfaces, 1000u);
+    EXPECT_GT(of_sky, 500u);
+    EXPECT_GT(of_lights, 120u);
 }
 
 // Pearson's chi-square of drawn directions in 8 x 16 cells of equal solid angle, against the integral of the density that rays
@@ -112,7 +112,7 @@ TEST(Lights, DrawsAreDistributedAsTheirDensitySays) {
             const double turn = std::atan2(d[2], d[0]) / (2 * kPi) + 0.5;
             return row * kColumns + std::min(kColumns - 1, int(turn * kColumns));
         };
-        const size_t draws = 1 << 17, rays = 1 << 20;
+        const size_t draws = 1 << 16, rays = 1 << 18;
         size_t hidden = 0;
         for (const LightDraw& draw : bench.draw(at, random_numbers(draws, seed))) {
             // A ray finds the nearest light only, so draws of what is behind are left out on both sides.

@@ -12,7 +12,7 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr size_t kDraws = 1 << 17;
+constexpr size_t kDraws = 1 << 15;
 
 // Expects the irradiance by drawn lights within 4 standard errors, and by rays in all directions if the light is large enough
 // for them.
@@ -22,9 +22,9 @@ void expect_irradiance(const Scene& scene, const View& view, const Point& at, co
     double error = 0;
     const double found = bench.irradiance(at, normal, random_numbers(kDraws, 1), &error);
     EXPECT_NEAR(found / wanted, 1, 4 * error / wanted + 1e-5);
-    EXPECT_LT(error / wanted, 0.005) << "too noisy to tell anything";
+    EXPECT_LT(error / wanted, 0.01) << "too noisy to tell anything";
     if (!by_rays) return;
-    EXPECT_NEAR(bench.irradiance_by_rays(at, normal, even_numbers(1 << 18, 1)) / wanted, 1, 0.005);
+    EXPECT_NEAR(bench.irradiance_by_rays(at, normal, even_numbers(1 << 16, 1)) / wanted, 1, 0.01);
 }
 
 View lit_by(const rt_light& light) {
@@ -188,7 +188,7 @@ TEST(Irradiance, PictureOfALobe) {
         const double found = bench.irradiance({0, 0, 0}, kUp, random_numbers(kDraws, 1), &error) / (kPi * row.wanted);
         error /= kPi * row.wanted;
         EXPECT_NEAR(found, 1, 4 * error + 0.0005 + 0.5e-6 / row.wanted) << "n " << row.n << ", " << row.degrees;
-        EXPECT_LT(error, 0.005) << "the picture is not sampled by its light";
+        EXPECT_LT(error, 0.01) << "the picture is not sampled by its light";
     }
 }
 
