@@ -19,6 +19,7 @@
 #include "ui/hud/hud.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/camera_control.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {
@@ -69,7 +70,7 @@ App::App(const ViewOptions& options) {
         GlWindow::wake();
     };
     session_ = std::make_unique<Session>(options, wake);
-    if (!damage.empty()) session_->report(damage);
+    if (!damage.empty()) session_->messages().report(damage);
     preferences_sync_.begin(folder_, preferences, state_, session_->desired);
     overlay_ = std::make_unique<VolumeOverlay>(wake);
     script_ = Script::from_environment();
@@ -143,7 +144,7 @@ void App::turn() {
     try {
         session_->update(ImGui::IsAnyItemActive() || held_.any_held(*state_.key_map));
     } catch (const Error& error) {
-        session_->report(error.what(), error.details());
+        session_->messages().report(error.what(), error.details());
     }
     preferences_sync_.follow(*session_, state_);
     const auto ready = session_->ready();
@@ -184,7 +185,7 @@ void App::finish_frame() {
     try {
         write_image(capture_path_, {}, image);
     } catch (const Error& error) {
-        session_->report(error.what());
+        session_->messages().report(error.what());
     }
     capture_path_.clear();
 }
@@ -210,7 +211,7 @@ void App::act(const KeyBinding& binding) {
     try {
         press(binding);
     } catch (const Error& error) {
-        session_->report(error.what(), error.details());
+        session_->messages().report(error.what(), error.details());
     }
 }
 
@@ -235,7 +236,7 @@ void App::apply_motion(float seconds, const HeldKeys& keys) {
     const auto between = [&](Motion less, Motion more) {
         return keys.value(*state_.key_map, more) - keys.value(*state_.key_map, less);
     };
-    const float step = session_->scene_size() * 0.33f * seconds;
+    const float step = scene_size(*session_) * 0.33f * seconds;
     const float camera = step * state_.camera_speed, turn = kTurnRadPerSecond * seconds * std::min(state_.camera_speed, 2.0f);
     const Step walk{between(Motion::camera_left, Motion::camera_right) * camera,
                     between(Motion::camera_down, Motion::camera_up) * camera,
@@ -252,7 +253,7 @@ void App::apply_motion(float seconds, const HeldKeys& keys) {
                      between(Motion::light_back, Motion::light_forward) * reach};
     auto& lights = session_->desired.lights;
     if (!shift.none() && session_->selected_light < lights.size())
-        move_light(lights[session_->selected_light].values, eye, shift, session_->scene_size());
+        move_light(lights[session_->selected_light].values, eye, shift, scene_size(*session_));
 }
 
 }  // namespace clarity::ui

@@ -2,13 +2,15 @@
 
 #include <cstdio>
 
+#include "ui/session/figures.hpp"
 #include "ui/session/session.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 
 void print_frame_rate(KeyTarget& to) {
-    std::printf("%s\n", to.session.frame_rate_line().c_str());
+    std::printf("%s\n", frame_rate_line(to.session).c_str());
     std::fflush(stdout);
 }
 
@@ -33,12 +35,12 @@ void go_to_next_bookmark(KeyTarget& to) {
     }
     if (cameras.empty()) return;
     const size_t next = to.state.next_bookmark++ % cameras.size();
-    to.session.go_to(cameras[next], poses[next]);
+    go_to(to.session, cameras[next], poses[next]);
 }
 
 void toggle_playing(KeyTarget& to) {
     if (to.session.playback().any())
-        to.session.toggle_playing();
+        to.session.playback().toggle(to.session.desired);
     else
         to.state.notify("this scene has no clip to play");
 }

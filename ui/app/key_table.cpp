@@ -6,6 +6,8 @@
 #include "ui/app/key_actions.hpp"
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
+#include "ui/session/session_output.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/key_map.hpp"
 #include "ui/widgets/ui_state.hpp"
 
@@ -50,7 +52,7 @@ void add_common(KeyMap& map) {
              [](KeyTarget& to) { to.state.show_lights = !to.state.show_lights; }),
         once(GLFW_KEY_M, "M", "show handles that move, turn and scale what is selected",
              [](KeyTarget& to) { to.state.move_handles = !to.state.move_handles; }),
-        once(GLFW_KEY_G, "G", "bring what is selected into view, or all", [](KeyTarget& to) { to.session.frame_selection(); }),
+        once(GLFW_KEY_G, "G", "bring what is selected into view, or all", [](KeyTarget& to) { frame_selection(to.session); }),
         once(GLFW_KEY_B, "B", "bookmark this view", add_bookmark),
         once(GLFW_KEY_N, "N", "next bookmark, or camera of the file", go_to_next_bookmark),
         once(GLFW_KEY_SPACE, "Space", "play the clip, or pause it", toggle_playing),
@@ -63,8 +65,8 @@ void add_common(KeyMap& map) {
                   [](KeyTarget& to) { to.session.save_picture(next_picture_path(to.state.pictures_folder)); }),
         with_ctrl(GLFW_KEY_E, "Ctrl+E", "save the scene with its edits",
                   [](KeyTarget& to) {
-                      const std::string path = to.session.scene_path();
-                      to.session.save_scene(path);
+                      const std::string path = scene_path(to.session);
+                      save_scene(to.session, path);
                       to.state.notify("saved " + path);
                   }),
         once(GLFW_KEY_HOME, "Home", "back to the first view of the scene", [](KeyTarget& to) { to.session.reset_view(); }),

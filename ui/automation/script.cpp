@@ -19,6 +19,8 @@
 #include "ui/automation/picture_script.hpp"
 #include "ui/automation/scripted_window.hpp"
 #include "ui/automation/time_script.hpp"
+#include "ui/session/figures.hpp"
+#include "ui/session/session_output.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -66,7 +68,7 @@ void edit(Session& session, const std::string& text) {
 }
 
 std::string inspection_text(const Session& session) {
-    const auto inspection = session.inspection();
+    const auto inspection = session.inspector().latest();
     if (!inspection) throw Error(Exit::failed, "no pixel was inspected");
     if (!inspection->failure.empty()) throw Error(Exit::failed, inspection->failure);
     nlohmann::json json = {{"x", inspection->x}, {"y", inspection->y}, {"rays", nlohmann::json::array()}};
@@ -225,7 +227,7 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
     } else if (command == "continuous") {
         session.desired.continuous = text == "1";
     } else if (command == "save_scene") {
-        session.save_scene(text);
+        save_scene(session, text);
     } else if (command == "select") {
         session.selection = {static_cast<rt_i32>(std::strtol(text.c_str(), nullptr, 10)), -1, -1};
     } else if (command == "handles") {
@@ -280,13 +282,13 @@ std::string Script::state_text(ScriptedWindow& window) const {
                            {"busy", session.activity().busy},
                            {"stage", session.activity().stage},
                            {"behind", session.behind()},
-                           {"message", session.message().text},
-                           {"messages", session.message_count()},
+                           {"message", session.messages().shown().text},
+                           {"messages", session.messages().count()},
                            {"path", window.state.path},
                            {"map", window.state.key_map->id},
                            {"typing", ImGui::GetIO().WantTextInput},
                            {"volumes", window.overlay.count()},
-                           {"fps", session.frames_per_second()},
+                           {"fps", frames_per_second(session)},
                            {"ui_frames", window.times.frames},
                            {"slowest_frame_ms", window.times.slowest_frame_ms},
                            {"slowest_answer_ms", window.times.slowest_answer_ms},

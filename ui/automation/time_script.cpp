@@ -65,7 +65,8 @@ bool run_time_command(ScriptedWindow& window, const std::string& command, const 
         if (space == std::string::npos) throw Error(Exit::usage, "`loop A B` needs two times");
         playback.set_loop(session.desired, number_of(text.substr(0, space)), number_of(text.substr(space + 1)));
     } else if (command == "camera_key") {
-        text == "remove" ? session.remove_camera_key() : session.set_camera_key();
+        text == "remove" ? session.playback().remove_camera_key(session.desired)
+                         : session.playback().set_camera_key(session.desired);
     } else if (command == "speed") {
         session.desired.speed = static_cast<float>(number_of(text));
     } else {

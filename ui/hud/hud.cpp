@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ui/session/figures.hpp"
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -102,7 +103,7 @@ void draw_progress_hud(const Rect& viewport, Session& session) {
 // Opens the Log tab at the first failure of a compiler or builder, since the log shows it with its place in the source.
 void open_log_at_failure(const Session& session, UiState& state) {
     static bool failing = false;
-    const WindowMessage& message = session.message();
+    const WindowMessage& message = session.messages().shown();
     const bool source = !message.details.empty() || find_source_place(message.text) || message.text.rfind("accel ", 0) == 0;
     if (!message.text.empty() && source && !failing) {
         state.show_tab(Tab::log);
@@ -113,7 +114,7 @@ void open_log_at_failure(const Session& session, UiState& state) {
 
 void draw_message_hud(const Rect& viewport, Session& session, UiState& state) {
     open_log_at_failure(session, state);
-    if (session.message().text.empty()) return;
+    if (session.messages().shown().text.empty()) return;
     const float scale = ui_scale(), width = std::min(620 * scale, viewport.width - 32 * scale);
     begin_hud("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
@@ -124,7 +125,7 @@ void draw_message_hud(const Rect& viewport, Session& session, UiState& state) {
     list.PopClipRect();
     ImGui::Indent(6 * scale);
     ImGui::PushTextWrapPos(0);
-    const std::string& text = session.message().text;
+    const std::string& text = session.messages().shown().text;
     constexpr size_t kMost = 700;  // bytes; the log has the whole text
     ImGui::TextUnformatted(text.size() <= kMost ? text.c_str() : (text.substr(0, kMost) + "\u2026").c_str());
     ImGui::PopTextWrapPos();
@@ -142,11 +143,11 @@ void draw_message_hud(const Rect& viewport, Session& session, UiState& state) {
     }
     ImGui::Unindent(6 * scale);
     end_hud();
-    if (dismissed) session.dismiss_message();
+    if (dismissed) session.messages().dismiss();
 }
 
 void draw_empty_hint(const Rect& viewport, const Session& session) {
-    if (session.picture() || session.activity().busy || !session.message().text.empty()) return;
+    if (session.picture() || session.activity().busy || !session.messages().shown().text.empty()) return;
     const char* const lines[] = {"No scene yet", "Drop a file here, or press Open\u2026 at the right"};
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     float y = viewport.y + viewport.height / 2 - ImGui::GetTextLineHeightWithSpacing();
@@ -173,9 +174,9 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
     } else {
         const Settings& s = picture->main.settings;
         char text[96];
-        std::snprintf(text, sizeof text, "%.1f fps", session.frames_per_second());
+        std::snprintf(text, sizeof text, "%.1f fps", frames_per_second(session));
         status_item(text, colors::kText, "frames a second, mean of the last ten");
-        std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second());
+        std::snprintf(text, sizeof text, "%.1f Mrays/s", mrays_per_second(session));
         status_item(text, colors::kText, "rays of all kinds, divided by the time of the kernels");
         std::snprintf(text, sizeof text, "%d\u00d7%d", s.width, s.height);
         status_item(

@@ -118,7 +118,7 @@ void draw_inspect_tab(Session& session, UiState& state) {
     if (toggle_button("Draw the rays", state.show_rays, "draw the inspected rays as lines in the scene, over the picture",
                       half))
         state.show_rays = !state.show_rays;
-    const auto inspection = session.inspection();
+    const auto inspection = session.inspector().latest();
     if (!inspection) {
         ImGui::Dummy({0, 6 * ui_scale()});
         dim_text(

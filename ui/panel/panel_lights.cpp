@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -24,7 +25,7 @@ void change_kind(Session& session, rt_light& light, rt_u32 kind) {
     light.kind = kind;
     const Camera& camera = session.desired.camera;
     for (int i = 0; i < 3; ++i) {
-        const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * session.scene_size() * 0.3f;
+        const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * scene_size(session) * 0.3f;
         light.position[i] = kind == RT_LIGHT_POINT ? camera.target[i] + towards : towards;
     }
     if (kind == RT_LIGHT_DIRECTIONAL) make_unit(light.position);
@@ -97,7 +98,7 @@ void draw_light_rows(Session& session, UiState& state) {
         ImGui::EndCombo();
     }
     row_label(sun ? "Direction" : "Position", sun ? "towards the light" : "in units of the file");
-    const float speed = sun ? 0.005f : session.scene_size() * 0.002f;
+    const float speed = sun ? 0.005f : scene_size(session) * 0.002f;
     if (ImGui::DragFloat3("##position", light.values.position, speed, 0, 0, "%.3g") && sun) make_unit(light.values.position);
     row_label("Light colour", "linear, intensity included");
     color_field("##colour", light.values.color);
@@ -121,7 +122,7 @@ void draw_bookmark_rows(Session& session, UiState& state) {
         note_rect("name of bookmark " + std::to_string(i + 1));
         tooltip("click to rename");
         ImGui::SameLine();
-        if (button("Go", "to this view", go)) session.go_to(bookmark.camera, bookmark.pose);
+        if (button("Go", "to this view", go)) go_to(session, bookmark.camera, bookmark.pose);
         note_rect("go to " + bookmark.name);
         ImGui::SameLine();
         if (button("\u00d7", "delete this bookmark", cross)) gone = i;

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -65,17 +66,17 @@ void draw_material_rows(Session& session) {
     }
     const auto index = static_cast<rt_u32>(session.selection.material);
     choose_material(session, scene, index);
-    rt_material values = session.material(index);
+    rt_material values = material(session, index);
     ImGui::PushID(static_cast<int>(index));
-    if (value_rows(values)) session.edited_material(index) = values;
+    if (value_rows(values)) edited_material(session, index) = values;
     ImGui::PopID();
     if (values.texture != RT_NONE) dim_text("a texture multiplies the colour");
     if (values.flags & RT_MATERIAL_CHECKER) dim_text("a checkerboard of the colour and a third of it");
     const rt_material& own = scene.materials[index].values;
-    const bool edited = std::memcmp(&session.material(index), &own, sizeof own) != 0;
+    const bool edited = std::memcmp(&material(session, index), &own, sizeof own) != 0;
     ImGui::BeginDisabled(!edited);
     const float half = share_of_line(2);
-    if (button("Reset material", "as the file has it", half)) session.edited_material(index) = own;
+    if (button("Reset material", "as the file has it", half)) edited_material(session, index) = own;
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(session.desired.materials.empty());

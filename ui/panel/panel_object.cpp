@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -31,7 +32,7 @@ void draw_object_rows(Session& session, UiState& state) {
     InstanceShift shift = session.desired.instances.shift_of(number);
     ImGui::PushID(static_cast<int>(number));
     bool changed = drag_row("Move", "from where the file or its clip has it, along the world's axes", shift.translate.data(),
-                            session.scene_size() * 0.002f);
+                            scene_size(session) * 0.002f);
     changed |= drag_row("Turn", "degrees about the world's x, then y, then z, about the middle of its box",
                         shift.degrees.data(), 0.5f);
     changed |= drag_row("Scale", "along the world's axes, about the middle of its box, before it is turned", shift.scale.data(),

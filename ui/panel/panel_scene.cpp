@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_output.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -40,14 +42,14 @@ void save_row(Session& session, UiState& state) {
     static std::string path;
     const float width = ImGui::CalcTextSize("Save scene").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
-    ImGui::InputTextWithHint("##scene path", file_name(session.scene_path()).c_str(), &path);
+    ImGui::InputTextWithHint("##scene path", file_name(scene_path(session)).c_str(), &path);
     note_rect("Scene path");
-    tooltip("a path that ends in .scene; empty: " + session.scene_path());
+    tooltip("a path that ends in .scene; empty: " + scene_path(session));
     ImGui::SameLine();
     if (button("Save scene", "a text scene that loads these files and makes the edits of this window (Ctrl+E)", width))
         attempt(session, [&] {
-            const std::string to = path.empty() ? session.scene_path() : path;
-            session.save_scene(to);
+            const std::string to = path.empty() ? scene_path(session) : path;
+            save_scene(session, to);
             state.notify("saved " + to);
         });
 }
@@ -94,7 +96,7 @@ void camera_rows(Session& session, UiState& state) {
             ImGui::EndCombo();
         }
     }
-    const float speed = session.scene_size() * 0.002f;
+    const float speed = scene_size(session) * 0.002f;
     drag3("Eye", "where the camera is, in units of the file", camera.eye.data(), speed);
     drag3("Target", "the point it looks at", camera.target.data(), speed);
     float degrees = camera.fov_y_rad * 57.29578f;
@@ -103,7 +105,7 @@ void camera_rows(Session& session, UiState& state) {
     row_label("Key speed", "how fast the keys move the camera; 1: a third of the scene a second");
     slider("##speed", state.camera_speed, 0.05f, 10, "%.2f", true);
     const float half = share_of_line(2);
-    if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) session.frame_selection();
+    if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) frame_selection(session);
     ImGui::SameLine();
     if (button("Reset view", "the scene's own camera, lights and materials again (Home)", half)) session.reset_view();
     CameraPath& path = session.desired.camera_path;
@@ -111,7 +113,7 @@ void camera_rows(Session& session, UiState& state) {
                "the camera is here at the time of the timeline; with a key at another time it moves from one to the other. A "
                "scene that does not move gets a timeline of ten seconds",
                half))
-        session.set_camera_key();
+        session.playback().set_camera_key(session.desired);
     ImGui::SameLine();
     const std::string keys = path.empty() ? "no keys" : "Clear " + plural(path.keys.size(), "key");
     if (path.empty())

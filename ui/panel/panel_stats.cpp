@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/figures.hpp"
 #include "ui/widgets/frame_graph.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -49,7 +50,7 @@ void frame_rows(Session& session) {
         const FrameTimes both = session.frame_times(i);
         const std::vector<float>& times = both.frames_ms();
         char fps[32];
-        std::snprintf(fps, sizeof fps, "%.1f", session.frames_per_second(i));
+        std::snprintf(fps, sizeof fps, "%.1f", frames_per_second(session, i));
         rate.add(fps);
         median.add(time_text(static_cast<double>(percentile(times, 0.5))));
         kernels.add(time_text(static_cast<double>(percentile(both.recent_kernels_ms(), 0.5))));
@@ -119,7 +120,7 @@ void ray_rows(const Session& session, const std::vector<const PictureSide*>& sid
     for (unsigned i = 0; i < sides.size(); ++i) {
         const FrameStats& stats = sides[i]->stats;
         char text[48];
-        std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second(i));
+        std::snprintf(text, sizeof text, "%.1f Mrays/s", mrays_per_second(session, i));
         rate.add(text);
         primary.add(count_text(static_cast<double>(stats.primary)));
         shadow.add(count_text(static_cast<double>(stats.shadow)));

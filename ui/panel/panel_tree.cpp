@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ui/panel/panel.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/scene_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -102,11 +103,11 @@ std::string help_text(const Scene& scene, const SceneRow& row, const std::string
 }
 
 void eye_button(Session& session, rt_u32 instance, bool by_file) {
-    const bool hidden = session.hidden(instance), seen = !hidden && by_file;
+    const bool hidden = session.desired.instances.is_hidden(instance), seen = !hidden && by_file;
     ImGui::PushStyleColor(ImGuiCol_Text, seen ? colors::kText : colors::kDim);
     ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0, 0, 0, 0));
     ImGui::BeginDisabled(!by_file);
-    if (ImGui::SmallButton(seen ? "\u25c9##eye" : "\u25cb##eye")) session.hide(instance, !hidden);
+    if (ImGui::SmallButton(seen ? "\u25c9##eye" : "\u25cb##eye")) session.desired.instances.hide(instance, !hidden);
     ImGui::EndDisabled();
     ImGui::PopStyleColor(2);
     tooltip(!by_file ? "the file hides it" : hidden ? "hidden: click to show it" : "click to hide it from the picture");
@@ -128,7 +129,7 @@ void item_row(Session& session, const Scene& scene, const SceneRow& row) {
                           ImGuiSelectableFlags_AllowDoubleClick)) {
         choose(session, scene, row);
         if (ImGui::IsMouseDoubleClicked(0) && row.kind == RowKind::instance)
-            session.focus_on_instance(static_cast<rt_u32>(row.index));
+            focus_on_instance(session, static_cast<rt_u32>(row.index));
     }
     note_rect("row " + name);
     tooltip(help_text(scene, row, name));

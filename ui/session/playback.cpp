@@ -126,4 +126,17 @@ void Playback::advance(DesiredState& desired, double now_s) {
     desired.pose.time_s = wrapped(*desired.pose.time_s + passed * double(desired.speed), desired.loop);
 }
 
+void Playback::set_camera_key(DesiredState& desired) {
+    if (!any()) offer_stage(desired, 0);
+    if (!desired.pose.time_s) show(desired, desired.loop[0]);
+    pause(desired);
+    desired.camera_path.set(*desired.pose.time_s, desired.camera);
+}
+
+void Playback::remove_camera_key(DesiredState& desired) {
+    if (!desired.pose.time_s) return;
+    const int key = desired.camera_path.key_at(*desired.pose.time_s);
+    if (key >= 0) desired.camera_path.keys.erase(desired.camera_path.keys.begin() + key);
+}
+
 }  // namespace clarity::ui

@@ -26,6 +26,7 @@ class Playback {
     bool playing() const { return playing_; }
     void play(DesiredState& desired);
     void pause(DesiredState& desired);  // at the nearest frame
+    void toggle(DesiredState& desired) { playing_ ? pause(desired) : play(desired); }
     // The clock stands still while the user holds the time with the mouse.
     void hold(bool held) { held_ = held; }
 
@@ -36,6 +37,10 @@ class Playback {
     void rest(DesiredState& desired);                                  // back to the scene at rest; pauses
     void choose(DesiredState& desired, const std::string& clip);       // shows its begin
     void set_loop(DesiredState& desired, double from_s, double to_s);  // within the clip, at least one frame
+
+    // Sets a key of the camera's path at the time that is shown, or takes it away. A scene without clips gets a timeline.
+    void set_camera_key(DesiredState& desired);
+    static void remove_camera_key(DesiredState& desired);
 
     // Called once a frame of the window, with the time of a steady clock.
     void advance(DesiredState& desired, double now_s);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "base/elapsed.hpp"
@@ -213,7 +212,7 @@ void Session::update(bool gesture) {
     take_kernels();
     take_libraries();
     take_scene_files();
-    if (auto why = frames_.take_failure(); !why.empty()) report(why);
+    if (auto why = frames_.take_failure(); !why.empty()) messages_.report(why);
     take_lost_devices();
     watch_tracing();
     sequence_.update(*this);
@@ -234,11 +233,11 @@ void Session::take_outcomes() {
     for (Outcome& outcome : worker_.take()) {
         switch (outcome.kind) {
             case Outcome::Kind::ready:
-                if (outcome.whole && !std::exchange(keeps_message_, false)) message_ = {};
+                if (outcome.whole && !std::exchange(keeps_message_, false)) messages_.dismiss();
                 adopt(outcome.ready);
                 break;
             case Outcome::Kind::failed:
-                report(outcome.message, outcome.details);
+                messages_.report(outcome.message, outcome.details);
                 playback_.pause(desired);
                 if (outcome.lost) note_lost_again();
                 if (outcome.files_failed && ready_) {
@@ -286,7 +285,7 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
         }
     }
     show_first_pose();
-    if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);
+    if (!ready->loaded->view_error.empty()) messages_.report(ready->loaded->view_error);
     first_camera_.clear();
     first_light_.clear();
     EditedView edited = edited_view(desired);
@@ -294,7 +293,7 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
         try {
             apply_edit(*ready->loaded->scene, edited, word.key, word.value);
         } catch (const Error& error) {
-            report(error.what());
+            messages_.report(error.what());
         }
     }
     adopt_view(edited);
@@ -311,7 +310,7 @@ void Session::show_first_pose() {
         playback_.choose(desired, clip.name);
         desired.pose.time_s = pose.time_s.value_or(clip.begin_s);
     } catch (const Error& error) {
-        report(error.what());
+        messages_.report(error.what());
     }
 }
 
@@ -331,29 +330,6 @@ void Session::follow_path() {
     desired.camera = desired.camera_path.at(*time_s);
 }
 
-void Session::set_camera_key() {
-    if (!playback_.any()) playback_.offer_stage(desired, 0);
-    if (!desired.pose.time_s) playback_.show(desired, desired.loop[0]);
-    playback_.pause(desired);
-    desired.camera_path.set(*desired.pose.time_s, desired.camera);
-}
-
-void Session::remove_camera_key() {
-    if (!desired.pose.time_s) return;
-    const int key = desired.camera_path.key_at(*desired.pose.time_s);
-    if (key >= 0) desired.camera_path.keys.erase(desired.camera_path.keys.begin() + key);
-}
-
-void Session::toggle_playing() {
-    playback_.playing() ? playback_.pause(desired) : playback_.play(desired);
-}
-
-void Session::report(const std::string& text, const std::string& details) {
-    log(LogLevel::error, details.empty() ? text : text + "\n" + details);
-    message_ = {text, details};
-    ++message_count_;
-}
-
 bool Session::behind() const {
     return ready_ && !prepares_same(ready_->request, desired_request());
 }
@@ -366,41 +342,6 @@ bool Session::idle() const {
     return !worker_.activity().busy && !worker_.has_outcomes() && is_posted(desired_request()) && !moving_ &&
            !playback_.playing() && frames_.idle() && !inspector_.busy() && pick_request_ == picked_request_ &&
            !sequence_.running() && picture_ == frames_.latest();
-}
-
-float Session::scene_size() const {
-    const float diagonal = ready_ ? ready_->loaded->bounds.diagonal() : 0.0f;
-    if (diagonal > 0) return diagonal;
-    float squared = 0;  // no finite bounds (only planes, or nothing): use the distance to the target
-    for (int i = 0; i < 3; ++i)
-        squared += (desired.camera.target[i] - desired.camera.eye[i]) * (desired.camera.target[i] - desired.camera.eye[i]);
-    return std::max(std::sqrt(squared), 1e-3f);
-}
-
-double Session::frames_per_second(unsigned side) const {
-    const std::vector<float> times = frames_.times(side).frames_ms();
-    const size_t count = std::min<size_t>(times.size(), 10);
-    double sum = 0;
-    for (size_t i = times.size() - count; i < times.size(); ++i) sum += times[i];
-    return sum > 0 ? 1000.0 * static_cast<double>(count) / sum : 0.0;
-}
-
-double Session::mrays_per_second(unsigned side) const {
-    if (!picture_ || (side == 1 && !picture_->other)) return 0;
-    const FrameStats& stats = side == 1 ? picture_->other->stats : picture_->main.stats;
-    const double ms = stats.device_ms > 0 ? stats.device_ms : stats.wall_ms;
-    return ms > 0 ? static_cast<double>(stats.primary + stats.shadow + stats.secondary) / ms * 1e-3 : 0;
-}
-
-std::string Session::frame_rate_line() const {
-    if (!picture_) return "fps 0.0  no picture yet";
-    const Settings& s = picture_->main.settings;
-    const double fps = frames_per_second();
-    char text[256];
-    std::snprintf(text, sizeof text, "fps %.1f  %.1f ms  %.1f Mrays/s  %dx%d  %s  packet %dx%d  lanes %d  depth %d", fps,
-                  fps > 0 ? 1000.0 / fps : 0.0, mrays_per_second(), s.width, s.height, s.accel.c_str(), s.packet_w, s.packet_h,
-                  s.lanes, s.depth);
-    return text;
 }
 
 }  // namespace clarity::ui

@@ -17,6 +17,7 @@
 #include "render/edit/preset.hpp"
 #include "ui/session/history.hpp"
 #include "ui/session/log_buffer.hpp"
+#include "ui/session/messages.hpp"
 #include "ui/session/playback.hpp"
 #include "ui/session/sequence.hpp"
 #include "ui/session/view_options.hpp"
@@ -26,11 +27,6 @@
 #include "ui/threads/prepare_worker.hpp"
 
 namespace clarity::ui {
-
-// A message over the picture. It stays until it is dismissed or its cause is gone.
-struct WindowMessage {
-    std::string text, details;
-};
 
 // The object selected in the picture or in the scene's tree.
 struct Selection {
@@ -74,10 +70,6 @@ class Session {
     // Throw Error; the desired state then stays as it was.
     void save_preset(const std::string& path) const;
     void load_preset(const std::string& path);
-    // Writes the scene with its edits as a text scene: see scene_text.hpp. Throws Error.
-    void save_scene(const std::string& path) const;
-    // Where save_scene() writes if the user names no path: the open text scene itself, else one beside the first file.
-    std::string scene_path() const;
     // Returns the `clarity render ...` command which makes the main picture as desired, on its device.
     std::string render_command(const std::string& output) const;
     // Saves the current picture once its samples are traced: .png as shown, .exr or .pfm with the film's values. Success is a
@@ -87,30 +79,12 @@ class Session {
     Sequence& sequence() { return sequence_; }
     Playback& playback() { return playback_; }
     const Playback& playback() const { return playback_; }
-    // Plays the clip, or pauses it.
-    void toggle_playing();
-    // Sets a key of the camera's path at the time that is shown, or takes it away. A scene without clips gets a timeline.
-    void set_camera_key();
-    void remove_camera_key();
 
     // Traces the rays of a pixel of the newest picture for the inspector.
     void inspect(unsigned x, unsigned y);
     // Like inspect(), then selects the object that the camera ray hit.
     void pick(unsigned x, unsigned y);
-    std::shared_ptr<const Inspection> inspection() const { return inspector_.latest(); }
-    bool inspecting() const { return inspector_.busy(); }
-    // Moves the camera's target to `point`. The eye's distance to it is multiplied by `nearer`.
-    void focus_on(const std::array<float, 3>& point, float nearer = 1);
-    void focus_on_instance(rt_u32 instance);
-    // To a bookmarked view. Its time is shown unless the scene plays.
-    void go_to(const Camera& camera, const PoseTime& pose);
-    void frame_selection();  // frames the selection, or the whole scene if nothing is selected
-    float picture_aspect() const;
-    // The materials to edit. They are copied from the scene to `desired` at the first edit.
-    rt_material& edited_material(rt_u32 index);
-    const rt_material& material(rt_u32 index) const;
-    bool hidden(rt_u32 instance) const;
-    void hide(rt_u32 instance, bool hidden);
+    const InspectThread& inspector() const { return inspector_; }
     // Says that this instance will be moved: it is kept apart in the structure, so that the first step is quick.
     void prepare_to_move(rt_u32 instance);
     // Where the middle of an instance is as desired: what it turns about. nullopt: there is no such instance.
@@ -138,16 +112,9 @@ class Session {
     bool behind() const;
     // Whether what was asked for last failed or was cancelled, so that it will not come by itself.
     bool not_in_force() const;
-    double frames_per_second(unsigned side = 0) const;
-    double mrays_per_second(unsigned side = 0) const;
-    std::string frame_rate_line() const;
-    // Unit for steps of camera and lights: the diagonal of the scene.
-    float scene_size() const;
 
-    const WindowMessage& message() const { return message_; }
-    void dismiss_message() { message_ = {}; }
-    void report(const std::string& text, const std::string& details = {});  // reports a failure as message and in the log
-    uint64_t message_count() const { return message_count_; }
+    Messages& messages() { return messages_; }
+    const Messages& messages() const { return messages_; }
 
  private:
     void take_outcomes();
@@ -203,8 +170,7 @@ class Session {
     std::shared_ptr<const Picture> picture_when_lost_;  // the newest then
     bool lost_again_ = false;                           // while they were opened anew; nothing was tried since
     bool keeps_message_ = false;                        // of the loss, while the device is opened anew
-    WindowMessage message_;
-    uint64_t message_count_ = 0;
+    Messages messages_;
     History history_;
     Sequence sequence_;
     Playback playback_;

@@ -32,7 +32,7 @@ void Session::note_lost_again() {
     if (!ready_ || ready_->lost()) return;
     lost_again_ = true;
     keeps_message_ = false;
-    message_.text += ". The device is opened anew when the view or a setting changes";
+    messages_.add(". The device is opened anew when the view or a setting changes");
 }
 
 // A launch did not end, or the driver failed. The worker opens lost devices anew with the next request, which this posts, with
@@ -58,7 +58,7 @@ void Session::take_lost_devices() {
         posted_request_.reset();
     }
     log(LogLevel::info, next);
-    if (!message_.text.empty()) message_.text += ". " + next;
+    if (!messages_.shown().text.empty()) messages_.add(". " + next);
 }
 
 // A launch on a GPU has a limit of its own. On a CPU nothing stops a launch, and a driver may hang in a call: then all that can
@@ -67,9 +67,10 @@ void Session::watch_tracing() {
     const double silent_s = frames_.silent_s();
     const bool silent = silent_s > 1.5 * launch_limit_s() && !PendingWrite::any();  // the same thread saves pictures
     if (silent && !told_silent_)
-        report("tracing has given no sign of life for " + std::to_string(std::lround(silent_s)) +
-               " s: a launch does not end, or the driver does not return from a call, and neither can be stopped. The last "
-               "picture stays. If kernels were edited, they may loop for ever. Close the window to end the program");
+        messages_.report(
+            "tracing has given no sign of life for " + std::to_string(std::lround(silent_s)) +
+            " s: a launch does not end, or the driver does not return from a call, and neither can be stopped. The last "
+            "picture stays. If kernels were edited, they may loop for ever. Close the window to end the program");
     told_silent_ = silent;
 }
 

@@ -24,7 +24,7 @@ void Session::take_libraries() {
     bool structures = false, importers = false;
     for (const RebuiltLibrary& library : libraries_.apply()) {
         if (!library.now) {
-            report(library.why);
+            messages_.report(library.why);
             continue;
         }
         ++sources_revision_;

@@ -1,4 +1,5 @@
-// The session's output: pictures, presets, command lines.
+#include "ui/session/session_output.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -6,7 +7,6 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/edit/scene_text.hpp"
-#include "ui/session/session.hpp"
 
 namespace clarity::ui {
 
@@ -15,7 +15,7 @@ void Session::take_saved() {
         if (saved.failure.empty())
             log(LogLevel::info, "saved " + saved.path);
         else
-            report(saved.failure);
+            messages_.report(saved.failure);
         sequence_.saved(*this, saved.number, saved.failure.empty());
     }
 }
@@ -68,18 +68,20 @@ void Session::load_preset(const std::string& path) {
     log(LogLevel::info, "preset " + path);
 }
 
-std::string Session::scene_path() const {
-    if (!ready_) return {};
-    const std::filesystem::path first = ready_->loaded->files.front();
-    if (ready_->loaded->files.size() == 1 && first.extension() == ".scene") return first.string();
+std::string scene_path(const Session& session) {
+    const std::shared_ptr<const Ready> ready = session.ready();
+    if (!ready) return {};
+    const std::filesystem::path first = ready->loaded->files.front();
+    if (ready->loaded->files.size() == 1 && first.extension() == ".scene") return first.string();
     return (first.parent_path() / (first.stem().string() + "_edited.scene")).string();
 }
 
-void Session::save_scene(const std::string& path) const {
-    if (!ready_) throw Error(Exit::usage, path + ": cannot save, because no scene is open; open a scene first");
-    clarity::save_scene({*ready_->loaded->scene, ready_->loaded->files, edited_view(desired)}, path);
+void save_scene(const Session& session, const std::string& path) {
+    const std::shared_ptr<const Ready> ready = session.ready();
+    if (!ready) throw Error(Exit::usage, path + ": cannot save, because no scene is open; open a scene first");
+    clarity::save_scene({*ready->loaded->scene, ready->loaded->files, edited_view(session.desired)}, path);
     log(LogLevel::info, "saved " + path);
-    for (const std::string& folder : folders_outside(ready_->loaded->files, path))
+    for (const std::string& folder : folders_outside(ready->loaded->files, path))
         log(LogLevel::warning, path + ": it loads files outside of its folder; open it with --search-path '" + folder + "'");
 }
 

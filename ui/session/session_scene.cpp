@@ -22,7 +22,7 @@ void Session::take_pick() {
     const auto inspection = inspector_.latest();
     if (!inspection || inspection->request < pick_request_ || pick_request_ == picked_request_) return;
     picked_request_ = pick_request_;
-    if (!inspection->failure.empty()) return report(inspection->failure);
+    if (!inspection->failure.empty()) return messages_.report(inspection->failure);
     selection = {};
     if (!ready_ || inspection->job.ready->loaded != ready_->loaded || inspection->result.rays.empty()) return;
     const PrimPlace place = place_of_prim(*inspection->job.ready->scene, inspection->result.rays.front().prim);
@@ -30,57 +30,6 @@ void Session::take_pick() {
     selection.prim = inspection->result.rays.front().prim;
     selection.instance = place.instance == RT_NONE ? -1 : static_cast<rt_i32>(place.instance);
     selection.material = place.material == RT_NONE ? -1 : static_cast<rt_i32>(place.material);
-}
-
-void Session::focus_on(const std::array<float, 3>& point, float nearer) {
-    Camera& camera = desired.camera;
-    for (int k = 0; k < 3; ++k) {
-        const float away = camera.eye[k] - camera.target[k];
-        camera.target[k] = point[k];
-        camera.eye[k] = point[k] + away * nearer;
-    }
-}
-
-void Session::focus_on_instance(rt_u32 instance) {
-    if (!ready_ || instance >= ready_->scene->instances.size()) return;
-    frame_bounds(desired.camera, instance_bounds(*whole_scene(*ready_), instance), picture_aspect());
-}
-
-void Session::go_to(const Camera& camera, const PoseTime& pose) {
-    desired.camera = camera;
-    if (!pose.time_s || playback_.playing() || !playback_.has(pose.clip)) return;
-    if (pose.clip != desired.pose.clip) playback_.choose(desired, pose.clip);
-    desired.pose.time_s = pose.time_s;
-}
-
-void Session::frame_selection() {
-    if (!ready_) return;
-    if (selection.instance >= 0) return focus_on_instance(static_cast<rt_u32>(selection.instance));
-    const bool at_rest = ready_->scene == ready_->loaded->scene;
-    const Bounds bounds = at_rest ? ready_->loaded->bounds : whole_scene(*ready_)->bounds();
-    if (!bounds.empty) frame_bounds(desired.camera, bounds, picture_aspect());
-}
-
-float Session::picture_aspect() const {
-    return static_cast<float>(desired.main.settings.width) / static_cast<float>(desired.main.settings.height);
-}
-
-rt_material& Session::edited_material(rt_u32 index) {
-    if (desired.materials.empty())
-        for (const Material& material : ready_->loaded->scene->materials) desired.materials.push_back(material.values);
-    return desired.materials.at(index);
-}
-
-const rt_material& Session::material(rt_u32 index) const {
-    return desired.materials.empty() ? ready_->loaded->scene->materials.at(index).values : desired.materials.at(index);
-}
-
-bool Session::hidden(rt_u32 instance) const {
-    return desired.instances.is_hidden(instance);
-}
-
-void Session::hide(rt_u32 instance, bool hidden) {
-    desired.instances.hide(instance, hidden);
 }
 
 void Session::prepare_to_move(rt_u32 instance) {

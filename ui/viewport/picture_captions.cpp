@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/numbers.hpp"
+#include "ui/session/figures.hpp"
 #include "ui/viewport/speed_verdict.hpp"
 #include "ui/widgets/frame_graph.hpp"
 #include "ui/widgets/theme.hpp"
@@ -66,7 +67,7 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
                              others = session.frame_times(1 - side).recent_kernels_ms();
     if (const double ms = static_cast<double>(percentile(mine, 0.5)); ms > 0) {
         char text[64];
-        std::snprintf(text, sizeof text, "%s of kernels, %.1f Mrays/s", time_text(ms).c_str(), session.mrays_per_second(side));
+        std::snprintf(text, sizeof text, "%s of kernels, %.1f Mrays/s", time_text(ms).c_str(), mrays_per_second(session, side));
         caption.speed = text;
     }
     caption.verdict = speed_verdict(mine, others);

@@ -210,7 +210,7 @@ void PicturePane::draw_pixel_marks(ImDrawList& list, const Session& session, con
     const auto middle = [](unsigned i, unsigned of) {
         return (static_cast<float>(i) + 0.5f) / static_cast<float>(std::max(of, 1u));
     };
-    const auto inspection = session.inspection();
+    const auto inspection = session.inspector().latest();
     if (rays_shown_ && inspection && inspection->job.revision == picture_->job.revision) {
         const auto columns = static_cast<unsigned>(inspection->job.settings.width),
                    rows = static_cast<unsigned>(inspection->job.settings.height);

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "ui/session/camera_control.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {
@@ -138,12 +139,12 @@ void PictureMouse::click(const Target& target, Session& session, UiState& state)
     }
     if (double_) {
         focus_on_ = hover_;
-        focus_after_ = session.inspection() ? session.inspection()->request : 0;
+        focus_after_ = session.inspector().latest() ? session.inspector().latest()->request : 0;
         if (const auto& distance = target.picture.main.distance; distance && !distance->pixels.empty()) {
             const float t = distance->pixels[size_t{hover_->y} * distance->width + hover_->x];
             const Projection projection(target.places[hover_->place].area, camera_of(target.picture));
             const glm::vec3 point = projection.eye() + projection.ray(last_) * t;
-            if (std::isfinite(t)) session.focus_on({point.x, point.y, point.z}, kFocusNearer);
+            if (std::isfinite(t)) focus_on(session.desired, {point.x, point.y, point.z}, kFocusNearer);
             focus_on_.reset();
         } else {
             session.inspect(hover_->x, hover_->y);
@@ -156,10 +157,10 @@ void PictureMouse::click(const Target& target, Session& session, UiState& state)
 
 void PictureMouse::focus_when_known(Session& session) {
     if (!focus_on_) return;
-    const auto inspection = session.inspection();
+    const auto inspection = session.inspector().latest();
     if (!inspection || inspection->request <= focus_after_) return;
     if (inspection->x != focus_on_->x || inspection->y != focus_on_->y) {
-        if (!session.inspecting()) focus_on_.reset();  // another pixel was requested meanwhile
+        if (!session.inspector().busy()) focus_on_.reset();  // another pixel was requested meanwhile
         return;
     }
     focus_on_.reset();
@@ -168,7 +169,7 @@ void PictureMouse::focus_when_known(Session& session) {
     if (!std::isfinite(ray.t)) return;
     std::array<float, 3> point;
     for (size_t i = 0; i < 3; ++i) point[i] = ray.origin[i] + ray.direction[i] * ray.t;
-    session.focus_on(point, kFocusNearer);
+    focus_on(session.desired, point, kFocusNearer);
 }
 
 void PictureMouse::update(const Target& target, Session& session, UiState& state) {

@@ -39,7 +39,7 @@ void PicturePane::place_move_handles(Session& session, const UiState& state) {
     if (!state.move_handles || session.selection.instance < 0 || !ready || picture_->job.ready->loaded != ready->loaded) return;
     const auto instance = static_cast<rt_u32>(session.selection.instance);
     const auto middle = session.middle_of(instance);
-    if (!middle || session.hidden(instance)) return;
+    if (!middle || session.desired.instances.is_hidden(instance)) return;
     session.prepare_to_move(instance);
     const Projection projection(area_, picture_->job.view.camera);
     move_handles_ = clarity::ui::move_handles(projection, {(*middle)[0], (*middle)[1], (*middle)[2]}, ui_scale());

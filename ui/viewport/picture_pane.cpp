@@ -12,6 +12,7 @@
 #include "scene/motion/deform.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/session/camera_control.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/theme.hpp"
 
@@ -148,12 +149,12 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
     } else {
         selected_ = {};
     }
-    const auto inspection = session.inspection();
+    const auto inspection = session.inspector().latest();
     const bool looking = (state.tab == Tab::inspect && state.panel_visible) || state.inspect_hover || mouse_.rays_asked();
     rays_shown_ =
         looking && state.show_rays && inspection && inspection->failure.empty() && inspection->job.ready->scene == scene;
     if (rays_shown_)
-        append_ray_lines(inspection->result, projection, session.scene_size() * 0.6f, scale, state.selected_ray, marks);
+        append_ray_lines(inspection->result, projection, scene_size(session) * 0.6f, scale, state.selected_ray, marks);
     if (marks == marks_) return;
     marks_ = std::move(marks);
     ++marks_revision_;

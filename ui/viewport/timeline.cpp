@@ -219,7 +219,7 @@ void draw_key_button(Session& session) {
                            : "set a key of the camera's path here: move to another time, move the camera, set the next one; "
                              "the camera goes from key to key as the clip plays";
     if (!icon_button("camera key", at >= 0 ? Icon::key : Icon::no_key, help)) return;
-    stands_on_it ? session.remove_camera_key() : session.set_camera_key();
+    stands_on_it ? session.playback().remove_camera_key(session.desired) : session.playback().set_camera_key(session.desired);
 }
 
 void draw_buttons(Session& session) {
@@ -228,7 +228,7 @@ void draw_buttons(Session& session) {
     ImGui::SameLine();
     const bool playing = playback.playing();
     if (icon_button("play", playing ? Icon::pause : Icon::play, playing ? "pause (Space)" : "play (Space)"))
-        session.toggle_playing();
+        session.playback().toggle(session.desired);
     ImGui::SameLine();
     if (icon_button("step forward", Icon::forward, "the frame after (.)")) playback.step(session.desired, 1);
     ImGui::SameLine();

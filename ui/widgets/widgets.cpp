@@ -175,7 +175,7 @@ void attempt(Session& session, const std::function<void()>& what) {
     try {
         what();
     } catch (const Error& error) {
-        session.report(error.what(), error.details());
+        session.messages().report(error.what(), error.details());
     }
 }
 

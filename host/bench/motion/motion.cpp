@@ -18,8 +18,8 @@
 #include "device/cl_errors.hpp"
 #include "plugin/extensions.hpp"
 #include "render/frame/preparer.hpp"
-#include "render/moving/on_device/device_motion.hpp"
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_device/device_mover.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -75,8 +75,8 @@ class MotionCase {
     bool plays() const { return case_.measure == "frame" || case_.measure == "object" || case_.measure == "clip"; }
     struct Mover {
         std::shared_ptr<const AccelData> built, now;
-        std::unique_ptr<MovingAccel> accel;
-        MovedAccel moved;
+        std::unique_ptr<HostMover> accel;
+        MovedStructure moved;
         size_t next = 0;
     };
 
@@ -115,7 +115,7 @@ class MotionCase {
         auto mover = std::make_shared<Mover>();
         mover->built = std::make_shared<const AccelData>(
             build_accel(*fixture_.scene(), plugin, settings.accel_params, progress_, fixture_.target_of(plugin)));
-        mover->accel = std::make_unique<MovingAccel>(fixture_.scene(), mover->built);
+        mover->accel = std::make_unique<HostMover>(fixture_.scene(), mover->built);
         if (!mover->accel->cannot().empty()) throw Error(Exit::usage, mover->accel->cannot());
         for (const Pose& pose : poses_) move(*mover, pose);
         return mover;
@@ -167,7 +167,7 @@ class MotionCase {
     void add_device_refit(const Settings& settings, Entry& entry) {
         struct State {
             std::shared_ptr<const Prepared> prepared;
-            std::unique_ptr<DeviceMotion> motion;
+            std::unique_ptr<DeviceMover> motion;
             std::vector<cl::Buffer> poses;
             size_t next = 0;
         };
@@ -176,7 +176,7 @@ class MotionCase {
         auto apart = std::make_shared<Scene>(*fixture_.scene());
         for (Instance& instance : apart->instances) instance.apart = true;
         state->prepared = Preparer(plugins_, device).prepare(apart, settings, progress_);
-        state->motion = std::make_unique<DeviceMotion>(device, apart, state->prepared->accel, state->prepared->on_device);
+        state->motion = std::make_unique<DeviceMover>(device, apart, state->prepared->accel, state->prepared->on_device);
         if (!state->motion->cannot().empty()) throw Error(Exit::usage, state->motion->cannot());
         for (const Pose& pose : poses_) {
             const MovedOnDevice moved = state->motion->move(pose);

@@ -72,13 +72,13 @@ MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device
     size_ = static_cast<float>(scene.bounds().diagonal());
     Preparer preparer(plugins, device_);
     prepared_ = preparer.prepare(scene_, settings_, progress);
-    motion_ = std::make_unique<DeviceMotion>(device_, scene_, prepared_->accel, prepared_->on_device, rest_scene_);
+    motion_ = std::make_unique<DeviceMover>(device_, scene_, prepared_->accel, prepared_->on_device, rest_scene_);
     if (!motion_->cannot().empty()) throw Error(Exit::usage, motion_->cannot());
     if (builds() && !motion_->can_build()) throw Error(Exit::usage, "accel " + settings_.accel + " is not built by devices");
     const MovedOnDevice first = motion_->move(plays_clip() ? clip_pose(0)
                                               : waves      ? moved_pose(scene, "wave", 0.1)
                                                            : pose_of(0),
-                                              builds() ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
+                                              builds() ? DeviceMover::Update::build : DeviceMover::Update::refit);
     if (!first.on_device) throw Error(Exit::usage, "the structure cannot follow: " + first.why);
     prepared_ = preparer.prepare(scene_, settings_, progress, motion_->accel(), {first.on_device, true});
     if (!waves) return;
@@ -120,7 +120,7 @@ Pose MovingFrames::pose_of(float phase) const {
 MovedOnDevice MovingFrames::move(float phase) {
     if (kind_ == Motion::object) return motion_->move(pose_of(phase));
     for (rt_u32 m = 0; m < scene_->meshes.size(); ++m) motion_->touch(m);
-    return motion_->update(builds() ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
+    return motion_->update(builds() ? DeviceMover::Update::build : DeviceMover::Update::refit);
 }
 
 cl::Event MovingFrames::deform(float phase) {
@@ -149,7 +149,7 @@ Sample MovingFrames::play(Progress& progress) {
                 const auto pose_begin = std::chrono::steady_clock::now();
                 const Pose pose = clip_pose(next_);
                 pose_ms += ms_since(pose_begin);
-                moved = motion_->move(pose, builds() ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
+                moved = motion_->move(pose, builds() ? DeviceMover::Update::build : DeviceMover::Update::refit);
             } else if (kind_ != Motion::nothing) {
                 moved = move(phase);
             }

@@ -7,7 +7,7 @@
 #include "bench/run/measure.hpp"
 #include "render/frame/frame_renderer.hpp"
 #include "render/frame/preparer.hpp"
-#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_device/device_mover.hpp"
 
 namespace clarity::bench {
 
@@ -46,7 +46,7 @@ class MovingFrames {
     std::shared_ptr<const Scene> rest_scene_;  // of a clip: with its motion
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const Prepared> prepared_;
-    std::unique_ptr<DeviceMotion> motion_;
+    std::unique_ptr<DeviceMover> motion_;
     BuildKernels kernels_;
     cl::Kernel wave_;
     cl::Buffer rest_;

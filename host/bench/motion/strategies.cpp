@@ -12,6 +12,7 @@
 #include "bench/run/bench.hpp"
 #include "render/frame/preparer.hpp"
 #include "render/moving/follow/pose_follower.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -84,7 +85,7 @@ class StrategiesCase {
         if (builds) {
             s.accel = std::make_shared<const AccelData>(
                 build_accel(*scene, plugin_, settings_.accel_params, progress_, fixture_.target_of(plugin_)));
-            s.follower.built(from, scene, pose, s.accel, make_host_mover(scene, s.accel));
+            s.follower.built(from, scene, pose, s.accel, std::make_unique<HostMover>(scene, s.accel));
         }
         const double update_ms = ms_since(begin);
         const auto prepared = preparer_.prepare(scene, settings_, progress_, s.accel);

@@ -8,7 +8,7 @@
 #include "check/hits/ray_sets.hpp"
 #include "check/scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_device/device_mover.hpp"
 
 namespace clarity::check {
 namespace {
@@ -80,9 +80,9 @@ Outcome trace_moved(const rt_plugin& plugin, const rt_plugin* layout, const std:
     for (const BuildForm form : {BuildForm::groups, BuildForm::serial}) {
         step(std::string("preparing the scene, ") + form_text(form), kDeviceLimit_s);
         const auto prepared = scene.prepared(variant);
-        DeviceMotion motion(device, rest, scene.accel(), prepared->on_device, nullptr, form);
+        DeviceMover motion(device, rest, scene.accel(), prepared->on_device, nullptr, form);
         if (!motion.cannot().empty()) return Outcome::skipped(motion.cannot());
-        using Update = DeviceMotion::Update;
+        using Update = DeviceMover::Update;
         struct Turn {
             const char* what;
             const PosedRays* to;

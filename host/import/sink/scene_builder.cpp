@@ -20,8 +20,8 @@
 #include "import/sink/texture.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
-#include "scene/flatten.hpp"
 #include "scene/motion/pose.hpp"
+#include "scene/singular_instances.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -357,7 +357,7 @@ Scene SceneBuilder::take() {
         scene_.warnings.push_back(
             std::to_string(count) +
             " meshes are shown as they are stored: their skins or morphs lead to numbers that are too large");
-    bake_flattened_instances(scene_);
+    bake_singular_instances(scene_);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {
         const rt_u32 corner_count = static_cast<rt_u32>(polygon.corners.size() / 3);
         scene_.polygons.push_back({static_cast<rt_u32>(scene_.polygon_corners.size() / 3), corner_count, polygon.material});

@@ -102,7 +102,7 @@ HostBuild run_build(const rt_plugin& plugin, const std::string& speaker, rt_u32 
 
 }  // namespace
 
-double AccelData::stat(const std::string& label, double otherwise) const {
+double AccelFacts::stat(const std::string& label, double otherwise) const {
     for (const auto& [name, value] : stats)
         if (name == label) return value;
     return otherwise;

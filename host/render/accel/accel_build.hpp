@@ -22,11 +22,23 @@ namespace clarity {
 // Zeroed primitives behind the last leaf, because cl/primitives/triangle_row.h reads RT_ROW leaves from any leaf on.
 constexpr uint64_t kLeafPadding = 3;
 
-// A finished structure. Immutable.
-struct AccelData {
+// What is known of a structure besides its memory.
+struct AccelFacts {
     const rt_plugin* plugin = nullptr;
     const rt_plugin* layout = nullptr;  // whose slots and kernels these are: plugin itself, or the layout of its topology
     ParameterValues params;
+    std::vector<rt_u32> roots;  // one for each group
+    std::map<std::string, rt_u32> defines;
+    std::vector<std::pair<std::string, double>> stats;  // as the plugin reported them, in its order
+    double build_ms = 0;  // time of the plugin's build() alone, or of topology() and the layout's pack()
+    double pack_ms = 0;   // time of the conversion before and of checks and packing after it
+    uint64_t bytes = 0;   // size of slots, leaves and instances
+    // The plugin's statistic of that label, or `otherwise`.
+    double stat(const std::string& label, double otherwise = 0) const;
+};
+
+// A finished structure. Immutable.
+struct AccelData : AccelFacts {
     struct Slot {
         AlignedBytes memory;
         uint64_t count = 0;
@@ -34,16 +46,8 @@ struct AccelData {
     std::vector<Slot> slots;
     AlignedBytes leaves;  // rt_packed_prim in leaf order, then kLeafPadding zeroed ones
     uint64_t leaf_count = 0;
-    std::vector<rt_u32> roots;  // one for each group
-    std::map<std::string, rt_u32> defines;
-    std::vector<std::pair<std::string, double>> stats;  // as the plugin reported them, in its order
-    std::vector<rt_instance> instances;                 // with roots
+    std::vector<rt_instance> instances;  // with roots
     BuildScene scene;
-    double build_ms = 0;  // time of the plugin's build() alone, or of topology() and the layout's pack()
-    double pack_ms = 0;   // time of the conversion before and of checks and packing after it
-    uint64_t bytes = 0;   // size of slots, leaves and instances
-    // The plugin's statistic of that label, or `otherwise`.
-    double stat(const std::string& label, double otherwise = 0) const;
 };
 
 // What decides about a build besides the plugin, the scene and the parameters.

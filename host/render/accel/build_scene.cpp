@@ -240,10 +240,10 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
     }
 }
 
-// How each mesh is placed. A mesh with one instance is flattened into the world, because a tree of its own would only make rays
-// slower. There are two exceptions: a reflected mesh, whose triangles would turn inside out, and a mesh that moves, whose tree
-// can then move while the world's tree stays.
-struct Placement {
+// Which meshes get a tree of their own. A mesh with one instance is flattened: its triangles join the world's tree, because one
+// more tree would only make rays slower. A mirrored mesh is not flattened, because its triangles would turn inside out, and a
+// mesh that moves is not, so that the world's tree stays as it is.
+struct Grouping {
     std::vector<Affine> inverse;  // of each instance
     std::vector<bool> built;      // for each instance: it is in the structure. One that is apart may be hidden there
     std::vector<bool> flat;       // for each instance: it is flattened
@@ -256,8 +256,8 @@ struct Placement {
 // all of them: one object that moves beside millions of still triangles costs what the object costs.
 constexpr rt_u32 kLargeMesh = 1u << 14;
 
-Placement place(const Scene& scene) {
-    Placement out;
+Grouping group_meshes(const Scene& scene) {
+    Grouping out;
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
     const bool moves = std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) { return i.apart; });
@@ -336,25 +336,25 @@ rt_prim box_of_instance(const Bounds& box, const Affine& world, const Affine& ob
 }
 
 SceneCounts count_scene(const Scene& scene) {
-    const Placement placement = place(scene);
+    const Grouping grouping = group_meshes(scene);
     SceneCounts counts;
-    counts.triangles = placement.refs;
-    counts.references = placement.world_prims;
+    counts.triangles = grouping.refs;
+    counts.references = grouping.world_prims;
     for (size_t m = 0; m < scene.meshes.size(); ++m)
-        if (placement.group_of_mesh[m]) counts.references += scene.meshes[m].triangle_count;
+        if (grouping.group_of_mesh[m]) counts.references += scene.meshes[m].triangle_count;
     return counts;
 }
 
 BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     BuildScene out;
-    const Placement placement = place(scene);
-    const std::vector<Affine>& inverse = placement.inverse;
-    const std::vector<bool>& flat = placement.flat;
-    const std::vector<rt_u32>& group_of_mesh = placement.group_of_mesh;
-    const uint64_t refs = placement.refs, placed = scene.placed_triangle_count();
-    uint64_t prim_total = placement.world_prims;
-    out.groups.assign(placement.group_count, rt_group{0, 0});
-    out.groups[0] = {0, static_cast<rt_u32>(placement.world_prims)};
+    const Grouping grouping = group_meshes(scene);
+    const std::vector<Affine>& inverse = grouping.inverse;
+    const std::vector<bool>& flat = grouping.flat;
+    const std::vector<rt_u32>& group_of_mesh = grouping.group_of_mesh;
+    const uint64_t refs = grouping.refs, placed = scene.placed_triangle_count();
+    uint64_t prim_total = grouping.world_prims;
+    out.groups.assign(grouping.group_count, rt_group{0, 0});
+    out.groups[0] = {0, static_cast<rt_u32>(grouping.world_prims)};
     for (size_t m = 0; m < scene.meshes.size(); ++m)
         if (group_of_mesh[m]) {
             out.groups[group_of_mesh[m]] = {static_cast<rt_u32>(prim_total), scene.meshes[m].triangle_count};
@@ -373,7 +373,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     out.attribute_triangle.resize(refs);
 
     out.group_of_mesh = group_of_mesh;
-    out.first_ref_of_group.assign(placement.group_count, 0);
+    out.first_ref_of_group.assign(grouping.group_count, 0);
     out.number_of_instance.assign(scene.instances.size(), RT_NONE);
 
     // Instanced meshes come first, because instances need their boxes.
@@ -389,11 +389,11 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     uint64_t at = 0;
     rt_u32 next_prim = 0;
     std::vector<rt_prim> instance_prims;
-    std::vector<Bounds> group_boxes(placement.group_count);
+    std::vector<Bounds> group_boxes(grouping.group_count);
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        if (!placement.built[i]) {
+        if (!grouping.built[i]) {
             // It only keeps its range of primitive numbers.
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;

@@ -114,7 +114,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                   Progress& progress, std::shared_ptr<const AccelData> built,
-                                                  const MovedBuffers& moved) {
+                                                  const GivenBuffers& moved) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose a device again");
     auto next = std::make_shared<Prepared>();

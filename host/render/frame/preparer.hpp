@@ -18,7 +18,7 @@ namespace clarity {
 class ProgramCache;
 
 // The buffers of a structure on a device, made by others than the Preparer.
-struct MovedBuffers {
+struct GivenBuffers {
     std::shared_ptr<const DeviceScene> buffers;
     bool by_device = false;  // the device has moved the structure: its nodes and leaves on the host are out of date
 };
@@ -34,7 +34,7 @@ class Preparer {
     // Throws Error(failed) if the build or the upload fails, Error(kernel_build_failed) with the compiler's log in details(),
     // Error(usage) for an unknown structure, and Cancelled. The previous Prepared stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress,
-                                            std::shared_ptr<const AccelData> built = nullptr, const MovedBuffers& moved = {});
+                                            std::shared_ptr<const AccelData> built = nullptr, const GivenBuffers& moved = {});
     // Whether a structure is of the kind that these settings ask for, so that it may be passed as `built`.
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     // Builds the structure alone. This needs no device.

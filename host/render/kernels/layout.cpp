@@ -28,8 +28,7 @@ Layout make_layout(const Settings& settings, bool cpu) {
     layout.lanes = static_cast<unsigned>(settings.lanes);
     layout.packet_w = static_cast<unsigned>(settings.packet_w);
     layout.packet_h = static_cast<unsigned>(settings.packet_h);
-    // A block is as square as possible. But in a packet that is narrower than half a block, the block gets narrower and taller,
-    // until it fits.
+    // A block has 4x4, 4x2 or 2x2 pixels. A narrow packet gets a narrower and taller block of as many.
     layout.block_w = layout.lanes >= 8 ? 4 : layout.lanes == 4 ? 2 : 1;
     layout.block_h = layout.lanes / layout.block_w;
     while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;

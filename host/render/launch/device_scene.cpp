@@ -94,8 +94,8 @@ class Uploader {
 
 // Returns the vertex normals in the space of their triangles. Normals of flattened meshes are transformed by the inverse
 // transpose, as kernels do for instances. A factor keeps their lengths near the original for any scale. Each mesh is
-// transformed once: place() in build_scene.cpp flattens a mesh of several instances only where one has no volume, and that has
-// no inverse.
+// transformed once: group_meshes() in build_scene.cpp flattens a mesh of several instances only where one has no volume, and
+// that has no inverse.
 std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
     std::vector<float> normals = scene.normals.copy();
     std::vector<bool> done(scene.meshes.size());

@@ -9,20 +9,12 @@ namespace clarity {
 template <class Memory>
 AccelData copy_of(const AccelData& from, Memory&& memory) {
     AccelData copy;
-    copy.plugin = from.plugin;
-    copy.layout = from.layout;
-    copy.params = from.params;
+    static_cast<AccelFacts&>(copy) = from;
     for (const AccelData::Slot& slot : from.slots) copy.slots.push_back({memory(slot.memory), slot.count});
     copy.leaves = memory(from.leaves);
     copy.leaf_count = from.leaf_count;
-    copy.roots = from.roots;
-    copy.defines = from.defines;
-    copy.stats = from.stats;
     copy.instances = from.instances;
     copy.scene = from.scene;
-    copy.build_ms = from.build_ms;
-    copy.pack_ms = from.pack_ms;
-    copy.bytes = from.bytes;
     return copy;
 }
 

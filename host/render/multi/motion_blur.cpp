@@ -62,8 +62,8 @@ std::shared_ptr<const MultiPrepared> MotionBlur::prepare(const Pose& pose, Progr
 std::shared_ptr<const MultiPrepared> MotionBlur::refit(const Pose& pose, Progress& progress) {
     const Prepared& first = *prepared_->first();
     if (first.settings.poses == "build" || moves_flattened_mesh(pose, *first.scene, first.accel->scene)) return nullptr;
-    if (!moving_) moving_ = std::make_unique<MovingAccel>(first.scene, first.accel);
-    const MovedAccel moved = moving_->move(pose, progress);
+    if (!moving_) moving_ = std::make_unique<HostMover>(first.scene, first.accel);
+    const MovedStructure moved = moving_->move(pose, progress);
     if (!moved.accel) return nullptr;
     auto result = std::make_shared<MultiPrepared>();
     for (const MultiPrepared::Part& part : prepared_->parts) {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/view/view.hpp"
 #include "scene/motion/pose.hpp"
@@ -46,7 +46,7 @@ class MotionBlur {
         double time_s = 0;
     };
     // view: the picture's. Its camera and lights follow those of the scene that they are. The result is valid until the next
-    // call. Throws as evaluate(), MovingAccel::move() and Source::prepare.
+    // call. Throws as evaluate(), HostMover::move() and Source::prepare.
     const Sample& at(unsigned sample, const View& view, Progress& progress);
 
     const Shutter& shutter() const { return shutter_; }
@@ -65,7 +65,7 @@ class MotionBlur {
     const std::shared_ptr<const MultiPrepared> prepared_;
     std::optional<Pose> first_;  // of the picture's time
     Pose last_;                  // of sample_
-    std::unique_ptr<MovingAccel> moving_;
+    std::unique_ptr<HostMover> moving_;
     Sample sample_;
     unsigned refitted_ = 0, built_ = 0;
 };

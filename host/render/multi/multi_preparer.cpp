@@ -6,7 +6,9 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/launch/device_scene.hpp"
+#include "render/moving/follow/device_movers.hpp"
 #include "render/moving/moved_instances.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "render/settings/accel_choice.hpp"
 
 namespace clarity {
@@ -14,7 +16,7 @@ namespace clarity {
 namespace {
 
 // The buffers of a structure on a device; nullptr: it has none there yet.
-MovedBuffers buffers_on(const std::shared_ptr<Device>& device, const MovedStructure& structure) {
+GivenBuffers buffers_on(const std::shared_ptr<Device>& device, const MovedStructure& structure) {
     for (const auto& [other, buffers] : structure.on_devices)
         if (other == device) return {buffers, structure.by_devices};
     return {};
@@ -127,7 +129,7 @@ std::unique_ptr<PoseMover> MultiPreparer::mover(const std::shared_ptr<const Scen
         if (auto mover = make_device_mover(scene, built, rest, on_devices, &why)) return mover;
         log(LogLevel::info, "the scene moves on the host: " + why);
     }
-    return make_host_mover(scene, built);
+    return std::make_unique<HostMover>(scene, built);
 }
 
 Preparer& MultiPreparer::roomiest() const {

@@ -5,7 +5,7 @@
 
 #include "render/frame/preparer.hpp"
 #include "render/moving/follow/background_build.hpp"
-#include "render/moving/follow/pose_mover.hpp"
+#include "render/moving/pose_mover.hpp"
 
 namespace clarity {
 

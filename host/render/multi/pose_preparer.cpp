@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "device/device_loss.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 
 namespace clarity {
 
@@ -47,8 +48,11 @@ void PosePreparer::take_build(MultiPreparer& preparer, const PosedScene& shown, 
 // The follower goes on from the structure in built_.
 void PosePreparer::built(const MultiPreparer& preparer, const PosedScene& shown, const Settings& settings,
                          const BuiltPose& pose) {
-    auto mover = settings.shutter > 0 ? make_host_mover(pose.scene, built_->first()->accel)
-                                      : preparer.mover(pose.scene, shown.rest(), *built_);
+    std::unique_ptr<PoseMover> mover;
+    if (settings.shutter > 0)
+        mover = std::make_unique<HostMover>(pose.scene, built_->first()->accel);
+    else
+        mover = preparer.mover(pose.scene, shown.rest(), *built_);
     follower_.built(shown.from(), pose.scene, pose.pose, pose.accel, std::move(mover));
 }
 

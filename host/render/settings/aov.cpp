@@ -1,66 +1,85 @@
 #include "render/settings/aov.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace clarity {
 
+namespace {
+
+using Film = Aov::Film;
+using Paint = Aov::Paint;
+using Map = FalseColorScale::Map;
+
+// A bar from `min` on. whole: it shows a count.
+FalseColorScale bar(Map map, const char* label, const char* unit, bool whole = false) {
+    FalseColorScale scale;
+    scale.map = map;
+    scale.label = label;
+    scale.unit = unit;
+    scale.whole = whole;
+    return scale;
+}
+
+Aov first_hit(const char* name, const char* help, Film film, Paint paint) {
+    Aov aov;
+    aov.name = name;
+    aov.help = help;
+    aov.about = Aov::About::first_hit;
+    aov.tracer = "aov";
+    aov.film = film;
+    aov.paint = paint;
+    return aov;
+}
+
+// An amount of work. Of the tracer `aov`: counted by its slower program.
+Aov cost(const char* name, const char* help, Aov::Range range, FalseColorScale scale) {
+    Aov aov = first_hit(name, help, Film::amounts, Paint::scale);
+    aov.about = Aov::About::cost;
+    aov.counts_steps = true;
+    aov.range = range;
+    aov.scale = std::move(scale);
+    return aov;
+}
+
+Aov color() {
+    Aov aov = first_hit("color", "colour", Film::colors, Paint::tones);
+    aov.about = Aov::About::color;
+    aov.tracer = nullptr;
+    return aov;
+}
+
+Aov distance() {
+    Aov aov = first_hit("t", "distance", Film::distances, Paint::scale);
+    aov.scale = bar(Map::gray, "Distance", "scene units");
+    return aov;
+}
+
+Aov generations() {
+    Aov aov = cost("generations", "generations of rays", Aov::Range::counts, bar(Map::heat, "Generations", "of rays", true));
+    aov.tracer = "iterative";
+    aov.counts_steps = false;
+    aov.scale.min = 1;
+    aov.scale.max = 2;
+    return aov;
+}
+
+}  // namespace
+
 const std::vector<Aov>& aov_table() {
-    using About = Aov::About;
-    using Film = Aov::Film;
-    using Paint = Aov::Paint;
-    using Range = Aov::Range;
-    using Map = FalseColorScale::Map;
     static const std::vector<Aov> table = {
-        {"color", "colour", About::color, nullptr, Film::colors, Paint::tones},
-        {"t",
-         "distance",
-         About::first_hit,
-         "aov",
-         Film::distances,
-         Paint::scale,
-         false,
-         Range::measured,
-         {Map::gray, 0, 1, false, "Distance", "scene units"}},
-        {"prim", "primitive", About::first_hit, "aov", Film::numbers, Paint::hash},
-        {"instance", "instance", About::first_hit, "aov", Film::numbers, Paint::hash},
-        {"normal", "normal", About::first_hit, "aov", Film::vectors, Paint::direction},
-        {"uv", "texture coordinates", About::first_hit, "aov", Film::vectors, Paint::texture},
-        {"steps",
-         "nodes visited",
-         About::cost,
-         "aov",
-         Film::amounts,
-         Paint::scale,
-         true,
-         Range::counts,
-         {Map::heat, 0, 1, true, "Nodes visited", "per packet of rays"}},
-        {"leaf_tests",
-         "primitives tested",
-         About::cost,
-         "aov",
-         Film::amounts,
-         Paint::scale,
-         true,
-         Range::counts,
-         {Map::heat, 0, 1, true, "Primitives tested", "per packet of rays"}},
-        {"lanes",
-         "share of lanes alive per visit",
-         About::cost,
-         "aov",
-         Film::amounts,
-         Paint::scale,
-         true,
-         Range::share,
-         {Map::heat, 0, 1, false, "Lanes alive", "share per node visit"}},
-        {"generations",
-         "generations of rays",
-         About::cost,
-         "iterative",
-         Film::amounts,
-         Paint::scale,
-         false,
-         Range::counts,
-         {Map::heat, 1, 2, true, "Generations", "of rays"}},
+        color(),
+        distance(),
+        first_hit("prim", "primitive", Film::numbers, Paint::hash),
+        first_hit("instance", "instance", Film::numbers, Paint::hash),
+        first_hit("normal", "normal", Film::vectors, Paint::direction),
+        first_hit("uv", "texture coordinates", Film::vectors, Paint::texture),
+        cost("steps", "nodes visited", Aov::Range::counts, bar(Map::heat, "Nodes visited", "per packet of rays", true)),
+        cost("leaf_tests", "primitives tested", Aov::Range::counts,
+             bar(Map::heat, "Primitives tested", "per packet of rays", true)),
+        cost("lanes", "share of lanes alive per visit", Aov::Range::share,
+             bar(Map::heat, "Lanes alive", "share per node visit")),
+        generations(),
     };
     return table;
 }

@@ -30,7 +30,7 @@ double determinant(const Matrix& m);                 // of the linear part
 // The cofactors of the linear part, without translation: they turn normals, up to their length. The inverse is their transpose,
 // divided by the determinant.
 Matrix cofactors(const Matrix& m);
-bool invert(const Matrix& m, Matrix& inverse);  // false if m flattens space
+bool invert(const Matrix& m, Matrix& inverse);  // false if m is singular
 Matrix scaling(const Vec& s);
 
 // A rotation; x, y, z, w.

@@ -7,11 +7,11 @@
 
 #include "base/error.hpp"
 #include "scene/camera.hpp"
-#include "scene/flatten.hpp"
 #include "scene/instance_edit.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
+#include "scene/singular_instances.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity {
@@ -239,7 +239,7 @@ Scene posed(Scene scene, const Pose& pose) {
         std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.own().begin() + first);
         if (!mesh.normals.empty()) std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.own().begin() + first);
     }
-    bake_flattened_instances(result);
+    bake_singular_instances(result);
     return result;
 }
 

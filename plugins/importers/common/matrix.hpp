@@ -37,7 +37,7 @@ inline Transform transposed(const Transform& m) {
     return {m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0};
 }
 
-// False: the matrix flattens space.
+// False: the matrix is singular.
 inline bool invert(const Transform& m, Transform& out) {
     const auto minor = [&](int a, int b, int c, int d) { return m[a] * m[d] - m[b] * m[c]; };
     out = {minor(5, 6, 9, 10), minor(2, 1, 10, 9), minor(1, 2, 5, 6), 0,

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "moving_scenes.hpp"
-#include "render/moving/on_device/device_motion.hpp"
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_device/device_mover.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "render/tracers/rays/query_scene.hpp"
 #include "scene/motion/deform.hpp"
 #include "support/scenes.hpp"
@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(, DeviceDeformerTest, ::testing::Values(BuildForm::grou
                          [](const auto& info) { return info.param == BuildForm::groups ? "groups" : "serial"; });
 
 // A structure that follows poses without vertices has the bytes of one that the host moves to whole poses.
-TEST(DeviceMotionOfPosesWithoutVertices, GivesTheBytesOfTheHost) {
+TEST(DeviceMoverOfPosesWithoutVertices, GivesTheBytesOfTheHost) {
     Progress progress;
     const ScenePtr scene = deforming_scene();
     const auto built = build(scene, *Workbench::get().plugins().accel("bvh4"));
@@ -187,10 +187,10 @@ TEST(DeviceMotionOfPosesWithoutVertices, GivesTheBytesOfTheHost) {
     settings.lanes = 1;
     Device& device = const_cast<Device&>(Workbench::get().device());
     const auto prepared = prepare_queries(device, scene, built, settings, progress);
-    DeviceMotion motion(Workbench::get().shared_device(), scene, built, prepared->on_device, scene);
+    DeviceMover motion(Workbench::get().shared_device(), scene, built, prepared->on_device, scene);
     ASSERT_TRUE(motion.can_deform());
-    DeviceMotion without(Workbench::get().shared_device(), scene, built, prepared->on_device);
-    MovingAccel host(scene, built);
+    DeviceMover without(Workbench::get().shared_device(), scene, built, prepared->on_device);
+    HostMover host(scene, built);
     Pose pose = pose_of(*scene);
     const auto expect_leaves = [&](const Pose& given, const Pose& whole) {
         const MovedOnDevice moved = motion.move(given);

@@ -5,8 +5,8 @@
 
 #include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/moving/on_device/device_motion.hpp"
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_device/device_mover.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "render/tracers/rays/query_scene.hpp"
 
 namespace clarity::test {
@@ -52,9 +52,9 @@ TEST_P(DeviceRefit, GivesTheBytesOfTheHost) {
     Settings settings;
     settings.lanes = 1;
     const auto prepared = prepare_queries(*device, scene_of_trees(), built, settings, progress);
-    DeviceMotion motion(device, scene_of_trees(), built, prepared->on_device, nullptr, GetParam().form);
+    DeviceMover motion(device, scene_of_trees(), built, prepared->on_device, nullptr, GetParam().form);
     ASSERT_EQ(motion.cannot(), "");
-    MovingAccel host(scene_of_trees(), built);
+    HostMover host(scene_of_trees(), built);
     for (const float phase : {0.0f, 1.0f, 2.0f, 5.0f, 0.0f}) {
         SCOPED_TRACE(phase);
         Pose pose = phase > 0 ? waved(*scene_of_trees(), phase) : pose_of(*scene_of_trees());
@@ -64,7 +64,7 @@ TEST_P(DeviceRefit, GivesTheBytesOfTheHost) {
             for (float& x : pose.meshes[1].positions) x = 0.1f;
         const MovedOnDevice moved = motion.move(pose);
         ASSERT_TRUE(moved.on_device) << moved.why;
-        const MovedAccel expected = host.move(pose, progress);
+        const MovedStructure expected = host.move(pose, progress);
         ASSERT_TRUE(expected.accel);
         EXPECT_EQ(difference(*device, moved.on_device->moving().slots[0], expected.accel->slots[0],
                              GetParam().accel != std::string("cwbvh")),

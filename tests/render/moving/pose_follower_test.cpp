@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 
@@ -52,7 +52,7 @@ class Follower : public ::testing::Test {
         const rt_plugin& plugin = *Workbench::get().plugins().accel(accel);
         const auto built =
             std::make_shared<const AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress_));
-        follower_.built({rest_, clip}, scene, pose, built, make_host_mover(scene, built));
+        follower_.built({rest_, clip}, scene, pose, built, std::make_unique<HostMover>(scene, built));
         return false;
     }
     ScenePtr rest_;
@@ -161,7 +161,7 @@ TEST_F(Follower, BuildsBesideRefits) {
     BuiltPose built;
     while (!built.accel) built = follower_.take_build(from);
     EXPECT_EQ(built.scene, scene);
-    follower_.built(from, built.scene, built.pose, built.accel, make_host_mover(built.scene, built.accel));
+    follower_.built(from, built.scene, built.pose, built.accel, std::make_unique<HostMover>(built.scene, built.accel));
     EXPECT_TRUE(show(mixed(0.4f)));
     EXPECT_FALSE(follower_.update().building);
     EXPECT_LT(follower_.update().cost_ratios.back(), 1.5f) << "the tree is of about this pose";
@@ -196,7 +196,7 @@ TEST_F(Follower, ChoosesTheTreeOfAClipAmongSeveralPoses) {
     BuiltPose built;
     while (!built.accel) built = follower_.take_build(from);
     EXPECT_EQ(builds, 5);
-    follower_.built(from, built.scene, built.pose, built.accel, make_host_mover(built.scene, built.accel));
+    follower_.built(from, built.scene, built.pose, built.accel, std::make_unique<HostMover>(built.scene, built.accel));
     EXPECT_TRUE(show(evaluate(*rest_, "walk", 0.8)));
     EXPECT_LT(follower_.structure()->stat("sah_cost"), 0.5 * first);
     EXPECT_FALSE(follower_.wants_choice(from));
@@ -204,14 +204,14 @@ TEST_F(Follower, ChoosesTheTreeOfAClipAmongSeveralPoses) {
     const auto cost_of = [&](double time_s) {
         const Pose at = evaluate(*rest_, "walk", time_s);
         const auto there = std::make_shared<const Scene>(posed(*rest_, at));
-        MovingAccel moving(
-            there, std::make_shared<const AccelData>(build_accel(*there, plugin, default_parameters(plugin), progress_)));
+        HostMover moving(there,
+                         std::make_shared<const AccelData>(build_accel(*there, plugin, default_parameters(plugin), progress_)));
         double sum = 0;
         for (const double t : {0.1, 0.3, 0.5, 0.7, 0.9})
             sum += moving.move(evaluate(*rest_, "walk", t), progress_).accel->stat("sah_cost");
         return sum;
     };
-    MovingAccel chosen(built.scene, built.accel);
+    HostMover chosen(built.scene, built.accel);
     double sum = 0;
     for (const double t : {0.1, 0.3, 0.5, 0.7, 0.9})
         sum += chosen.move(evaluate(*rest_, "walk", t), progress_).accel->stat("sah_cost");

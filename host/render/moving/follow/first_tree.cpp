@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
@@ -27,11 +27,11 @@ std::vector<Pose> poses_of(const Scene& rest, const std::string& clip) {
 // The sum of expected costs in all poses. built: in the first of them.
 double cost_in(const std::vector<Pose>& poses, const std::shared_ptr<const Scene>& scene,
                const std::shared_ptr<const AccelData>& built, Progress& progress) {
-    MovingAccel moving(scene, built);
+    HostMover moving(scene, built);
     if (!moving.cannot().empty()) throw Error(Exit::failed, moving.cannot());
     double sum = 0;
     for (const Pose& pose : poses) {
-        const MovedAccel moved = moving.move(pose, progress);
+        const MovedStructure moved = moving.move(pose, progress);
         if (!moved.accel) return INFINITY;  // this tree must be built anew there
         sum += moved.accel->stat("sah_cost");
     }

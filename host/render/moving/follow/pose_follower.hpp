@@ -2,7 +2,8 @@
 // pays.
 //
 //   MovedStructure moved = follower.refit(from, posed, pose, way, trace_ms, progress);
-//   if (!moved.accel) { auto accel = build(posed); follower.built(from, posed, pose, accel, make_host_mover(posed, accel)); }
+//   if (!moved.accel) { auto accel = build(posed); follower.built(from, posed, pose, accel, std::make_unique<HostMover>(posed,
+//   accel)); }
 #pragma once
 #include <deque>
 #include <memory>
@@ -12,8 +13,8 @@
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/moving/follow/background_build.hpp"
-#include "render/moving/follow/pose_mover.hpp"
 #include "render/moving/follow/refit_policy.hpp"
+#include "render/moving/pose_mover.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 

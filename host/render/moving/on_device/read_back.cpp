@@ -11,10 +11,7 @@ AccelData read_back(const AccelData& built, const DeviceScene& moved) {
     // Its own queue, so that frames go on.
     const cl::CommandQueue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
     AccelData now;
-    now.plugin = built.plugin;
-    now.layout = built.layout;
-    now.params = built.params;
-    now.roots = built.roots;
+    static_cast<AccelFacts&>(now) = built;
     const rt_accel& table = *built.layout->accel;
     size_t on_device = 0;
     for (size_t s = 0; s < built.slots.size(); ++s) {

@@ -1,10 +1,10 @@
-#include "scene/flatten.hpp"
+#include "scene/singular_instances.hpp"
 
 #include "base/error.hpp"
 
 namespace clarity {
 
-void bake_flattened_instances(Scene& scene) {
+void bake_singular_instances(Scene& scene) {
     Affine inverse;
     for (Instance& instance : scene.instances) {
         if (invert(instance.world_from_object, inverse)) continue;

@@ -1,9 +1,9 @@
-// moving_accel.hpp -- a structure that follows the poses of its scene: refitted where primitives moved, as long as the scene
+// host_mover.hpp -- a structure that follows the poses of its scene: refitted where primitives moved, as long as the scene
 // keeps its meshes and instances.
 //
-//   MovingAccel moving(scene, structure);               // of a finished build
+//   HostMover moving(scene, structure);               // of a finished build
 //   if (moving.cannot().empty()) {
-//       const MovedAccel moved = moving.move(evaluate(scene, clip, time), progress);
+//       const MovedStructure moved = moving.move(evaluate(scene, clip, time), progress);
 //       if (moved.accel) draw it; else build a new one, for the reason moved.why
 //   }
 //
@@ -19,37 +19,28 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/moving/moved_group.hpp"
 #include "render/moving/moved_instances.hpp"
-#include "render/moving/on_host/moved_leaves.hpp"
+#include "render/moving/on_host/leaf_packer.hpp"
+#include "render/moving/pose_mover.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
 
-struct MovedAccel {
-    std::shared_ptr<const AccelData> accel;  // nullptr: a full build is needed
-    std::string why;                         // why a build is needed: "instance `door` is hidden"; empty: it is not
-    std::vector<MovedGroup> groups;          // those that were refitted
-    // The greatest cost / built_cost of any group, also of those that did not move; 1: as good as after the build.
-    double worst_cost_ratio = 1;
-    uint64_t refitted = 0;  // primitives
-    double ms = 0;          // time of the call
-};
-
-class MovingAccel {
+class HostMover : public PoseMover {
  public:
     // built: the structure of `scene`, which may be in any pose itself.
-    MovingAccel(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built);
-    ~MovingAccel();
+    HostMover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built);
+    ~HostMover() override;
 
     // Why the structure can only be built anew: "accel linear does not offer `refit`"; empty: it can be refitted.
-    const std::string& cannot() const { return cannot_; }
+    const std::string& cannot() const override { return cannot_; }
 
     // Moves the structure to a pose of the same scene: as evaluate() returns it for the scene that this one is a pose of, or
     // is. Meshes that the pose does not have are where the scene has them. Throws Error(failed) if the plugin fails, and
     // Cancelled; the next move then refits all that this one left. One call at a time.
-    MovedAccel move(const Pose& pose, Progress& progress);
+    MovedStructure move(const Pose& pose, Progress& progress);
+    MovedStructure move(const Pose& pose, bool, Progress& progress) override { return move(pose, progress); }
 
     // The vertices of a mesh in object space, 3 numbers each, to be written in place instead of through a pose: for those who
     // compute them anyway. nullptr: the mesh is flattened into the world by a transform, or is not placed, so that a pose must
@@ -58,7 +49,7 @@ class MovingAccel {
     // Says that vertices() of a mesh were written. move() puts the mesh back where its pose has it.
     void touch(rt_u32 mesh);
     // Refits what was touched. As move().
-    MovedAccel refit(Progress& progress);
+    MovedStructure refit(Progress& progress);
 
     uint64_t state_bytes() const;  // of everything that the first structure does not have
 
@@ -74,8 +65,8 @@ class MovingAccel {
     void transform_vertices(rt_u32 mesh, const float* object, const Affine* world);
     Buffer& spare();
     void place_instances(AccelData& accel);
-    void call(Buffer& buffer, const std::vector<uint8_t>& changed, Progress& progress, MovedAccel& result);
-    MovedAccel refit_into_spare(Progress& progress);
+    void call(Buffer& buffer, const std::vector<uint8_t>& changed, Progress& progress, MovedStructure& result);
+    MovedStructure refit_into_spare(Progress& progress);
 
     const std::shared_ptr<const Scene> scene_;
     const std::shared_ptr<const AccelData> built_;

@@ -1,4 +1,4 @@
-#include "render/moving/on_host/moved_leaves.hpp"
+#include "render/moving/on_host/leaf_packer.hpp"
 
 #include <algorithm>
 #include <cfloat>
@@ -47,19 +47,19 @@ rt_u32 GroupOfRef::find(rt_u32 ref, rt_u32& first, rt_u32& count) const {
     return std::prev(next)->group;
 }
 
-MovedLeaves::MovedLeaves(AccelData& accel, const UninitializedVector<rt_u32>& corners, const float* positions,
-                         const GroupOfRef& groups, std::vector<Bounds>& boxes)
+LeafPacker::LeafPacker(AccelData& accel, const UninitializedVector<rt_u32>& corners, const float* positions,
+                       const GroupOfRef& groups, std::vector<Bounds>& boxes)
     : accel_(accel), corners_(corners.data()), positions_(positions), groups_(groups), boxes_(boxes) {}
 
-int32_t MovedLeaves::prims(void* ctx, uint64_t first, uint64_t count, rt_prim* prims) {
-    auto& self = *static_cast<MovedLeaves*>(ctx);
+int32_t LeafPacker::prims(void* ctx, uint64_t first, uint64_t count, rt_prim* prims) {
+    auto& self = *static_cast<LeafPacker*>(ctx);
     if (!prims || count > self.accel_.leaf_count || first > self.accel_.leaf_count - count) return RT_FAILED;
     self.asked_.fetch_add(count, std::memory_order_relaxed);
     self.pack(first, count, prims);
     return RT_OK;
 }
 
-void MovedLeaves::pack(uint64_t first, uint64_t count, rt_prim* prims) {
+void LeafPacker::pack(uint64_t first, uint64_t count, rt_prim* prims) {
     auto* const leaves = static_cast<rt_packed_prim*>(accel_.leaves.data()) + first;
     const rt_u32* const corners = corners_ + 3 * first;
     const float* const positions = positions_;
@@ -106,7 +106,7 @@ void MovedLeaves::pack(uint64_t first, uint64_t count, rt_prim* prims) {
 }
 
 // A primitive that is no triangle: its box.
-void MovedLeaves::pack_other(rt_packed_prim& leaf, Row& lo, Row& hi, Row& name) const {
+void LeafPacker::pack_other(rt_packed_prim& leaf, Row& lo, Row& hi, Row& name) const {
     if (RT_REF_KIND(leaf.ref) == RT_REF_INSTANCE) leaf = accel_.scene.instance_leaves[RT_REF_INDEX(leaf.ref)];
     const rt_prim box = box_of(accel_.scene, leaf);
     name = load_row(box.lo);
@@ -114,7 +114,7 @@ void MovedLeaves::pack_other(rt_packed_prim& leaf, Row& lo, Row& hi, Row& name) 
     hi = most(name, load_row(box.hi));
 }
 
-void MovedLeaves::add(rt_u32 group, Row lo, Row hi) {
+void LeafPacker::add(rt_u32 group, Row lo, Row hi) {
     if (group == RT_NONE) return;
     float bounds[8];
     store_row(bounds, lo);

@@ -1,4 +1,4 @@
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -40,22 +40,22 @@ AlignedBytes copy_of(const AlignedBytes& from) {
 }  // namespace
 
 // A structure, and the moves that its groups have followed.
-struct MovingAccel::Buffer {
+struct HostMover::Buffer {
     std::shared_ptr<AccelData> accel;
     std::vector<uint64_t> version;   // of each group; 0: unknown
     uint64_t instances_version = 0;  // the move whose transforms it has
 };
 
-MovingAccel::MovingAccel(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built)
+HostMover::HostMover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built)
     : scene_(std::move(scene)), built_(std::move(built)), plugin_(refit_of(*built_->layout)) {
     if (!plugin_.refit) cannot_ = std::string("accel ") + built_->layout->id + " does not offer `refit`";
     find_flat_instances();
 }
-MovingAccel::~MovingAccel() = default;
+HostMover::~HostMover() = default;
 
 // The vertices of a mesh are kept once, in the space of its only tree. So a mesh that is flattened must be placed once. An
 // instance without volume, which is always flattened, may break that.
-void MovingAccel::find_flat_instances() {
+void HostMover::find_flat_instances() {
     const BuildScene& build = built_->scene;
     flat_instance_.assign(scene_->meshes.size(), RT_NONE);
     for (rt_u32 i = 0; i < scene_->instances.size(); ++i) {
@@ -69,7 +69,7 @@ void MovingAccel::find_flat_instances() {
 }
 
 // Sets everything up for the pose of the scene, and refits all of it once, to know the costs of the build.
-void MovingAccel::start(Progress& progress) {
+void HostMover::start(Progress& progress) {
     const BuildScene& build = built_->scene;
     const auto group_count = build.groups.size();
     params_ = built_->layout == built_->plugin ? built_->params : default_parameters(*built_->layout);
@@ -111,7 +111,7 @@ void MovingAccel::start(Progress& progress) {
 }
 
 // Writes the vertices of a mesh. world: nullptr: they stay where they are.
-void MovingAccel::transform_vertices(rt_u32 mesh, const float* object, const Affine* world) {
+void HostMover::transform_vertices(rt_u32 mesh, const float* object, const Affine* world) {
     const Mesh& range = scene_->meshes[mesh];
     float* const out = positions_.data() + 3 * size_t(range.first_vertex);
     const bool moves = world && *world != kIdentity;
@@ -127,7 +127,7 @@ void MovingAccel::transform_vertices(rt_u32 mesh, const float* object, const Aff
     });
 }
 
-float* MovingAccel::vertices(rt_u32 mesh) {
+float* HostMover::vertices(rt_u32 mesh) {
     if (!started_ || mesh >= flat_instance_.size()) return nullptr;
     const rt_u32 flat = flat_instance_[mesh];
     if (flat == RT_NONE ? built_->scene.group_of_mesh[mesh] == 0 : instances_[flat].world_from_object != kIdentity)
@@ -135,14 +135,14 @@ float* MovingAccel::vertices(rt_u32 mesh) {
     return positions_.data() + 3 * size_t(scene_->meshes[mesh].first_vertex);
 }
 
-void MovingAccel::touch(rt_u32 mesh) {
+void HostMover::touch(rt_u32 mesh) {
     if (flat_instance_[mesh] == RT_NONE && built_->scene.group_of_mesh[mesh] == 0) return;
     version_[built_->scene.group_of_mesh[mesh]] = moves_ + 1;
     is_deformed_[mesh] = 1;
 }
 
 // Takes over a pose. Returns why a build is needed; nothing is changed then.
-std::string MovingAccel::place(const Pose& pose) {
+std::string HostMover::place(const Pose& pose) {
     const BuildScene& build = built_->scene;
     find_moved_instances(*scene_, build, instances_, pose, moved_);
     if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose);
@@ -173,12 +173,12 @@ std::string MovingAccel::place(const Pose& pose) {
     return {};
 }
 
-const float* MovingAccel::vertices_at_rest(rt_u32 mesh) const {
+const float* HostMover::vertices_at_rest(rt_u32 mesh) const {
     return scene_->positions.data() + 3 * size_t(scene_->meshes[mesh].first_vertex);
 }
 
 // Takes over the vertices of a mesh, if they differ from those that are there.
-void MovingAccel::set_vertices(rt_u32 mesh, const float* object) {
+void HostMover::set_vertices(rt_u32 mesh, const float* object) {
     const rt_u32 flat = flat_instance_[mesh], group = built_->scene.group_of_mesh[mesh];
     if (flat == RT_NONE && group == 0) return;
     const Affine* const world = flat == RT_NONE ? nullptr : &instances_[flat].world_from_object;
@@ -195,7 +195,7 @@ void MovingAccel::set_vertices(rt_u32 mesh, const float* object) {
 }
 
 // A structure that nobody else holds: the one that lags behind least.
-MovingAccel::Buffer& MovingAccel::spare() {
+HostMover::Buffer& HostMover::spare() {
     Buffer* best = nullptr;
     for (const auto& buffer : buffers_)
         if (buffer->accel.use_count() == 1 && (!best || buffer->instances_version > best->instances_version))
@@ -215,7 +215,7 @@ MovingAccel::Buffer& MovingAccel::spare() {
 }
 
 // Writes transforms and boxes of the instances.
-void MovingAccel::place_instances(AccelData& accel) {
+void HostMover::place_instances(AccelData& accel) {
     BuildScene& scene = accel.scene;
     each_chunk(scene.instances.size(), kInstancesPerTask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
@@ -233,7 +233,7 @@ void MovingAccel::place_instances(AccelData& accel) {
 }
 
 // Calls the plugin for some groups.
-void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Progress& progress, MovedAccel& result) {
+void HostMover::call(Buffer& buffer, const std::vector<uint8_t>& changed, Progress& progress, MovedStructure& result) {
     AccelData& accel = *buffer.accel;
     uint64_t expected = 0;
     for (size_t g = 0; g < changed.size(); ++g) {
@@ -249,7 +249,7 @@ void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Prog
         slots.push_back(slot.memory.data());
         counts.push_back(slot.count);
     }
-    MovedLeaves leaves(accel, corners_, positions_.data(), *groups_, boxes_);
+    LeafPacker leaves(accel, corners_, positions_.data(), *groups_, boxes_);
     rt_refit_input input{};
     input.struct_bytes = sizeof input;
     input.group_count = static_cast<rt_u32>(changed.size());
@@ -259,7 +259,7 @@ void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Prog
     input.leaf_count = accel.leaf_count;
     input.params = params_.data();
     input.ctx = &leaves;
-    input.prims = MovedLeaves::prims;
+    input.prims = LeafPacker::prims;
     input.leaves = static_cast<const rt_packed_prim*>(accel.leaves.data());
     rt_refit_output output{};
     output.struct_bytes = sizeof output;
@@ -287,8 +287,8 @@ void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Prog
     result.refitted += expected;
 }
 
-MovedAccel MovingAccel::refit_into_spare(Progress& progress) {
-    MovedAccel result;
+MovedStructure HostMover::refit_into_spare(Progress& progress) {
+    MovedStructure result;
     Buffer& buffer = spare();
     // The meshes first: instances need their boxes.
     std::vector<uint8_t> changed(version_.size(), 0);
@@ -316,9 +316,9 @@ MovedAccel MovingAccel::refit_into_spare(Progress& progress) {
     return result;
 }
 
-MovedAccel MovingAccel::move(const Pose& pose, Progress& progress) {
+MovedStructure HostMover::move(const Pose& pose, Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
-    MovedAccel result;
+    MovedStructure result;
     if (!cannot_.empty()) {
         result.why = cannot_;
         return result;
@@ -331,19 +331,19 @@ MovedAccel MovingAccel::move(const Pose& pose, Progress& progress) {
     return result;
 }
 
-MovedAccel MovingAccel::refit(Progress& progress) {
+MovedStructure HostMover::refit(Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
     if (!started_) start(progress);
     ++moves_;
     // A mesh that moves makes its instances move.
     for (size_t g = 1; g < version_.size(); ++g)
         if (version_[g] == moves_) version_[0] = moves_;
-    MovedAccel result = refit_into_spare(progress);
+    MovedStructure result = refit_into_spare(progress);
     result.ms = ms_since(begin);
     return result;
 }
 
-uint64_t MovingAccel::state_bytes() const {
+uint64_t HostMover::state_bytes() const {
     uint64_t bytes = corners_.size() * sizeof(rt_u32) + positions_.size() * sizeof(float);
     for (const auto& buffer : buffers_)
         bytes += buffer->accel->bytes + buffer->accel->scene.attribute_triangle.size() * sizeof(uint32_t);

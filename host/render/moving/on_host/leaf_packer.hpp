@@ -1,4 +1,4 @@
-// moved_leaves.hpp -- packs the primitives of a structure again where they have moved to, while the plugin refits its tree.
+// leaf_packer.hpp -- packs the primitives of a structure again where they have moved to, while the plugin refits its tree.
 //
 // The plugin asks for the boxes of some hundred primitives at a time (rt_refit_input::prims). They are packed into the host's
 // leaves in the same step, so that each is read and written once: 12 B of vertex numbers, three vertices, and 48 B each way.
@@ -34,12 +34,12 @@ class GroupOfRef {
 };
 
 // Serves one call of a plugin. Thread-safe.
-class MovedLeaves {
+class LeafPacker {
  public:
     // leaves: those of `accel`, which are written. positions: of all vertices, 3 numbers each, in the space of their groups,
     // and one more float at the end. boxes: receives those of the groups.
-    MovedLeaves(AccelData& accel, const UninitializedVector<rt_u32>& corners, const float* positions, const GroupOfRef& groups,
-                std::vector<Bounds>& boxes);
+    LeafPacker(AccelData& accel, const UninitializedVector<rt_u32>& corners, const float* positions, const GroupOfRef& groups,
+               std::vector<Bounds>& boxes);
     // rt_refit_input::prims; ctx: this object.
     static int32_t prims(void* ctx, uint64_t first, uint64_t count, rt_prim* prims);
     uint64_t asked() const { return asked_; }  // positions

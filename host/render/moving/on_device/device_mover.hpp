@@ -1,12 +1,12 @@
-// device_motion.hpp -- a structure on a device that follows the poses of its scene there.
+// device_mover.hpp -- a structure on a device that follows the poses of its scene there.
 //
-//   DeviceMotion motion(device, scene, structure, on_device, rest);   // of a finished build
+//   DeviceMover motion(device, scene, structure, on_device, rest);   // of a finished build
 //   if (motion.cannot().empty()) {
 //       const MovedOnDevice moved = motion.move(evaluate_without_vertices(rest, clip, time));
 //       if (moved.on_device) draw it; else build a new one, for the reason moved.why
 //   }
 //
-// As MovingAccel, but vertices, leaves, boxes and trees are written by the device that traces them: the host sends transforms
+// As HostMover, but vertices, leaves, boxes and trees are written by the device that traces them: the host sends transforms
 // that have changed, bones and shares of morph targets, and enqueues kernels. It waits for nothing. Commands of earlier frames
 // in the device's queue run before those of the move, and commands of later frames after them.
 //
@@ -19,44 +19,38 @@
 #include <vector>
 
 #include "base/aligned_bytes.hpp"
-#include "render/moving/moved_group.hpp"
 #include "render/moving/moved_instances.hpp"
+#include "render/moving/moved_structure.hpp"
 #include "render/moving/on_device/device_deformer.hpp"
 #include "render/moving/on_device/device_structure.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
 
-struct MovedOnDevice {
-    std::shared_ptr<const DeviceScene> on_device;  // nullptr: a full build is needed
-    std::string why;                               // why a build is needed; empty: it is not
-    // Expected cost of a ray (SAH), divided by that after the last build: the greatest of all groups. The device reports it
-    // some moves later.
-    double worst_cost_ratio = 1;
-    std::vector<MovedGroup> groups;  // those that moved
-    uint64_t refitted = 0;           // primitives
-    double ms = 0;                   // time of the call; the device goes on after it
-    cl::Event begin, end;            // of the device's work
+// `ms` is the time of the call; the device goes on after it. Devices tell costs some moves later.
+struct MovedOnDevice : MovedStructure {
+    std::shared_ptr<const DeviceScene> on_device;  // nullptr: a full build is needed, for the reason in `why`
+    cl::Event begin, end;                          // of the device's work
 };
 
 // Used from one thread at a time, which may differ from that of frames.
-class DeviceMotion {
+class DeviceMover {
  public:
     // What is done with the trees of groups that have changed; `build`: only if can_build().
     enum class Update { refit, build };
 
     // built: the structure of `scene`, which may be in any pose itself. on_device: its buffers. rest: the scene at rest, with
     // its motion; nullptr: vertices are not made on the device. Throws Error.
-    DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
-                 std::shared_ptr<const DeviceScene> on_device, std::shared_ptr<const Scene> rest = nullptr,
-                 BuildForm form = BuildForm::automatic);
-    ~DeviceMotion();
+    DeviceMover(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
+                std::shared_ptr<const DeviceScene> on_device, std::shared_ptr<const Scene> rest = nullptr,
+                BuildForm form = BuildForm::automatic);
+    ~DeviceMover();
 
     // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; empty: it can follow
     // poses.
     const std::string& cannot() const;
 
-    // Moves the structure to a pose of the same scene, as MovingAccel::move(). The device makes the vertices that the pose
+    // Moves the structure to a pose of the same scene, as HostMover::move(). The device makes the vertices that the pose
     // leaves out; others are sent. Throws Error(failed).
     MovedOnDevice move(const Pose& pose, Update update = Update::refit);
     bool can_build() const { return groups_->can_build(); }
@@ -101,7 +95,7 @@ class DeviceMotion {
 
     // The pose, on the host.
     std::vector<PosedInstance> instances_;  // of the Scene
-    std::vector<DevicePlacement> placements_;
+    std::vector<DeviceInstance> placements_;
     MovedInstances moved_;
     UninitializedVector<float> positions_, normals_;  // what was sent last; the device may read it until sent_ is complete
     std::vector<uint8_t> is_posed_, is_deformed_;     // for each mesh: by the pose that is taken over, and by the last one

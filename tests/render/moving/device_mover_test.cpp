@@ -1,5 +1,5 @@
-// device_motion_test.cpp -- structures that follow poses on a device, against those that follow them on the host.
-#include "render/moving/on_device/device_motion.hpp"
+// device_mover_test.cpp -- structures that follow poses on a device, against those that follow them on the host.
+#include "render/moving/on_device/device_mover.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
-#include "render/moving/on_host/moving_accel.hpp"
+#include "render/moving/on_host/host_mover.hpp"
 #include "render/tracers/rays/query_scene.hpp"
 #include "render/tracers/rays/ray_queries.hpp"
 
@@ -26,7 +26,7 @@ ScenePtr rings_apart() {
     return scene;
 }
 
-class DeviceMotionTest : public ::testing::TestWithParam<BuildForm> {
+class DeviceMoverTest : public ::testing::TestWithParam<BuildForm> {
  protected:
     void SetUp() override {
         Progress progress;
@@ -38,9 +38,9 @@ class DeviceMotionTest : public ::testing::TestWithParam<BuildForm> {
         prepared_ = prepare_queries(device(), rings_apart(), built_, settings, progress);
     }
     static Device& device() { return const_cast<Device&>(Workbench::get().device()); }
-    std::unique_ptr<DeviceMotion> motion() const {
-        return std::make_unique<DeviceMotion>(Workbench::get().shared_device(), rings_apart(), built_, prepared_->on_device,
-                                              nullptr, GetParam());
+    std::unique_ptr<DeviceMover> motion() const {
+        return std::make_unique<DeviceMover>(Workbench::get().shared_device(), rings_apart(), built_, prepared_->on_device,
+                                             nullptr, GetParam());
     }
     static std::string download(const cl::Buffer& buffer, size_t bytes) {
         std::string text(bytes, 0);
@@ -75,11 +75,11 @@ class DeviceMotionTest : public ::testing::TestWithParam<BuildForm> {
     std::shared_ptr<const Prepared> prepared_;
 };
 
-TEST_P(DeviceMotionTest, GivesTheBytesOfTheHost) {
+TEST_P(DeviceMoverTest, GivesTheBytesOfTheHost) {
     Progress progress;
     const auto motion = this->motion();
     ASSERT_EQ(motion->cannot(), "");
-    MovingAccel host(rings_apart(), built_);
+    HostMover host(rings_apart(), built_);
     for (const float phase : {0.0f, 1.0f, 2.0f, 5.0f}) {
         SCOPED_TRACE(phase);
         const Pose pose = phase > 0 ? waved(*rings_apart(), phase) : pose_of(*rings_apart());
@@ -91,7 +91,7 @@ TEST_P(DeviceMotionTest, GivesTheBytesOfTheHost) {
     for (int i = 0; i < 3; ++i) expect_same(*motion->move(pose_of(*rings_apart())).on_device, *built_);
 }
 
-TEST_P(DeviceMotionTest, OnlyWhatMovedIsRefitted) {
+TEST_P(DeviceMoverTest, OnlyWhatMovedIsRefitted) {
     const auto motion = this->motion();
     Pose pose = pose_of(*rings_apart());
     motion->move(pose);
@@ -103,7 +103,7 @@ TEST_P(DeviceMotionTest, OnlyWhatMovedIsRefitted) {
     EXPECT_EQ(refitted, rings_apart()->instances.size() + 1) << "the instances, and a sphere; the meshes stay";
 }
 
-TEST_P(DeviceMotionTest, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
+TEST_P(DeviceMoverTest, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
     const auto motion = this->motion();
     const auto first = motion->move(waved(*rings_apart(), 1)).on_device;
     const std::string nodes = download(first->moving().slots[0], 128 * built_->slots[0].count);
@@ -114,7 +114,7 @@ TEST_P(DeviceMotionTest, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
     EXPECT_LE(others.size(), 2u) << "memory is used again";
 }
 
-TEST_P(DeviceMotionTest, CostsTellHowMuchATreeHasSuffered) {
+TEST_P(DeviceMoverTest, CostsTellHowMuchATreeHasSuffered) {
     const auto motion = this->motion();
     Pose pose = pose_of(*rings_apart());
     EXPECT_EQ(motion->move(pose).worst_cost_ratio, 1);
@@ -124,7 +124,7 @@ TEST_P(DeviceMotionTest, CostsTellHowMuchATreeHasSuffered) {
     for (rt_u32 v = 0; v < 3 * rings()->meshes[0].vertex_count; ++v) mesh.positions.push_back(any(random));
     pose.meshes.push_back(mesh);
     Progress progress;
-    MovingAccel host(rings_apart(), built_);
+    HostMover host(rings_apart(), built_);
     const double expected = host.move(pose, progress).worst_cost_ratio;
     Pose other = pose;
     other.meshes[0].positions[0] += 1e-4f;
@@ -136,24 +136,24 @@ TEST_P(DeviceMotionTest, CostsTellHowMuchATreeHasSuffered) {
     EXPECT_NEAR(ratio, expected, 1e-3 * expected) << "some moves later";
 }
 
-TEST_P(DeviceMotionTest, SaysWhenABuildIsNeeded) {
+TEST_P(DeviceMoverTest, SaysWhenABuildIsNeeded) {
     Progress progress;
     Pose pose = pose_of(*rings_apart());
     pose.instances[3].world_from_object[0] = 0;
     EXPECT_NE(motion()->move(pose).why.find("`placed 3` is scaled to nothing"), std::string::npos);
     const auto flat = build(rings(), *plugin_);
     const auto prepared = prepare_queries(device(), rings(), flat, {}, progress);
-    DeviceMotion world(Workbench::get().shared_device(), rings(), flat, prepared->on_device, nullptr, GetParam());
+    DeviceMover world(Workbench::get().shared_device(), rings(), flat, prepared->on_device, nullptr, GetParam());
     EXPECT_NE(world.move(waved(*rings(), 1)).why.find("part of the world"), std::string::npos);
     const auto linear = build(rings(), *Workbench::get().plugins().accel("linear"));
     const auto other = prepare_queries(device(), rings(), linear, {}, progress);
-    EXPECT_NE(DeviceMotion(Workbench::get().shared_device(), rings(), linear, other->on_device, nullptr, GetParam())
+    EXPECT_NE(DeviceMover(Workbench::get().shared_device(), rings(), linear, other->on_device, nullptr, GetParam())
                   .cannot()
                   .find("linear"),
               std::string::npos);
 }
 
-INSTANTIATE_TEST_SUITE_P(, DeviceMotionTest, ::testing::Values(BuildForm::groups, BuildForm::serial),
+INSTANTIATE_TEST_SUITE_P(, DeviceMoverTest, ::testing::Values(BuildForm::groups, BuildForm::serial),
                          [](const auto& info) { return info.param == BuildForm::groups ? "groups" : "serial"; });
 
 std::vector<rt_ray> some_rays() {
@@ -180,12 +180,12 @@ class DeviceRays : public ::testing::Test {
         settings_.lanes = 1;
         const auto built = build(rings_apart(), *plugin_);
         prepared_ = prepare_queries(device(), rings_apart(), built, settings_, progress);
-        motion_ = std::make_unique<DeviceMotion>(Workbench::get().shared_device(), rings_apart(), built, prepared_->on_device);
+        motion_ = std::make_unique<DeviceMover>(Workbench::get().shared_device(), rings_apart(), built, prepared_->on_device);
         ASSERT_EQ(motion_->cannot(), "");
     }
     static Device& device() { return const_cast<Device&>(Workbench::get().device()); }
     // Moves, and returns the rays' hits.
-    std::vector<rt_hit> hits_after(const Pose& pose, DeviceMotion::Update update) {
+    std::vector<rt_hit> hits_after(const Pose& pose, DeviceMover::Update update) {
         Prepared moved = *prepared_;
         const MovedOnDevice result = motion_->move(pose, update);
         EXPECT_TRUE(result.on_device) << result.why;
@@ -216,7 +216,7 @@ class DeviceRays : public ::testing::Test {
     const rt_plugin* plugin_ = nullptr;
     Settings settings_;
     std::shared_ptr<const Prepared> prepared_;
-    std::unique_ptr<DeviceMotion> motion_;
+    std::unique_ptr<DeviceMover> motion_;
     const std::vector<rt_ray> rays_ = some_rays();
     RayQueries queries_{Workbench::get().shared_device()};
 };
@@ -225,11 +225,11 @@ TEST_F(DeviceRays, HitWhatTheyHitInAFreshBuild) {
     start("bvh4");
     EXPECT_FALSE(motion_->can_build()) << "the host builds by the heuristic";
     const Pose pose = waved(*rings_apart(), 3);
-    expect_same(hits_after(pose, DeviceMotion::Update::refit), fresh_hits(pose));
+    expect_same(hits_after(pose, DeviceMover::Update::refit), fresh_hits(pose));
 }
 
 TEST_F(DeviceRays, HitTheSameInTreesThatTheDeviceBuilds) {
-    using Update = DeviceMotion::Update;
+    using Update = DeviceMover::Update;
     start("lbvh");
     ASSERT_TRUE(motion_->can_build());
     const Pose poses[] = {waved(*rings_apart(), 1), waved(*rings_apart(), 3), pose_of(*rings_apart())};
@@ -268,7 +268,7 @@ TEST_F(DeviceRays, CostsCountFromTheLastBuild) {
         device().queue().finish();
     }
     EXPECT_GT(ratio, 5) << "a tree of another pose";
-    motion_->move(other, DeviceMotion::Update::build);
+    motion_->move(other, DeviceMover::Update::build);
     for (int i = 1; i < 11; ++i) {
         device().queue().finish();
         ratio = motion_->move(i % 2 ? pose : other).worst_cost_ratio;

@@ -1,4 +1,4 @@
-#include "render/moving/on_device/device_motion.hpp"
+#include "render/moving/on_device/device_mover.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -21,9 +21,9 @@ bool is_complete(const cl::Event& event) {
 
 }  // namespace
 
-DeviceMotion::DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
-                           std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device,
-                           std::shared_ptr<const Scene> rest, BuildForm form)
+DeviceMover::DeviceMover(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
+                         std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device,
+                         std::shared_ptr<const Scene> rest, BuildForm form)
     : device_(std::move(device)),
       scene_(std::move(scene)),
       built_(std::move(built)),
@@ -38,7 +38,7 @@ DeviceMotion::DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const
     });
 }
 
-DeviceMotion::~DeviceMotion() {
+DeviceMover::~DeviceMover() {
     try {
         for (const cl::Event& event : sent_) event.wait();
         if (costs_known_()) costs_known_.wait();
@@ -46,12 +46,12 @@ DeviceMotion::~DeviceMotion() {
     }
 }
 
-const std::string& DeviceMotion::cannot() const {
+const std::string& DeviceMover::cannot() const {
     return groups_->cannot();
 }
 
 // Sends the pose of the build, and refits all of it once, to know the costs of the build.
-void DeviceMotion::start() {
+void DeviceMover::start() {
     const BuildScene& build = built_->scene;
     cl::CommandQueue& queue = device_->queue();
     const auto filled = [&](const void* data, size_t bytes) {
@@ -80,7 +80,7 @@ void DeviceMotion::start() {
         std::copy_n(build.instances[i].object_from_world, 12, placements_[i].object_from_world);
         placements_[i].hidden = build.instances[i].hidden;
     }
-    pose_.placements = filled(placements_.data(), placements_.size() * sizeof(DevicePlacement));
+    pose_.placements = filled(placements_.data(), placements_.size() * sizeof(DeviceInstance));
     pose_.group_of_instance = filled(build.group_of_instance.data(), build.group_of_instance.size() * sizeof(rt_u32));
     std::vector<float> nothing;
     for (size_t g = 0; g < build.groups.size(); ++g)
@@ -101,7 +101,7 @@ void DeviceMotion::start() {
 }
 
 // Takes over a pose. Returns why a build is needed; nothing is changed then.
-std::string DeviceMotion::place(const Pose& pose) {
+std::string DeviceMover::place(const Pose& pose) {
     const BuildScene& build = built_->scene;
     find_moved_instances(*scene_, build, instances_, pose, moved_);
     if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose);
@@ -140,7 +140,7 @@ std::string DeviceMotion::place(const Pose& pose) {
     }
     if (first != RT_NONE) {
         version_[0] = moves_ + 1;
-        send(pose_.placements, first * sizeof(DevicePlacement), (last - first + 1) * sizeof(DevicePlacement),
+        send(pose_.placements, first * sizeof(DeviceInstance), (last - first + 1) * sizeof(DeviceInstance),
              &placements_[first]);
     }
     for (const PosedMesh& mesh : pose.meshes)
@@ -156,7 +156,7 @@ std::string DeviceMotion::place(const Pose& pose) {
 }
 
 // Lets the device make the vertices that a pose leaves out, where what moves them has changed.
-void DeviceMotion::deform(const Pose& pose) {
+void DeviceMover::deform(const Pose& pose) {
     std::vector<const Deformation*> changed;
     for (const Deformation& d : pose.deformations) {
         if (!left_out(pose, d.mesh) || built_->scene.group_of_mesh[d.mesh] == 0) continue;
@@ -172,7 +172,7 @@ void DeviceMotion::deform(const Pose& pose) {
 }
 
 // Takes over the vertices of a mesh, if they differ from those that are there.
-void DeviceMotion::set_vertices(rt_u32 mesh, const float* positions, const float* normals) {
+void DeviceMover::set_vertices(rt_u32 mesh, const float* positions, const float* normals) {
     const rt_u32 group = built_->scene.group_of_mesh[mesh];
     const Mesh& range = scene_->meshes[mesh];
     const size_t at = 3 * size_t(range.first_vertex), bytes = 12 * size_t(range.vertex_count);
@@ -191,13 +191,13 @@ void DeviceMotion::set_vertices(rt_u32 mesh, const float* positions, const float
     if (moves || turns) version_[group] = version_[0] = moves_ + 1;
 }
 
-void DeviceMotion::send(const cl::Buffer& to, size_t at, size_t bytes, const void* data) {
+void DeviceMover::send(const cl::Buffer& to, size_t at, size_t bytes, const void* data) {
     sent_.emplace_back();
     device_->queue().enqueueWriteBuffer(to, CL_FALSE, at, bytes, data, nullptr, &sent_.back());
 }
 
 // A structure that nobody else holds: the oldest one. Frames that still read it on the device come before what is enqueued now.
-DeviceStructure& DeviceMotion::spare() {
+DeviceStructure& DeviceMover::spare() {
     const auto unused = std::find_if(structures_.begin(), structures_.end(),
                                      [](const auto& structure) { return structure->on_device().use_count() == 1; });
     std::unique_ptr<DeviceStructure> taken;
@@ -213,7 +213,7 @@ DeviceStructure& DeviceMotion::spare() {
 }
 
 // Brings a structure to the pose. Returns how many primitives were refitted.
-uint64_t DeviceMotion::bring_up(DeviceStructure& structure, Update update, bool with_costs) {
+uint64_t DeviceMover::bring_up(DeviceStructure& structure, Update update, bool with_costs) {
     uint64_t refitted = 0;
     for (rt_u32 m = 0; !normals_.empty() && m < scene_->meshes.size(); ++m) {
         const rt_u32 group = built_->scene.group_of_mesh[m];
@@ -239,13 +239,13 @@ uint64_t DeviceMotion::bring_up(DeviceStructure& structure, Update update, bool 
 }
 
 // A structure that has the newest tree of a group.
-const DeviceStructure& DeviceMotion::with_tree_of(rt_u32 group) const {
+const DeviceStructure& DeviceMover::with_tree_of(rt_u32 group) const {
     const auto found = std::find_if(structures_.begin(), structures_.end(),
                                     [&](const auto& structure) { return structure->built_in[group] == built_in_[group]; });
     return **found;
 }
 
-double DeviceMotion::worst_cost_ratio() {
+double DeviceMover::worst_cost_ratio() {
     double worst = 1;
     if (costs_known_() && !is_complete(costs_known_)) return last_ratio_;
     ratios_.resize(costs_.size(), 1);
@@ -259,14 +259,14 @@ double DeviceMotion::worst_cost_ratio() {
 }
 
 // The groups that the last move has changed.
-std::vector<MovedGroup> DeviceMotion::moved_groups() const {
+std::vector<MovedGroup> DeviceMover::moved_groups() const {
     std::vector<MovedGroup> groups;
     for (rt_u32 g = 0; g < version_.size(); ++g)
         if (version_[g] == moves_) groups.push_back({g, groups_->primitives(g), g < ratios_.size() ? ratios_[g] : 1.0});
     return groups;
 }
 
-MovedOnDevice DeviceMotion::move(const Pose& pose, Update update) {
+MovedOnDevice DeviceMover::move(const Pose& pose, Update update) {
     const auto begin = std::chrono::steady_clock::now();
     MovedOnDevice result;
     result.why = cannot();
@@ -283,7 +283,7 @@ MovedOnDevice DeviceMotion::move(const Pose& pose, Update update) {
 }
 
 // Kernels are made for the deepest tree that a device may build: so none is compiled later.
-void DeviceMotion::raise_defines(const std::map<std::string, rt_u32>& defines) {
+void DeviceMover::raise_defines(const std::map<std::string, rt_u32>& defines) {
     const auto enough = [&](const auto& define) {
         const auto known = accel_->defines.find(define.first);
         return known != accel_->defines.end() && known->second >= define.second;
@@ -306,7 +306,7 @@ void DeviceMotion::raise_defines(const std::map<std::string, rt_u32>& defines) {
 }
 
 // Refits or builds what version_ says that move number moves_ + 1 has changed.
-void DeviceMotion::finish_move(Update update, MovedOnDevice& moved) {
+void DeviceMover::finish_move(Update update, MovedOnDevice& moved) {
     ++moves_;
     DeviceStructure& structure = spare();
     const bool asks = update == Update::build || !costs_known_() || (moves_ % kCostsEvery == 0 && is_complete(costs_known_));
@@ -322,7 +322,7 @@ void DeviceMotion::finish_move(Update update, MovedOnDevice& moved) {
     moved.groups = moved_groups();
 }
 
-void DeviceMotion::touch(rt_u32 mesh) {
+void DeviceMover::touch(rt_u32 mesh) {
     const rt_u32 group = built_->scene.group_of_mesh[mesh];
     if (group == 0) return;
     version_[group] = version_[0] = moves_ + 1;
@@ -332,7 +332,7 @@ void DeviceMotion::touch(rt_u32 mesh) {
         NAN;  // no longer what is there: the next pose sends its vertices
 }
 
-MovedOnDevice DeviceMotion::update(Update update) {
+MovedOnDevice DeviceMover::update(Update update) {
     const auto begin = std::chrono::steady_clock::now();
     MovedOnDevice result;
     return wrap_cl_errors(*device_, "moving the scene", [&] {

@@ -1,5 +1,5 @@
-// moving_test.cpp -- structures that follow the poses of their scene by refits.
-#include "render/moving/on_host/moving_accel.hpp"
+// host_mover_test.cpp -- structures that follow the poses of their scene by refits.
+#include "render/moving/on_host/host_mover.hpp"
 
 #include <gtest/gtest.h>
 
@@ -41,19 +41,19 @@ std::vector<const rt_plugin*> refitting() {
     return plugins;
 }
 
-TEST(MovingAccel, OurTreesOfferIt) {
+TEST(HostMover, OurTreesOfferIt) {
     std::set<std::string> ids;
     for (const rt_plugin* plugin : refitting()) ids.insert(plugin->id);
     for (const char* id : {"bvh2", "bvh4", "bvh8", "cwbvh", "spheres"}) EXPECT_TRUE(ids.count(id)) << id;
 }
 
-TEST(MovingAccel, ThePoseOfTheBuildGivesTheBytesOfTheBuild) {
+TEST(HostMover, ThePoseOfTheBuildGivesTheBytesOfTheBuild) {
     Progress progress;
     for (const rt_plugin* plugin : refitting()) {
         SCOPED_TRACE(plugin->id);
         const auto built = build(rings(), *plugin);
-        MovingAccel moving(rings(), built);
-        const MovedAccel moved = moving.move(pose_of(*rings()), progress);
+        HostMover moving(rings(), built);
+        const MovedStructure moved = moving.move(pose_of(*rings()), progress);
         ASSERT_TRUE(moved.accel) << moved.why;
         expect_same(*moved.accel, *built);
         EXPECT_DOUBLE_EQ(moved.worst_cost_ratio, 1);
@@ -63,14 +63,14 @@ TEST(MovingAccel, ThePoseOfTheBuildGivesTheBytesOfTheBuild) {
     }
 }
 
-TEST(MovingAccel, LeavesAndInstancesAreThoseOfAFreshBuild) {
+TEST(HostMover, LeavesAndInstancesAreThoseOfAFreshBuild) {
     Progress progress;
     const Scene moved_scene = posed(*rings(), waved(*rings(), 2));
     const BuildScene fresh = make_build_scene(moved_scene, progress);
     for (const rt_plugin* plugin : refitting()) {
         SCOPED_TRACE(plugin->id);
-        MovingAccel moving(rings(), build(rings(), *plugin));
-        const MovedAccel moved = moving.move(waved(*rings(), 2), progress);
+        HostMover moving(rings(), build(rings(), *plugin));
+        const MovedStructure moved = moving.move(waved(*rings(), 2), progress);
         ASSERT_TRUE(moved.accel) << moved.why;
         const auto* leaves = static_cast<const rt_packed_prim*>(moved.accel->leaves.data());
         for (uint64_t i = 0; i < moved.accel->leaf_count; ++i) {
@@ -114,7 +114,7 @@ std::vector<rt_ray> random_rays() {
     return rays;
 }
 
-TEST(MovingAccel, RaysHitWhatTheyHitInAFreshBuild) {
+TEST(HostMover, RaysHitWhatTheyHitInAFreshBuild) {
     Progress progress;
     const auto moved_scene = std::make_shared<const Scene>(posed(*rings(), waved(*rings(), 3)));
     const std::vector<rt_ray> rays = random_rays();
@@ -124,7 +124,7 @@ TEST(MovingAccel, RaysHitWhatTheyHitInAFreshBuild) {
     for (const rt_plugin* plugin : refitting()) {
         if (std::find(tried.begin(), tried.end(), plugin->id) == tried.end()) continue;
         SCOPED_TRACE(plugin->id);
-        MovingAccel moving(rings(), build(rings(), *plugin));
+        HostMover moving(rings(), build(rings(), *plugin));
         const auto refitted = trace(moved_scene, moving.move(waved(*rings(), 3), progress).accel, rays);
         const auto fresh = trace(moved_scene, build(moved_scene, *plugin), rays);
         hit = 0;
@@ -136,9 +136,9 @@ TEST(MovingAccel, RaysHitWhatTheyHitInAFreshBuild) {
     EXPECT_GT(hit, rays.size() / 10);
 }
 
-TEST(MovingAccel, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
+TEST(HostMover, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
     Progress progress;
-    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     const auto first = moving.move(waved(*rings(), 1), progress).accel;
     const std::string leaves = bytes_of(first->leaves), nodes = bytes_of(first->slots[0].memory);
     for (int i = 2; i < 6; ++i) moving.move(waved(*rings(), float(i)), progress);
@@ -146,9 +146,9 @@ TEST(MovingAccel, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
     EXPECT_TRUE(bytes_of(first->slots[0].memory) == nodes);
 }
 
-TEST(MovingAccel, MemoryIsUsedAgain) {
+TEST(HostMover, MemoryIsUsedAgain) {
     Progress progress;
-    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     std::set<const AccelData*> different;
     std::shared_ptr<const AccelData> shown;
     for (int i = 0; i < 10; ++i) {
@@ -161,35 +161,35 @@ TEST(MovingAccel, MemoryIsUsedAgain) {
     expect_same(*now, *build(rings(), *Workbench::get().plugins().accel("bvh2")));
 }
 
-TEST(MovingAccel, OnlyWhatMovedIsRefitted) {
+TEST(HostMover, OnlyWhatMovedIsRefitted) {
     Progress progress;
-    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     moving.move(pose_of(*rings()), progress);
     Pose pose = pose_of(*rings());
     EXPECT_EQ(moving.move(pose, progress).refitted, 0u);
     pose.instances[5].world_from_object = moved_to(0, 6, 0);
-    const MovedAccel placed = moving.move(pose, progress);
+    const MovedStructure placed = moving.move(pose, progress);
     ASSERT_EQ(placed.groups.size(), 1u) << "the instanced mesh itself stays";
     EXPECT_EQ(placed.groups[0].group, 0u);
     const auto fresh = std::make_shared<const Scene>(posed(*rings(), pose));
     EXPECT_EQ(placed.accel->scene.bounds.max, build(fresh, *Workbench::get().plugins().accel("bvh2"))->scene.bounds.max);
 }
 
-TEST(MovingAccel, AMeshThatIsKeptApartMovesAlone) {
+TEST(HostMover, AMeshThatIsKeptApartMovesAlone) {
     Progress progress;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh8");
     auto scene = std::make_shared<Scene>(*rings());
     scene->instances[1].apart = true;
-    MovingAccel moving(scene, build(scene, plugin));
+    HostMover moving(scene, build(scene, plugin));
     moving.move(pose_of(*rings()), progress);
     Pose pose = pose_of(*rings());
     pose.meshes.push_back(waved(*rings(), 1).meshes[1]);
-    const MovedAccel deformed = moving.move(pose, progress);
+    const MovedStructure deformed = moving.move(pose, progress);
     ASSERT_EQ(deformed.groups.size(), 2u) << "its own tree, and the world that holds its instance";
     EXPECT_EQ(deformed.groups[0].primitives, rings()->meshes[1].triangle_count);
 }
 
-TEST(MovingAccel, AnObjectBesideALargeStillMeshMovesAlone) {
+TEST(HostMover, AnObjectBesideALargeStillMeshMovesAlone) {
     Progress progress;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh8");
     Scene large = scene_of(torus(2, 0.7, 128, 64));
@@ -198,14 +198,14 @@ TEST(MovingAccel, AnObjectBesideALargeStillMeshMovesAlone) {
     EXPECT_TRUE(make_build_scene(large, progress).instances.empty()) << "nothing moves: all is one tree";
     large.instances[1].apart = true;
     const ScenePtr scene = shared_scene(std::move(large));
-    MovingAccel moving(scene, build(scene, plugin));
+    HostMover moving(scene, build(scene, plugin));
     Pose pose = pose_of(*scene);
     moving.move(pose, progress);
     pose.instances[1].world_from_object = moved_to(5, 1, 0);
     EXPECT_EQ(moving.move(pose, progress).refitted, 2u) << "the boxes of both";
 }
 
-TEST(MovingAccel, TreesOfAllParametersGiveTheBytesOfTheBuild) {
+TEST(HostMover, TreesOfAllParametersGiveTheBytesOfTheBuild) {
     Progress progress;
     const PluginRegistry& plugins = Workbench::get().plugins();
     for (const char* choice :
@@ -217,19 +217,19 @@ TEST(MovingAccel, TreesOfAllParametersGiveTheBytesOfTheBuild) {
         choose_accel(plugins, choice, settings);
         const auto built = std::make_shared<AccelData>(
             build_accel(*rings(), *plugins.accel(settings.accel), settings.accel_params, progress, {}));
-        MovingAccel moving(rings(), built);
+        HostMover moving(rings(), built);
         ASSERT_TRUE(moving.move(waved(*rings(), 1), progress).accel);
         expect_same(*moving.move(pose_of(*rings()), progress).accel, *built);
     }
 }
 
-TEST(MovingAccel, CostsTellHowMuchATreeHasSuffered) {
+TEST(HostMover, CostsTellHowMuchATreeHasSuffered) {
     Progress progress;
     for (const rt_plugin* plugin : refitting()) {
         if (std::string(plugin->id) == "spheres") continue;  // its cost counts the surface of spheres
         SCOPED_TRACE(plugin->id);
         const auto built = build(rings(), *plugin);
-        MovingAccel moving(rings(), built);
+        HostMover moving(rings(), built);
         moving.move(pose_of(*rings()), progress);
         Pose pose = pose_of(*rings());
         PosedMesh mesh{0, {}, {}};
@@ -238,7 +238,7 @@ TEST(MovingAccel, CostsTellHowMuchATreeHasSuffered) {
         for (rt_u32 v = 0; v < 3 * rings()->meshes[0].vertex_count; ++v) mesh.positions.push_back(any(random));
         pose.meshes.push_back(mesh);
         EXPECT_GT(moving.move(pose, progress).worst_cost_ratio, 2);
-        const MovedAccel back = moving.move(pose_of(*rings()), progress);
+        const MovedStructure back = moving.move(pose_of(*rings()), progress);
         EXPECT_NEAR(back.worst_cost_ratio, 1, 1e-6);
         EXPECT_NEAR(back.accel->stat("sah_cost"), built->stat("sah_cost"), 1e-6);
     }
@@ -256,7 +256,7 @@ void expect_same_hits(const ScenePtr& scene, const std::shared_ptr<const AccelDa
 }
 
 // An instance that has a tree of its own is hidden and shown without a build, also one that was hidden when it was built.
-TEST(MovingAccel, HiddenInstancesAreNotHit) {
+TEST(HostMover, HiddenInstancesAreNotHit) {
     Progress progress;
     Scene apart = *rings();
     for (Instance& instance : apart.instances) instance.apart = true;
@@ -266,12 +266,12 @@ TEST(MovingAccel, HiddenInstancesAreNotHit) {
     for (const rt_plugin* plugin : refitting()) {
         if (std::find(tried.begin(), tried.end(), plugin->id) == tried.end()) continue;
         SCOPED_TRACE(plugin->id);
-        MovingAccel moving(scene, build(scene, *plugin));
+        HostMover moving(scene, build(scene, *plugin));
         Pose pose = pose_of(*scene);
         pose.instances[4].visible = true;
         pose.instances[1].visible = pose.instances[6].visible = false;
         pose.instances[6].world_from_object = {};  // wherever it is
-        const MovedAccel moved = moving.move(pose, progress);
+        const MovedStructure moved = moving.move(pose, progress);
         ASSERT_TRUE(moved.accel) << moved.why;
         Scene fresh = *scene;
         for (size_t i = 0; i < fresh.instances.size(); ++i) {
@@ -281,19 +281,19 @@ TEST(MovingAccel, HiddenInstancesAreNotHit) {
         expect_same_hits(scene, moved.accel, shared_scene(std::move(fresh)), *plugin);
         pose.instances[6] = pose_of(*scene).instances[6];
         pose.instances[1].visible = true;
-        const MovedAccel back = moving.move(pose, progress);
+        const MovedStructure back = moving.move(pose, progress);
         ASSERT_TRUE(back.accel) << back.why;
         expect_same_hits(scene, back.accel, rings(), *plugin);
     }
 }
 
-TEST(MovingAccel, SaysWhenABuildIsNeeded) {
+TEST(HostMover, SaysWhenABuildIsNeeded) {
     Progress progress;
-    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     const auto refused = [&](auto&& change, const char* why) {
         Pose pose = pose_of(*rings());
         change(pose);
-        const MovedAccel moved = moving.move(pose, progress);
+        const MovedStructure moved = moving.move(pose, progress);
         EXPECT_FALSE(moved.accel) << why;
         EXPECT_NE(moved.why.find(why), std::string::npos) << moved.why;
     };
@@ -302,31 +302,31 @@ TEST(MovingAccel, SaysWhenABuildIsNeeded) {
     refused([](Pose& pose) { pose.instances[3].world_from_object[0] = 0; }, "`placed 3` is scaled to nothing");
     refused([](Pose& pose) { pose.instances.pop_back(); }, "instances");
     refused([](Pose& pose) { pose.meshes.push_back({0, {0, 0, 0}, {}}); }, "another number of vertices");
-    MovingAccel linear(rings(), build(rings(), *Workbench::get().plugins().accel("linear")));
+    HostMover linear(rings(), build(rings(), *Workbench::get().plugins().accel("linear")));
     EXPECT_NE(linear.move(pose_of(*rings()), progress).why.find("does not offer `refit`"), std::string::npos);
 }
 
 // An instance without depth is moved into the world's tree, while its mesh has a tree of its own for the others. Their vertices
 // are in two spaces, so poses need builds.
-TEST(MovingAccel, RefusesAMeshThatIsPlacedFlatAndRound) {
+TEST(HostMover, RefusesAMeshThatIsPlacedFlatAndRound) {
     Progress progress;
     Scene pressed = *rings();
     for (int row = 0; row < 3; ++row) pressed.instances[3].world_from_object[4 * row + 2] = 0;
     const ScenePtr scene = shared_scene(std::move(pressed));
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
-    MovingAccel moving(scene, build(scene, plugin));
+    HostMover moving(scene, build(scene, plugin));
     EXPECT_NE(moving.cannot().find("`placed 3` has no volume"), std::string::npos) << moving.cannot();
     EXPECT_FALSE(moving.move(pose_of(*scene), progress).accel);
 
     Scene once = *rings();  // a mesh that is placed once may be pressed flat
     for (int row = 0; row < 3; ++row) once.instances[1].world_from_object[4 * row + 2] = 0;
     const ScenePtr flat = shared_scene(std::move(once));
-    EXPECT_EQ(MovingAccel(flat, build(flat, plugin)).cannot(), "");
+    EXPECT_EQ(HostMover(flat, build(flat, plugin)).cannot(), "");
 }
 
-TEST(MovingAccel, VerticesMayBeWrittenInPlace) {
+TEST(HostMover, VerticesMayBeWrittenInPlace) {
     Progress progress;
-    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     EXPECT_EQ(moving.vertices(0), nullptr) << "before the first move";
     moving.move(pose_of(*rings()), progress);
     EXPECT_EQ(moving.vertices(1), nullptr) << "it is transformed";
@@ -338,17 +338,17 @@ TEST(MovingAccel, VerticesMayBeWrittenInPlace) {
     const auto in_place = moving.refit(progress).accel;
     Pose same = pose_of(*rings());
     same.meshes.push_back(pose.meshes[0]);
-    MovingAccel other(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover other(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     expect_same(*in_place, *other.move(same, progress).accel);
 }
 
-TEST(MovingAccel, GoesOnAfterACancelledMove) {
+TEST(HostMover, GoesOnAfterACancelledMove) {
     class Cancelling : public Progress {
         bool report(float) override { return cancel(), false; }
     };
     Progress progress;
     Cancelling cancelling;
-    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     moving.move(pose_of(*rings()), progress);
     EXPECT_THROW(moving.move(waved(*rings(), 1), cancelling), Cancelled);
     expect_same(*moving.move(pose_of(*rings()), progress).accel, *build(rings(), *Workbench::get().plugins().accel("bvh2")));

@@ -1,0 +1,21 @@
+// session_view.hpp -- what keys, mouse and panel do to the desired camera and materials.
+#pragma once
+#include <array>
+
+#include "ui/session/session.hpp"
+
+namespace clarity::ui {
+
+// Moves the camera's target to `point`. The eye's distance to it is multiplied by `nearer`.
+void focus_on(DesiredState& desired, const std::array<float, 3>& point, float nearer = 1);
+void focus_on_instance(Session& session, rt_u32 instance);
+// To a bookmarked view. Its time is shown unless the scene plays.
+void go_to(Session& session, const Camera& camera, const PoseTime& pose);
+void frame_selection(Session& session);  // frames the selection, or the whole scene if nothing is selected
+// The materials to edit. They are copied from the scene to `desired` at the first edit.
+rt_material& edited_material(Session& session, rt_u32 index);
+const rt_material& material(const Session& session, rt_u32 index);
+// Unit for steps of camera and lights: the diagonal of the scene.
+float scene_size(const Session& session);
+
+}  // namespace clarity::ui
