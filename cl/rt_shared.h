@@ -58,6 +58,12 @@ typedef struct rt_packed_prim {
 #define RT_LIGHT_FALLOFF 1u
 #define RT_LIGHT_TWO_SIDED 2u /* rect, disc: both sides emit */
 
+/* What lies beyond a scene, for the path tracer. */
+#define RT_SKY_CONSTANT 0u
+#define RT_SKY_GRADIENT 1u /* with the sine of the elevation from horizon to zenith; below the horizon one color */
+#define RT_SKY_PICTURE 2u
+#define RT_SKY_KINDS 3u
+
 /* What the path tracer takes a surface for. */
 #define RT_MODEL_WHITTED 0u
 #define RT_MODEL_LAMBERT 1u

@@ -106,9 +106,6 @@ typedef struct rt_lighting {
     rt_f32 sky_horizon[3], sky_ground[3];
     rt_f32 background[3];
 } rt_lighting;
-#define RT_SKY_CONSTANT 0u
-#define RT_SKY_GRADIENT 1u /* with the sine of the elevation from horizon to zenith; below the horizon one color */
-#define RT_SKY_PICTURE 2u
 
 /* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may
  * show one picture. 16 B. */

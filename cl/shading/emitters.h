@@ -253,7 +253,7 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
     }
     if (rt_any(far)) {
         rt_vec direction = rt_in_cone(lit.p, u1, u2, rt_versine(sun_sin2));
-        if (rt_any(far & ~sun)) direction = rt_choose(sun, direction, rt_draw_sky(ctx, u1, u2, far & ~sun));
+        if (rt_any(far & ~sun)) direction = rt_choose(sun, direction, rt_draw_sky(ctx, u1, u2));
         vfloat of_all;
         const rt_vec sky = rt_sky(ctx, frame, direction, far, &of_all);
         out.towards = rt_choose(far, direction, out.towards);

@@ -1,12 +1,125 @@
-/* sky.h -- the light that comes from beyond the scene: constant, a gradient, or a picture. */
+/* sky.h -- the light that comes from beyond the scene: constant, a gradient, or a picture.
+ *
+ * A direction d sees the point u = 1/2 + atan2(d.z, d.x) / 2 pi, v = acos(d.y) / pi of a picture, v from the top: +X is in the middle, +Z a
+ * quarter to the right of it. Between the middles of texels the radiance is bilinear; it repeats along u. Directions are drawn by rows and
+ * then by cells of a row (ctx->sky_picks: running sums of shares of RT_PICKS), evenly in u and v within a cell. */
 #ifndef RT_SKY_H
 #define RT_SKY_H
 
-/* The radiance of the sky in unit directions, and the density with which rt_draw_sky() draws them. */
+#ifdef RT_HAS_SKY_PICTURE
+/* Where directions are in the picture, and the sine of their angle to the zenith. */
+RT_INLINE void rt_sky_place(const global rt_lighting *sky, rt_vec d, vfloat *u, vfloat *v, vfloat *sine)
+{
+    *sine = sqrt(fma(d.x, d.x, d.z * d.z));
+    const vfloat turns = fma(rt_atan2(d.z, d.x), rt_vfloat(0.5f * RT_INVERSE_PI), rt_vfloat(0.5f + sky->sky_turn));
+    *u = turns - floor(turns);
+    *v = rt_atan2(*sine, d.y) * rt_vfloat(RT_INVERSE_PI); /* acos would lose digits at the poles */
+}
+
+/* The density of u and v per unit of both: how many of RT_PICKS have the cell. */
+RT_INLINE float rt_sky_share(const global uint *sums, uint width, uint height, uint row, uint column)
+{
+    const global uint *cells = sums + (height + 1u) + row * (width + 1u);
+    return (float)(sums[row + 1u] - sums[row]) * (1.0f / RT_PICKS) * (float)height * (float)(cells[column + 1u] - cells[column]) *
+           (1.0f / RT_PICKS) * (float)width;
+}
+
+RT_INLINE vfloat rt_sky_density_of_place(vfloat share, vfloat sine)
+{
+#ifdef RT_FAULT_10 /* sine of theta missing */
+    sine = rt_vfloat(1.0f);
+#endif
+    return share / (rt_vfloat(2.0f * RT_PI * RT_PI) * rt_max(sine, rt_vfloat(1e-9f)));
+}
+
+RT_INLINE rt_vec rt_sky_picture(const rt_ctx *ctx, rt_vec direction, vmask lanes, vfloat *density)
+{
+    const global rt_lighting *sky = ctx->lighting;
+    const int w = (int)sky->sky_width, h = (int)sky->sky_height;
+    vfloat u, v, sine;
+    rt_sky_place(sky, direction, &u, &v, &sine);
+#ifdef RT_FAULT_11 /* half a texel to the side */
+    const vfloat x = u * rt_vfloat((float)w), y = fma(v, rt_vfloat((float)h), rt_vfloat(-0.5f));
+#else
+    const vfloat x = fma(u, rt_vfloat((float)w), rt_vfloat(-0.5f)), y = fma(v, rt_vfloat((float)h), rt_vfloat(-0.5f));
+#endif
+    const vfloat left = floor(x), above = floor(y);
+    int column[RT_LANES], row[RT_LANES], cell_column[RT_LANES], cell_row[RT_LANES];
+    float fx[RT_LANES], fy[RT_LANES], share[RT_LANES], red[RT_LANES], green[RT_LANES], blue[RT_LANES];
+    rt_store(rt_to_int(left), column);
+    rt_store(rt_to_int(above), row);
+    rt_store(rt_to_int(u * rt_vfloat((float)w)), cell_column);
+    rt_store(rt_to_int(v * rt_vfloat((float)h)), cell_row);
+    rt_store(x - left, fx);
+    rt_store(y - above, fy);
+    const uint bits = rt_bits(lanes);
+    for (uint l = 0; l < RT_LANES; ++l) {
+        red[l] = green[l] = blue[l] = share[l] = 0.0f;
+        if (!(bits >> l & 1u)) continue;
+        for (int k = 0; k < 4; ++k) {
+            const int dx = k & 1, dy = k >> 1, at_x = column[l] + dx, at_y = min(max(row[l] + dy, 0), h - 1);
+            const global float *texel = ctx->sky_texels + 3ul * ((ulong)at_y * (ulong)w + (ulong)(at_x < 0 ? at_x + w : at_x >= w ? at_x - w : at_x));
+            const float weight = (dx ? fx[l] : 1.0f - fx[l]) * (dy ? fy[l] : 1.0f - fy[l]);
+            red[l] = fma(weight, texel[0], red[l]);
+            green[l] = fma(weight, texel[1], green[l]);
+            blue[l] = fma(weight, texel[2], blue[l]);
+        }
+        share[l] = rt_sky_share(ctx->sky_picks, (uint)w, (uint)h, (uint)min(max(cell_row[l], 0), h - 1), (uint)min(max(cell_column[l], 0), w - 1));
+    }
+    *density = rt_sky_density_of_place(rt_load(share), sine);
+    return rt_mul(rt_spread(sky->sky_color), rt_vec_of(rt_load(red), rt_load(green), rt_load(blue)));
+}
+
+/* The number of the last of sums[0 .. count] that is at most `number`, of those before the last. */
+RT_INLINE uint rt_sky_find(const global uint *sums, uint count, uint number)
+{
+    uint first = 0, end = count;
+    while (end - first > 1u) {
+        const uint middle = (first + end) / 2u;
+        if (sums[middle] <= number)
+            first = middle;
+        else
+            end = middle;
+    }
+    return first;
+}
+
+/* Draws a place within what running sums deal to: 0 .. count. */
+RT_INLINE float rt_sky_draw_place(const global uint *sums, uint count, float u, uint *cell)
+{
+    const float number = min(u * (float)RT_PICKS, (float)(RT_PICKS - 1));
+    *cell = rt_sky_find(sums, count, (uint)number);
+    return (float)*cell + (number - (float)sums[*cell]) / (float)max(sums[*cell + 1u] - sums[*cell], 1u);
+}
+
+RT_INLINE rt_vec rt_draw_sky_picture(const rt_ctx *ctx, vfloat u1, vfloat u2)
+{
+    const global rt_lighting *sky = ctx->lighting;
+    const uint w = sky->sky_width, h = sky->sky_height;
+    float across[RT_LANES], down[RT_LANES];
+    rt_store(u1, across);
+    rt_store(u2, down);
+    for (uint l = 0; l < RT_LANES; ++l) {
+        uint row, column;
+        down[l] = rt_sky_draw_place(ctx->sky_picks, h, down[l], &row);
+        across[l] = rt_sky_draw_place(ctx->sky_picks + (h + 1u) + row * (w + 1u), w, across[l], &column);
+    }
+    const vfloat turns = rt_load(across) * rt_vfloat(1.0f / (float)w) - rt_vfloat(0.5f + sky->sky_turn);
+    vfloat sine, cosine, sine_up, cosine_up;
+    rt_sin_cos_turns(turns, &sine, &cosine);
+    rt_sin_cos_turns(rt_load(down) * rt_vfloat(0.5f / (float)h), &sine_up, &cosine_up);
+    return rt_vec_of(sine_up * cosine, cosine_up, sine_up * sine);
+}
+#endif
+
+/* The radiance of the sky in unit directions of the lanes, and the density with which rt_draw_sky() draws them. */
 RT_INLINE rt_vec rt_sky_radiance(const rt_ctx *ctx, rt_vec direction, vmask lanes, vfloat *density)
 {
     const global rt_lighting *sky = ctx->lighting;
-    *density = rt_vfloat(0.07957747f); /* 1 / (4 pi) */
+#ifdef RT_HAS_SKY_PICTURE
+    if (sky->sky_kind == RT_SKY_PICTURE) return rt_sky_picture(ctx, direction, lanes, density);
+#endif
+    *density = rt_vfloat(0.25f * RT_INVERSE_PI);
     const rt_vec color = rt_spread(sky->sky_color);
     if (sky->sky_kind == RT_SKY_CONSTANT) return color;
     const rt_vec horizon = rt_spread(sky->sky_horizon);
@@ -14,9 +127,12 @@ RT_INLINE rt_vec rt_sky_radiance(const rt_ctx *ctx, rt_vec direction, vmask lane
     return rt_choose(RT_MASK(direction.y < rt_vfloat(0.0f)), rt_spread(sky->sky_ground), above);
 }
 
-/* Draws directions of the lanes. */
-RT_INLINE rt_vec rt_draw_sky(const rt_ctx *ctx, vfloat u1, vfloat u2, vmask lanes)
+/* Draws unit directions. */
+RT_INLINE rt_vec rt_draw_sky(const rt_ctx *ctx, vfloat u1, vfloat u2)
 {
+#ifdef RT_HAS_SKY_PICTURE
+    if (ctx->lighting->sky_kind == RT_SKY_PICTURE) return rt_draw_sky_picture(ctx, u1, u2);
+#endif
     return rt_warp_cone(u1, u2, rt_vfloat(2.0f));
 }
 

@@ -5,9 +5,9 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/pictures/picture_read.hpp"
 #include "cli/commands.hpp"
 #include "render/compare/picture_errors.hpp"
-#include "render/compare/picture_read.hpp"
 
 namespace clarity {
 

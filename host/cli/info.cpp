@@ -16,6 +16,7 @@
 #include "cli/progress_bar.hpp"
 #include "import/sequence_reader.hpp"
 #include "render/edit/edit.hpp"
+#include "scene/emissive.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
@@ -44,6 +45,18 @@ std::map<std::string, uint64_t> shape_counts(const Scene& scene) {
     std::map<std::string, uint64_t> counts;
     for (const Shape& shape : scene.shapes) ++counts[scene.shape_kinds[shape.kind].id];
     return counts;
+}
+
+std::string sky_text(const Sky& sky) {
+    switch (sky.values.kind) {
+        case RT_SKY_CONSTANT:
+            return "constant";
+        case RT_SKY_GRADIENT:
+            return "gradient";
+        case RT_SKY_PICTURE:
+            return sky.file + ", " + std::to_string(sky.values.width) + " x " + std::to_string(sky.values.height);
+    }
+    return "background";
 }
 
 Json camera_json(const Camera& camera, const Scene& scene) {
@@ -80,6 +93,12 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["materials"] = scene.materials.size();
     json["textures"] = scene.textures.size();
     json["lights"] = scene.lights.size();
+    const EmissiveCounts emissive = count_emissive(scene);
+    json["emissive"] = {{"triangles", emissive.triangles},
+                        {"spheres", emissive.spheres},
+                        {"polygons", emissive.polygons},
+                        {"by_rays_alone", emissive.by_rays_alone()}};
+    json["sky"] = sky_text(scene.sky);
     json["cameras"] = scene.cameras.size();
     const Bounds bounds = scene.bounds();
     json["bounds"] =
@@ -138,6 +157,13 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("materials", scene.materials.size());
     count_row("textures", scene.textures.size());
     count_row("lights", scene.lights.size());
+    const EmissiveCounts emissive = count_emissive(scene);
+    count_row("emissive", emissive.triangles + emissive.spheres + emissive.polygons,
+              " triangles, spheres and polygons that `path` draws light from");
+    count_row(
+        "emissive too", emissive.by_rays_alone(),
+        " planes, shapes and polygons that are not convex: `path` finds their light only where a ray hits them by chance");
+    if (scene.sky.values.kind != RT_NONE) row("sky", sky_text(scene.sky));
     count_row("cameras", scene.cameras.size());
     for (const Camera& camera : scene.cameras) {
         char fov[32];

@@ -22,6 +22,7 @@ std::string scene_digest(const Scene& scene) {
     forget_names(converted.lights), forget_names(converted.nodes), forget_names(converted.morphs);
     forget_names(converted.sequences);
     for (WireNode& node : converted.nodes) node.values.name = nullptr;
+    converted.globals.front().sky_file_bytes = 0;
     converted.warnings.clear(), converted.edits.clear(), converted.sources.clear(), converted.names.clear();
     Digest digest;
     visit(scene, converted, [&](const auto& array) {

@@ -11,7 +11,7 @@ Converted convert(const Scene& s) {
         c.names.insert(c.names.end(), text.begin(), text.end());
         return static_cast<uint32_t>(text.size());
     };
-    c.globals.push_back({s.background, s.ambient, s.up_axis, 0, s.unit_scale, s.origin});
+    c.globals.push_back({s.background, s.ambient, s.up_axis, 0, s.unit_scale, s.origin, s.sky.values, name(s.sky.file)});
     for (const Mesh& m : s.meshes) {
         c.meshes.push_back({name(m.name), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
     }
@@ -53,6 +53,8 @@ bool convert_back(const Converted& c, Scene& s) {
     s.up_axis = g.up_axis;
     s.unit_scale = g.unit_scale;
     s.origin = g.origin;
+    s.sky.values = g.sky;
+    s.sky.file = name(g.sky_file_bytes);
     for (const WireMesh& m : c.meshes) {
         s.meshes.push_back(
             {name(m.name_bytes), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});

@@ -13,6 +13,8 @@ struct WireGlobals {
     uint32_t up_axis, pad;
     double unit_scale;
     std::array<double, 3> origin;
+    SkyValues sky;
+    uint32_t sky_file_bytes;
 };
 struct WireMesh {
     uint32_t name_bytes, first_vertex, vertex_count, first_triangle, triangle_count, polygon_count;
@@ -72,7 +74,7 @@ template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {
     v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.triangles), v(s.triangle_materials), v(c.meshes), v(c.instances);
     v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.shape_kinds), v(s.shapes), v(s.shape_parts);
-    v(s.shape_numbers), v(c.materials), v(s.textures), v(s.texels), v(c.lights);
+    v(s.shape_numbers), v(c.materials), v(s.textures), v(s.texels), v(s.sky.texels), v(c.lights);
     v(c.cameras), v(c.nodes), v(c.clips), v(c.morphs);
     auto& m = s.motion;
     v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);

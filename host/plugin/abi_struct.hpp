@@ -69,6 +69,10 @@ inline constexpr uint32_t kLeastBytes<rt_morph_desc> = 40;
 template <>
 inline constexpr uint32_t kLeastBytes<rt_vertex_frames> = 32;
 
+// So did skies.
+template <>
+inline constexpr uint32_t kLeastBytes<rt_sky_desc> = 64;
+
 // Extensions have sizes of their own.
 template <>
 inline constexpr uint32_t kLeastBytes<rt_refit> = 16;

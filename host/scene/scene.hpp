@@ -9,6 +9,7 @@
 #include "rt_types.h"
 #include "scene/motion/motion.hpp"
 #include "scene/shared_array.hpp"
+#include "scene/sky.hpp"
 
 namespace clarity {
 
@@ -142,6 +143,7 @@ struct Scene {
     SharedArray<uint32_t> texels;  // RGBA8, R in the low byte
     std::vector<Light> lights;
     std::vector<Camera> cameras;
+    Sky sky;
     std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};
     rt_u32 up_axis = 1;
     double unit_scale = 0;  // metres per unit; 0: the file does not say

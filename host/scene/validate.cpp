@@ -171,6 +171,20 @@ std::string check_looks(const Scene& s) {
     return {};
 }
 
+std::string check_sky(const Scene& s) {
+    const SkyValues& sky = s.sky.values;
+    if (sky.kind != RT_NONE && sky.kind >= RT_SKY_KINDS) return "sky: unknown kind";
+    const bool picture = sky.kind == RT_SKY_PICTURE;
+    if (picture && (sky.width == 0 || sky.height == 0)) return "sky: its picture is empty";
+    if (s.sky.texels.size() != (picture ? 3 * uint64_t(sky.width) * sky.height : 0)) return "sky: texels do not match its size";
+    const float numbers[] = {sky.rotate_deg, sky.strength};
+    if (!all_finite(numbers) || !all_finite(sky.color) || !all_finite(sky.horizon) || !all_finite(sky.ground))
+        return "sky: not a finite number";
+    if (!std::all_of(s.sky.texels.begin(), s.sky.texels.end(), [](float x) { return x >= 0 && std::isfinite(x); }))
+        return "sky: a texel is negative or not finite";
+    return {};
+}
+
 std::string check_view(const Scene& s) {
     for (size_t i = 0; i < s.lights.size(); ++i) {
         if (const std::string fault = light_fault(s.lights[i].values); !fault.empty()) return text("light", i, fault);
@@ -196,7 +210,7 @@ std::string check_view(const Scene& s) {
 
 std::string validate(const Scene& scene) {
     for (const auto check :
-         {check_arrays, check_meshes, check_analytic, check_shapes, check_looks, check_view, validate_motion}) {
+         {check_arrays, check_meshes, check_analytic, check_shapes, check_looks, check_sky, check_view, validate_motion}) {
         std::string why = check(scene);
         if (!why.empty()) return why;
     }

@@ -24,7 +24,7 @@
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
- *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer. */
+ *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky of rt_scene_sink. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -586,6 +586,19 @@ typedef struct rt_vertex_frames {
     const float *positions; /* 3 for each vertex of each frame */
 } rt_vertex_frames;
 
+/* What lies beyond the scene and lights it. Colours are linear radiance. */
+typedef struct rt_sky_desc {
+    rt_u32 struct_bytes;
+    rt_u32 kind;      /* RT_SKY_* */
+    const char *path; /* of the picture: HDR, EXR, PFM or PNG, as wide as all directions, the zenith in the top row, +X in the middle
+                       * column and +Z a quarter to the right of it */
+    float rotate_deg; /* about +Y, counter-clockwise seen from above */
+    float strength;   /* factor of all of it */
+    float color[3];   /* of a gradient at the zenith; factor of a picture */
+    float horizon[3], ground[3]; /* of a gradient: at the horizon, and below it */
+    rt_u32 hidden;    /* not 0: camera rays see the background instead */
+} rt_sky_desc;
+
 /* Calls that return an id copy their arguments. RT_NONE means that they failed and recorded the error: then return RT_FAILED. */
 typedef struct rt_scene_sink {
     rt_u32 struct_bytes;
@@ -619,6 +632,9 @@ typedef struct rt_scene_sink {
     /* Appended. The keys of lights of a kind: RT_LIGHT_POINT, ...; NULL: there is no such kind. And those of materials. */
     const rt_primitive_kind *(*light_kind)(void *ctx, rt_u32 kind);
     const rt_primitive_kind *(*material_kind)(void *ctx);
+    /* Appended. The first file that states a sky counts. A missing or broken picture is a warning. RT_OK, or RT_FAILED with the error
+     * recorded. */
+    int32_t (*sky)(void *ctx, const rt_sky_desc *);
 } rt_scene_sink;
 
 #define RT_IMPORTER_TAKES_CONTENT 1u /* it reads rt_host::content if there is some; others get no packed files */

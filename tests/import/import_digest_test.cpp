@@ -66,6 +66,11 @@ TEST(SceneDigest, ChangesWithAllThatIsSeen) {
         {"a camera's name", [](Scene& s) { s.cameras[0].name = "niam"; }},
         {"an instance", [](Scene& s) { s.instances[0].world_from_object[3] = 1; }},
         {"the background", [](Scene& s) { s.background[0] = 1; }},
+        {"the sky", [](Scene& s) { s.sky.values.kind = RT_SKY_CONSTANT; }},
+        {"a texel of the sky",
+         [](Scene& s) {
+             s.sky.texels = {1, 2, 3};
+         }},
         {"a key", [](Scene& s) { s.motion.key_values.own().back() += 1; }},
         {"a clip's name", [](Scene& s) { s.motion.clips[0].name = "walk"; }},
         {"an edit", [](Scene& s) {
@@ -86,6 +91,7 @@ TEST(SceneDigest, LeavesOutWhatIsNotSeen) {
     for (Mesh& mesh : changed.meshes) mesh.name = "/another/folder/mesh";
     for (Instance& instance : changed.instances) instance.name.clear();
     changed.warnings.push_back("a.scene:3:1: a warning");
+    changed.sky.file = "/another/folder/sky.hdr";
     changed.sources = {"/another/folder/a.scene"};
     EXPECT_EQ(scene_digest(changed), scene_digest(scene));
 }

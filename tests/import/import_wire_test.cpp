@@ -49,6 +49,12 @@ Scene sample() {
     s.cameras = {{"front", {0, 0, 5}, {0, 0, 1}, {0, 1, 0}, 0.7f}};
     s.background = {0.1f, 0.2f, 0.3f};
     s.ambient = {0.4f, 0.5f, 0.6f};
+    s.sky.values.kind = RT_SKY_PICTURE;
+    s.sky.values.width = 2;
+    s.sky.values.height = 1;
+    s.sky.values.rotate_deg = 30;
+    s.sky.file = "a sky.hdr";
+    s.sky.texels = {1, 2, 3, 4, 5, 6};
     s.up_axis = 2;
     s.unit_scale = 0.01;
     s.warnings = {"first", "", "third"};

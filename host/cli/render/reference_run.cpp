@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "render/compare/picture_read.hpp"
+#include "base/pictures/picture_read.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "render/settings/aov.hpp"
 

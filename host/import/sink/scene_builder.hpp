@@ -43,6 +43,9 @@ class SceneBuilder {
     void warn(const std::string& file, const std::string& text);
     // Background, axes and units come from the first file that states them.
     void set_info(const std::string& path, const rt_scene_info& info);
+    // Takes the sky of the first file that states one. Returns why it cannot; empty: it did, or there is one, or its picture is
+    // missing, of which it warns.
+    std::string set_sky(const std::string& path, const rt_sky_desc& sky);
     // Loads another file and places it into `into`. Returns an empty text on success, otherwise why it failed. Throws
     // Cancelled.
     std::string include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);

@@ -115,6 +115,9 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     sink_.edit = [](void* ctx, const char* key, const char* value, const char* where) {
         return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.edit(key, value, where); });
     };
+    sink_.sky = [](void* ctx, const rt_sky_desc* d) {
+        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.sky(taken(d, "rt_sky_desc")); });
+    };
 }
 
 void SceneSink::offer_motion() {
@@ -376,6 +379,13 @@ int32_t SceneSink::edit(const char* key, const char* value, const char* where) {
     }
     content_.edits.push_back(edit);
     return RT_OK;
+}
+
+int32_t SceneSink::sky(const rt_sky_desc& d) {
+    const std::string why = builder_.set_sky(path_, d);
+    if (why.empty()) return RT_OK;
+    fail("the sky: " + why);
+    return RT_FAILED;
 }
 
 std::string SceneSink::finish() {

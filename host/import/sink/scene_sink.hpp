@@ -41,6 +41,7 @@ class SceneSink {
     int32_t load(const rt_load& load);
     rt_u32 primitive(const rt_primitive_desc& desc);
     int32_t edit(const char* key, const char* value, const char* where);
+    int32_t sky(const rt_sky_desc& sky);
 
     rt_u32 fail(const std::string& why);
     // Finds the scene material of an id. If the plugin never received this id, records an error and returns false.

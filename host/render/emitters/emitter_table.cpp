@@ -5,6 +5,7 @@
 
 #include "base/angle.hpp"
 #include "render/emitters/pick_table.hpp"
+#include "scene/emissive.hpp"
 #include "scene/vec.hpp"
 
 namespace clarity {
@@ -44,6 +45,34 @@ double scene_radius(const Bounds& bounds) {
     return radius > 0 && std::isfinite(radius) ? radius : 1;
 }
 
+void set_sky(const Sky& sky, const View& view, rt_lighting& out) {
+    const SkyValues& values = sky.values;
+    const bool given = values.kind != RT_NONE;
+    out.sky_emitter = RT_NONE;
+    out.sky_kind = given ? values.kind : RT_SKY_CONSTANT;
+    out.sky_width = values.width;
+    out.sky_height = values.height;
+    out.sky_hidden = given ? values.hidden : 0;
+    out.sky_turn = static_cast<float>(values.rotate_deg / 360.0 - std::floor(values.rotate_deg / 360.0));
+    for (int k = 0; k < 3; ++k) {
+        out.background[k] = view.background[k];
+        out.sky_color[k] = given ? values.strength * values.color[k] : view.background[k];
+        out.sky_horizon[k] = values.strength * values.horizon[k];
+        out.sky_ground[k] = values.strength * values.ground[k];
+    }
+}
+
+// The integral of the mean color over all directions.
+double flux_of_sky(const rt_lighting& sky, const SkyTable& picture) {
+    switch (sky.sky_kind) {
+        case RT_SKY_PICTURE:
+            return mean(sky.sky_color) * picture.flux;
+        case RT_SKY_GRADIENT:
+            return kPi * (mean(sky.sky_color) + mean(sky.sky_horizon) + 2 * mean(sky.sky_ground));
+    }
+    return 4 * kPi * mean(sky.sky_color);
+}
+
 // Collects the emissive primitives, by ascending numbers.
 class Collector {
  public:
@@ -57,7 +86,6 @@ class Collector {
             add_triangles();
             add_spheres();
             add_polygons();
-            count_others();
         }
         if (!out_.runs.empty()) {
             out_.lighting.run_count = rt_u32(out_.runs.size());
@@ -82,10 +110,10 @@ class Collector {
         return found;
     }
 
-    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, uint64_t& count) {
+    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area) {
         if (!(area > 0) || !std::isfinite(area)) return;
         if (out_.emitters.size() >= kMostPicked) {
-            ++out_.counts.too_many;
+            ++out_.left_out;
             return;
         }
         const auto number = rt_u32(out_.emitters.size());
@@ -100,7 +128,6 @@ class Collector {
         out_.emitters.push_back(emitter);
         const rt_material& m = material(of_material);
         powers_.push_back(area * kPi * mean(m.emission) * (m.flags & RT_MATERIAL_ONE_SIDED ? 1 : 2));
-        ++count;
     }
 
     static double triangle_area(const rt_packed_prim& prim, const Affine* placed) {
@@ -148,15 +175,14 @@ class Collector {
         for (rt_u32 i = 0; i < accel_.instances.size(); ++i)
             if (!accel_.instances[i].hidden) add_group(build.group_of_instance[i], i);
         std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.prim < b.prim; });
-        for (const Found& f : found) add(f.at, f.instance, f.prim, f.material, f.area, out_.counts.triangles);
+        for (const Found& f : found) add(f.at, f.instance, f.prim, f.material, f.area);
     }
 
     void add_spheres() {
         const std::vector<rt_u32> leaves = leaves_of(RT_REF_SPHERE, accel_.scene.spheres.size(), false);
         for (const rt_u32 at : leaves)
             if (at != RT_NONE)
-                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * kPi * double(leaf(at).b[0]) * leaf(at).b[0],
-                    out_.counts.spheres);
+                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * kPi * double(leaf(at).b[0]) * leaf(at).b[0]);
     }
 
     void add_polygons() {
@@ -166,21 +192,13 @@ class Collector {
             if (leaves[i] == RT_NONE) continue;
             const rt_polygon& polygon = build.polygon_table[i];
             const float* const corners = &build.polygon_corners[3 * size_t(polygon.first)];
-            if (!is_convex(corners, polygon.count)) {
-                ++out_.counts.bent_polygons;
-                continue;
-            }
+            if (!is_convex(corners, polygon.count)) continue;
             double area = 0;
             for (rt_u32 c = 2; c < polygon.count; ++c)
                 area += 0.5 * length(cross(to_vec(corners + 3 * (c - 1)) - to_vec(corners),
                                            to_vec(corners + 3 * c) - to_vec(corners)));
-            add(leaves[i], RT_NONE, leaf(leaves[i]).prim, leaf(leaves[i]).material, area, out_.counts.polygons);
+            add(leaves[i], RT_NONE, leaf(leaves[i]).prim, leaf(leaves[i]).material, area);
         }
-    }
-
-    void count_others() {
-        for (const rt_plane& plane : accel_.scene.planes) out_.counts.planes += emits_[plane.material];
-        for (const Shape& shape : scene_.shapes) out_.counts.shapes += emits_[shape.material];
     }
 
     const Scene& scene_;
@@ -199,26 +217,8 @@ const std::vector<const char*>& emitter_headers() {
     return headers;
 }
 
-bool is_convex(const float* corners, size_t count) {
-    Vec normal{};
-    const auto at = [&](size_t i) { return to_vec(corners + 3 * (i % count)); };
-    for (size_t i = 2; i < count; ++i) normal = normal + cross(at(i - 1) - at(0), at(i) - at(0));
-    const double size = length(normal);
-    if (!(size > 0)) return false;
-    normal = (1 / size) * normal;
-    // Every corner turns the same way, once around, and is in the plane.
-    double turned = 0;
-    for (size_t i = 0; i < count; ++i) {
-        const Vec before = at(i + count - 1), here = at(i), after = at(i + 1), in = here - before, out = after - here;
-        if (std::fabs(dot(normal, here - at(0))) > 1e-4 * std::sqrt(size)) return false;
-        const double sine = dot(normal, cross(in, out));
-        if (sine < -1e-6 * length(in) * length(out)) return false;
-        turned += std::atan2(sine, dot(in, out));
-    }
-    return turned < 3 * kPi;
-}
-
-EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view) {
+EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
+                                bool knows_leaves) {
     EmitterTable out;
     std::vector<double> powers;
     const double radius = scene_radius(accel.scene.bounds);
@@ -231,22 +231,19 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         powers.push_back(power_of(light, radius));
         out.lighting.sun_count += light.kind == RT_LIGHT_SUN;
     }
-    rt_lighting& lighting = out.lighting;
-    lighting.sky_emitter = RT_NONE;
-    lighting.sky_kind = RT_SKY_CONSTANT;
-    for (int k = 0; k < 3; ++k) lighting.sky_color[k] = lighting.background[k] = view.background[k];
-    if (const double sky = 4 * kPi * mean(lighting.sky_color); sky > 0) {
-        lighting.sky_emitter = rt_u32(out.emitters.size());
+    set_sky(scene.sky, view, out.lighting);
+    if (const double flux = flux_of_sky(out.lighting, sky); flux > 0) {
+        out.lighting.sky_emitter = rt_u32(out.emitters.size());
         rt_emitter emitter{};
         emitter.kind = RT_EMITTER_SKY;
         emitter.instance = emitter.prim = RT_NONE;
         out.emitters.push_back(emitter);
-        powers.push_back(sky * kPi * radius * radius);
+        powers.push_back(flux * kPi * radius * radius);
     }
-    Collector(scene, accel, view, out, powers).collect();
+    if (knows_leaves) Collector(scene, accel, view, out, powers).collect();
     const bool any = std::any_of(powers.begin(), powers.end(), [](double power) { return power > 0; });
-    lighting.emitter_count = any ? rt_u32(powers.size()) : 0;
-    lighting.cell_bits = fill_pick_table(powers, out.emitters);
+    out.lighting.emitter_count = any ? rt_u32(powers.size()) : 0;
+    out.lighting.cell_bits = fill_pick_table(powers, out.emitters);
     return out;
 }
 

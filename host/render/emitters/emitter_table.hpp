@@ -6,24 +6,17 @@
 #include <vector>
 
 #include "render/accel/accel_build.hpp"
+#include "render/emitters/sky_table.hpp"
 #include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
 
-// Primitives that emit light, and what a path tracer can do about them.
-struct EmissiveCounts {
-    uint64_t triangles = 0, spheres = 0, polygons = 0;  // that light is drawn from
-    // Found by rays alone that happen to hit them: planes, shapes of plugins, polygons that are not convex, and what exceeds
-    // the table.
-    uint64_t planes = 0, shapes = 0, bent_polygons = 0, too_many = 0;
-};
-
 struct EmitterTable {
     std::vector<rt_emitter> emitters;  // 2^cell_bits of them
     std::vector<rt_emitter_run> runs;
     rt_lighting lighting{};
-    EmissiveCounts counts;
+    uint64_t left_out = 0;  // emissive primitives beyond those that the table can hold: rays alone find them
 };
 
 // Headers below cl/ of kernels with kPicksLights, in their order. Before them come sampling/math.h and sampling/warps.h.
@@ -31,9 +24,9 @@ const std::vector<const char*>& emitter_headers();
 
 // The emitters of a view. accel: where the scene's primitives are now; only positions in leaf order must be those of the
 // device.
-EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view);
-
-// Whether a planar polygon, 3 numbers a corner, is convex and its corners are in a plane.
-bool is_convex(const float* corners, size_t count);
+// sky: of scene.sky. knows_leaves: whether the device has the leaves in the order of accel. Where a device built a tree anew,
+// nobody on the host knows it, and emissive primitives are left to rays that hit them.
+EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
+                                bool knows_leaves = true);
 
 }  // namespace clarity

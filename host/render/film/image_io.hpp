@@ -5,18 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/aligned_bytes.hpp"
+#include "base/pictures/float_image.hpp"
 #include "render/film/byte_image.hpp"
 
 namespace clarity {
-
-// Not cleared when they are made: of a large picture that takes longer than to copy it from a GPU.
-using FloatPixels = UninitializedVector<float>;
-// width x height pixels of `channels` floats each, top row first.
-struct FloatImage {
-    unsigned width = 0, height = 0, channels = 0;
-    FloatPixels pixels;
-};
 
 // The PNG encoder counts bytes in an int.
 inline constexpr uint64_t kPngMaxPixels = 1u << 27;

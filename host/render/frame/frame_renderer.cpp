@@ -185,7 +185,8 @@ struct FrameRenderer::Impl {
             table.resize(layout.groups_y(height));  // full size, so that the buffer does not grow row by row
         }
         view.write(queue, *prepared.scene, *prepared.on_device, frames, view_of, table);
-        if (program->row.has(kPicksLights)) view.write_emitters(queue, *prepared.scene, prepared.accel, view_of);
+        if (program->row.has(kPicksLights))
+            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of, !prepared.is_moved);
 
         const auto go_on = [&progress = picture.progress] {
             if (progress.cancelled()) throw Cancelled();

@@ -26,6 +26,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_TEXTURES", features.textures);
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
+    if (features.sky_picture && row.has(kPicksLights)) out.define_int("RT_HAS_SKY_PICTURE", 1);
 }
 
 // Writes the beginning of every kernel: types, lanes, the structure's types, the buffers, and shapes. Returns the names of the

@@ -36,14 +36,15 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
 }
 
 void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
-                                 const View& view) {
+                                 const View& view, bool knows_leaves) {
     const auto same = [](const auto& a, const auto& b) {
         return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
     };
-    if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
-        same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background)
+    if (emitters_.get()() && emitters_of_.knows_leaves == knows_leaves && emitters_of_.accel.lock() == accel &&
+        same(emitters_of_.lights, view.lights) && same(emitters_of_.materials, view.materials) &&
+        emitters_of_.background == view.background &&
+        std::memcmp(&emitters_of_.sky, &scene.sky.values, sizeof(SkyValues)) == 0 && sky_of_.shares(scene.sky.texels))
         return;
-    const EmitterTable table = make_emitter_table(scene, *accel, view);
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
         static const rt_emitter nothing{};  // kernels get no empty buffers
         if (from.empty())
@@ -51,12 +52,17 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
         else
             to.write(queue, from.data(), from.size() * sizeof from[0]);
     };
+    if (!sky_of_.shares(scene.sky.texels) || !sky_texels_.get()()) {
+        sky_of_ = scene.sky.texels;
+        sky_ = make_sky_table(scene.sky);
+        upload(sky_texels_, sky_of_);
+        upload(sky_picks_, sky_.picks);
+    }
+    const EmitterTable table = make_emitter_table(scene, *accel, view, sky_, knows_leaves);
     upload(emitters_, table.emitters);
     upload(emitter_runs_, table.runs);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    upload(sky_texels_, std::vector<float>());
-    upload(sky_picks_, std::vector<rt_u32>());
-    emitters_of_ = {accel, view.lights, view.materials, view.background};
+    emitters_of_ = {accel, view.lights, view.materials, view.background, scene.sky.values, knows_leaves};
 }
 
 void UploadedBuffer::write(cl::CommandQueue& queue, const void* data, size_t bytes) {

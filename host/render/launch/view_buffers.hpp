@@ -1,6 +1,7 @@
 // view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
 #pragma once
 #include "render/accel/accel_build.hpp"
+#include "render/emitters/sky_table.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/launch/device_scene.hpp"
 #include "render/view/view.hpp"
@@ -35,9 +36,9 @@ class ViewBuffers {
     void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
                const View& view, const std::vector<rt_u32>& rows = {});
     // Uploads the table of emitters, for kernels with kPicksLights. The view is that of write(). Makes the table only if the
-    // structure, the lights or the materials have changed.
+    // structure, the lights or the materials have changed. knows_leaves: see make_emitter_table().
     void write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
-                        const View& view);
+                        const View& view, bool knows_leaves = true);
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets `frame` and the scene's arguments of the kernel.
     void bind(const DeviceScene& scene, KernelArguments& kernel) const;
@@ -49,9 +50,13 @@ class ViewBuffers {
         std::vector<rt_light> lights;
         std::vector<rt_material> materials;
         std::array<float, 3> background{};
+        SkyValues sky;
+        bool knows_leaves = true;
     };
     UploadedBuffer frame_, lights_, materials_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
     EmittersOf emitters_of_;
+    SharedArray<float> sky_of_;  // the picture that sky_ was made from
+    SkyTable sky_;
     std::vector<unsigned char> frames_and_rows_;
     bool own_materials_ = false;
 };

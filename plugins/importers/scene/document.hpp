@@ -71,6 +71,12 @@ struct Animation {
     size_t key_count() const { return numbers.size() / numbers_per_key(); }
 };
 
+struct Sky {
+    Position position;     // line 0: the file does not set it
+    std::string path;      // of the picture, as in the file
+    rt_sky_desc values{};  // without path
+};
+
 // A change of what this file and the files that it loads hold: "instance.3.translate", "1,0,0".
 struct Edit {
     std::string key, value;
@@ -116,6 +122,7 @@ struct Document {
     std::vector<Animation> animations;
     std::vector<Edit> edits;
     Vec3 background{}, ambient{};
+    Sky sky;
     Position background_position, ambient_position;  // line 0: the file does not set it
     uint32_t statement_count = 0;
     bool has_degenerate_triangle = false;

@@ -33,6 +33,7 @@ class Emitter {
     bool motion() { return motion_.emit(); }
     bool materials();
     bool lights_and_cameras();
+    bool sky();
     bool edits();
     // Emits one item, or a run of consecutive triangles as one mesh. Moves `at` behind them.
     bool item(size_t& at);
@@ -119,6 +120,20 @@ bool Emitter::lights_and_cameras() {
         if (id == RT_NONE || !motion_.emit_fov(camera, id)) return false;
     }
     return true;
+}
+
+// Older hosts know no sky.
+bool Emitter::sky() {
+    if (document_.sky.position.line == 0) return true;
+    position_ = document_.sky.position;
+    if (!RT_HAS(&sink_, rt_scene_sink, sky)) {
+        sink_.warn(sink_.ctx, "this host knows no `sky`");
+        return true;
+    }
+    rt_sky_desc desc = document_.sky.values;
+    desc.struct_bytes = sizeof desc;
+    desc.path = desc.kind == RT_SKY_PICTURE ? document_.sky.path.c_str() : nullptr;
+    return sink_.sky(sink_.ctx, &desc) == RT_OK;
 }
 
 bool Emitter::edits() {
@@ -224,7 +239,7 @@ bool Emitter::item(size_t& at) {
 int32_t emit(const Document& document, std::string_view file, const rt_host& host, const rt_scene_sink& sink) {
     Emitter emitter(document, file, sink);
     emitter.info();
-    bool ok = emitter.motion() && emitter.materials() && emitter.lights_and_cameras(), names_place = false;
+    bool ok = emitter.motion() && emitter.materials() && emitter.lights_and_cameras() && emitter.sky(), names_place = false;
     constexpr size_t items_between_reports = 1024;
     for (size_t at = 0, reported = 0; ok && at < document.items.size();) {
         const ItemKind kind = document.items[at].kind;

@@ -5,6 +5,7 @@
 
 #include "geometry.hpp"
 #include "looks.hpp"
+#include "sky.hpp"
 
 namespace scene_format {
 namespace {
@@ -280,6 +281,7 @@ const std::vector<StatementRow>& statements() {
         {"camera", read_camera},     {"light", read_light},   {"background", read_background}, {"ambient", read_ambient},
         {"material", read_material}, {"sphere", read_sphere}, {"plane", read_plane},           {"polygon", read_polygon},
         {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},       {"edit", read_edit},
+        {"sky", read_sky},
     };
     return table;
 }

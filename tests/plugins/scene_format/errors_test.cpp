@@ -12,7 +12,7 @@ struct Case {
 };
 
 #define STATEMENTS \
-    " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate, edit)"
+    " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate, edit, sky)"
 
 // Stands for the kinds of lights.
 #define LIGHTS "@"
@@ -69,6 +69,12 @@ const Case kCases[] = {
     {"background 0.2 0.3", "1:19: the line ends here; expected number 3 of 3 for `background` (r g b)"},
     {"background 0 0 0 0", "1:18: `0` is one word too many; expected the line's end"},
     {"background 1\nbackground 0", "2:1: statement `background` for the second time; the first is in line 1"},
+    {"sky", "1:4: the line ends here; expected the path of a picture, `constant` or `gradient`"},
+    {"sky constant 1 1", "1:17: the line ends here; expected number 3 of 3 for the sky's radiance (r g b)"},
+    {"sky constant 1 zenith 1", "1:16: unknown key `zenith` (keys of sky: rotate, strength, visible)"},
+    {"sky a.hdr visible no", "1:19: `no` is no `visible` (expected: true, false)"},
+    {"sky a.hdr strength -1", "1:20: `-1` is out of range; expected `strength` between 0 and 1e+12"},
+    {"sky a.hdr\nsky b.hdr", "2:1: statement `sky` for the second time; the first is in line 1"},
     {"material m color 255 0 0", "1:18: `255` is out of range; expected `color` (r g b) in linear light, 0 to 100"},
     {"material m reflect 1.5", "1:20: `1.5` is out of range; expected `reflect` (share that is mirrored) between 0 and 1"},
     {"material m ior 0", "1:16: `0` is out of range; expected `ior` (index of refraction) between 0.001 and 100"},

@@ -20,6 +20,7 @@ light point position 5 10 5 color 1 1 1 intensity 2 name key
 light directional direction 0 -1 .5 color .5
 background 0.2 0.3 0.5
 ambient .1
+sky "room.hdr" rotate 90 strength 2 visible false
 material glass color .9 1 1 reflect .1 refract .9 ior 1.5 specular 1 shininess 100 emission 0
 material "wood floor" texture "tex/wood floor.png" wrap clamp mirror checker
 sphere center 0 1 0 radius 1 material glass

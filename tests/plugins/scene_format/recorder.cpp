@@ -122,6 +122,13 @@ void add_look_calls(rt_scene_sink& sink) {
         if (r.has_ambient) std::copy(info->ambient, info->ambient + 3, r.ambient.begin());
     };
     sink.warn = [](void* ctx, const char* text) { recording_of(ctx).warnings.push_back(text); };
+    sink.sky = [](void* ctx, const rt_sky_desc* sky) -> int32_t {
+        Recording& r = recording_of(ctx);
+        r.skies.push_back(*sky);
+        r.sky_path = sky->path ? sky->path : "";
+        r.skies.back().path = nullptr;
+        return RT_OK;
+    };
 }
 
 void add_motion_calls(rt_scene_sink& sink) {

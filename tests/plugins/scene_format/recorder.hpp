@@ -71,6 +71,8 @@ struct Recording {
     std::vector<RecordedChannel> channels;
     std::vector<std::string> order;  // "sphere", "mesh", "load", ... in the order of the calls
     bool has_background = false, has_ambient = false;
+    std::vector<rt_sky_desc> skies;  // without paths
+    std::string sky_path;            // of the last
     std::array<float, 3> background{}, ambient{};
 
     // The answers of the sink and the host.

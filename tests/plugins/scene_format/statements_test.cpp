@@ -30,6 +30,31 @@ Recording import_good(const std::string& text) {
     return r;
 }
 
+TEST(SceneFormat, SkyOfThreeKinds) {
+    EXPECT_TRUE(import_good("sphere").skies.empty());
+    const Recording picture = import_good("sky \"a room.hdr\" strength 3 visible false rotate -90");
+    ASSERT_EQ(picture.skies.size(), 1u);
+    EXPECT_EQ(picture.sky_path, "a room.hdr");
+    EXPECT_EQ(picture.skies[0].kind, RT_SKY_PICTURE);
+    EXPECT_EQ(picture.skies[0].strength, 3);
+    EXPECT_EQ(picture.skies[0].rotate_deg, -90);
+    EXPECT_EQ(picture.skies[0].hidden, 1u);
+    expect_near(picture.skies[0].color, {1, 1, 1});
+    const Recording constant = import_good("sky constant .5 .7 1e3");
+    ASSERT_EQ(constant.skies.size(), 1u);
+    EXPECT_EQ(constant.sky_path, "");
+    EXPECT_EQ(constant.skies[0].kind, RT_SKY_CONSTANT);
+    EXPECT_EQ(constant.skies[0].strength, 1);
+    EXPECT_EQ(constant.skies[0].hidden, 0u);
+    expect_near(constant.skies[0].color, {.5f, .7f, 1e3f});
+    const Recording gradient = import_good("sky gradient ground .1 horizon 1 2 3 zenith 4 5 6 visible true");
+    ASSERT_EQ(gradient.skies.size(), 1u);
+    EXPECT_EQ(gradient.skies[0].kind, RT_SKY_GRADIENT);
+    expect_near(gradient.skies[0].color, {4, 5, 6});
+    expect_near(gradient.skies[0].horizon, {1, 2, 3});
+    expect_near(gradient.skies[0].ground, {.1f, .1f, .1f});
+}
+
 TEST(SceneFormat, ReadsTheExampleOfTheDesign) {
     const Recording r = import_good(R"(
 camera   main  eye 0 2 8  target 0 1 0  up 0 1 0  fov 45

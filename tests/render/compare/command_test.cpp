@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/pictures/picture_read.hpp"
 #include "cli/run_program.hpp"
-#include "render/compare/picture_read.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;

@@ -5,9 +5,9 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/pictures/picture_read.hpp"
 #include "render/compare/flip.hpp"
 #include "render/compare/picture_errors.hpp"
-#include "render/compare/picture_read.hpp"
 #include "support/errors.hpp"
 #include "support/scratch.hpp"
 

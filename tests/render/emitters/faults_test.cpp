@@ -29,4 +29,35 @@ TEST(PlantedFaults, OfLightsAreFound) {
     EXPECT_GT(std::fabs(light_of(sun, {"RT_FAULT_9"}) - 1), 0.02) << "sun solid angle off by 2";
 }
 
+// A lobe towards a corner of the horizon, where both faults show.
+TEST(PlantedFaults, OfSkiesAreFound) {
+    Scene scene = empty_scene();
+    SkyValues& sky = scene.sky.values;
+    sky.kind = RT_SKY_PICTURE;
+    sky.width = 32;
+    sky.height = 16;
+    std::vector<float> texels(3 * 32 * 16, 0.1f);
+    for (int k = 0; k < 3; ++k) texels[size_t(3 * (4 * 32 + 16) + k)] = 100;
+    scene.sky.texels = texels;
+    // Its middle: azimuth and angle to the zenith of texel (16, 4).
+    const double phi = 2 * kPi * (16.5 / 32 - 0.5), theta = kPi * 4.5 / 16;
+    const Vec middle = {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+    const auto errors = [&](const std::vector<std::string>& defines) {
+        LightBench bench(scene, dark_view(), 8, defines);
+        const double by_draws = bench.irradiance({0, 0, 0}, {0, 1, 0}, even_numbers(1 << 15, 1)),
+                     by_rays = bench.irradiance_by_rays({0, 0, 0}, {0, 1, 0}, even_numbers(1 << 18, 1));
+        Vec mean{};
+        for (const LightDraw& ray : bench.find({0, 0, 0}, even_numbers(1 << 18, 1))) {
+            const double light = std::max(0.f, ray.found[0] - 0.1f);
+            mean = mean + light * to_vec(ray.towards);
+        }
+        return std::pair(std::fabs(by_draws / by_rays - 1), length(normalized(mean) - middle));
+    };
+    const auto [sound_light, sound_place] = errors({});
+    EXPECT_LT(sound_light, 0.01) << "sound";
+    EXPECT_LT(sound_place, 0.01) << "sound";
+    EXPECT_GT(errors({"RT_FAULT_10"}).first, 0.05) << "env sin(theta) missing";
+    EXPECT_GT(errors({"RT_FAULT_11"}).second, 0.05) << "env shifted by half a texel";
+}
+
 }  // namespace

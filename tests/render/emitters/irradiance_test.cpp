@@ -144,6 +144,93 @@ TEST(Irradiance, Skies) {
     expect_irradiance(empty_scene(), view, {0, 0, 0}, kUp, kPi, true);
 }
 
+// Truth, section 5: L = a + b sin(elevation) gives a + 2 b / 3.
+TEST(Irradiance, GradientSky) {
+    Scene scene = empty_scene();
+    scene.sky.values.kind = RT_SKY_GRADIENT;
+    scene.sky.values.strength = 2;
+    for (int k = 0; k < 3; ++k)
+        scene.sky.values.color[k] = 0.5f, scene.sky.values.horizon[k] = 0.1f, scene.sky.values.ground[k] = 0.3f;
+    expect_irradiance(scene, dark_view(), {0, 0, 0}, kUp, kPi * 0.733333, true);
+    expect_irradiance(scene, dark_view(), {0, 0, 0}, {0, -1, 0}, kPi * 0.6, true);
+}
+
+// A picture of the lobe max(d.s, 0)^n, s at an angle from the zenith, towards +Z at first.
+Scene lobe_sky(double degrees, double n, rt_u32 width, rt_u32 height) {
+    Scene scene = empty_scene();
+    SkyValues& sky = scene.sky.values;
+    sky.kind = RT_SKY_PICTURE;
+    sky.width = width;
+    sky.height = height;
+    std::vector<float> texels;
+    for (rt_u32 y = 0; y < height; ++y)
+        for (rt_u32 x = 0; x < width; ++x) {
+            const double theta = kPi * (y + 0.5) / height, phi = 2 * kPi * ((x + 0.5) / width - 0.5), t = degrees * kPi / 180;
+            const double cosine = std::cos(theta) * std::cos(t) + std::sin(theta) * std::sin(phi) * std::sin(t);
+            for (int k = 0; k < 3; ++k) texels.push_back(static_cast<float>(std::pow(std::max(cosine, 0.0), n)));
+        }
+    scene.sky.texels = std::move(texels);
+    return scene;
+}
+
+// The radiance that a horizontal white Lambert surface sends, from truth, section 5. The pictures have steps of a degree or
+// less, which blurs a lobe a little.
+TEST(Irradiance, PictureOfALobe) {
+    struct Row {
+        double n, degrees, wanted;
+    };
+    const std::vector<Row> rows = {{1, 0, 0.666667},   {1, 60, 0.405999},  {20, 0, 0.090909},   {20, 30, 0.078730},
+                                   {20, 60, 0.045501}, {500, 0, 0.003984}, {500, 60, 0.001992}, {500, 80, 0.000692}};
+    for (const Row& row : rows) {
+        Scene scene = lobe_sky(row.degrees, row.n, 512, 256);
+        LightBench bench(scene, dark_view());
+        double error = 0;
+        const double found = bench.irradiance({0, 0, 0}, kUp, random_numbers(kDraws, 1), &error) / (kPi * row.wanted);
+        error /= kPi * row.wanted;
+        EXPECT_NEAR(found, 1, 4 * error + 0.0005 + 0.5e-6 / row.wanted) << "n " << row.n << ", " << row.degrees;
+        EXPECT_LT(error, 0.01) << "the picture is not sampled by its light";
+    }
+}
+
+// Which way a picture is turned: the brightest direction is +Z without rotation, and +X after a quarter (counter-clockwise from
+// above: Z goes to X).
+TEST(Irradiance, PictureTurnsAboutTheZenith) {
+    Scene scene = lobe_sky(90, 500, 128, 64);
+    const Vec directions[] = {{0, 0, 1}, {1, 0, 0}, {0, 0, -1}, {-1, 0, 0}};
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        scene.sky.values.rotate_deg = 90.0f * static_cast<float>(quarter);
+        Vec mean{};
+        LightBench bench(scene, dark_view());
+        for (const LightDraw& draw : bench.draw({0, 0, 0}, even_numbers(4096, 1))) mean = mean + to_vec(draw.towards);
+        EXPECT_GT(dot(normalized(mean), directions[quarter]), 0.999) << quarter;
+    }
+}
+
+// Between middles of texels the radiance is bilinear, across the seam at u = 0 too; beyond the last rows it is that of the
+// rows.
+TEST(Irradiance, PictureIsBilinear) {
+    Scene scene = empty_scene();
+    SkyValues& sky = scene.sky.values;
+    sky.kind = RT_SKY_PICTURE;
+    sky.width = 8;
+    sky.height = 4;
+    std::vector<float> texels;
+    for (rt_u32 i = 0; i < 32; ++i)
+        for (int k = 0; k < 3; ++k) texels.push_back(float((i * 7) % 13));
+    scene.sky.texels = texels;
+    LightBench bench(scene, dark_view());
+    for (const LightDraw& ray : bench.find({0, 0, 0}, even_numbers(4096, 1))) {
+        const double u = 0.5 + std::atan2(ray.towards[2], ray.towards[0]) / (2 * kPi), v = std::acos(ray.towards[1]) / kPi;
+        const double x = u * 8 - 0.5, y = std::min(std::max(v * 4 - 0.5, 0.0), 3.0);
+        const auto texel = [&](int column, int row) { return texels[size_t(3 * ((column + 8) % 8 + 8 * std::min(row, 3)))]; };
+        const int column = int(std::floor(x)), row = int(std::floor(y));
+        const double fx = x - column, fy = y - row;
+        const double wanted = (1 - fy) * ((1 - fx) * texel(column, row) + fx * texel(column + 1, row)) +
+                              fy * ((1 - fx) * texel(column, row + 1) + fx * texel(column + 1, row + 1));
+        ASSERT_NEAR(ray.found[0], wanted, 2e-4) << u << " " << v;
+    }
+}
+
 // Truth, section 6: 0.533 degrees, irradiance 1.
 TEST(Irradiance, Sun) {
     const View view = lit_by(sun_light({0, 1, 0}, 0.533, 1));

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "render/emitters/emitter_table.hpp"
+#include "scene/emissive.hpp"
 
 using namespace clarity;
 

@@ -1,4 +1,4 @@
-#include "render/compare/picture_read.hpp"
+#include "base/pictures/picture_read.hpp"
 
 #include <climits>
 #include <cmath>
@@ -12,6 +12,7 @@
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
+#define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 65536
 #pragma GCC diagnostic push
@@ -83,6 +84,19 @@ FloatImage read_png(const std::string& bytes) {
     return image;
 }
 
+FloatImage read_hdr(const std::string& bytes) {
+    int width = 0, height = 0, channels = 0;
+    if (bytes.size() > INT_MAX) throw Error(Exit::failed, "it has more than 2 GiB");
+    const std::unique_ptr<float, void (*)(void*)> values(
+        stbi_loadf_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width, &height,
+                               &channels, 3),
+        stbi_image_free);
+    if (!values) throw Error(Exit::failed, std::string("it is no HDR that can be read: ") + stbi_failure_reason());
+    FloatImage image = blank(width, height);
+    std::memcpy(image.pixels.data(), values.get(), image.pixels.size() * sizeof(float));
+    return image;
+}
+
 #ifdef CLARITY_HAVE_OPENEXR
 FloatImage read_exr(const std::string& path) {
     Imf::InputFile file(path.c_str());
@@ -119,7 +133,8 @@ FloatImage read_picture(const std::string& path) {
         if (bytes.compare(0, 4, "\x89PNG") == 0) return read_png(bytes);
         if (bytes.compare(0, 4, "\x76\x2f\x31\x01") == 0) return read_exr(path);
         if (bytes.compare(0, 2, "PF") == 0 || bytes.compare(0, 2, "Pf") == 0) return read_pfm(bytes);
-        throw Error(Exit::failed, "it is none of PNG, EXR and PFM");
+        if (bytes.compare(0, 2, "#?") == 0) return read_hdr(bytes);
+        throw Error(Exit::failed, "it is none of PNG, EXR, HDR and PFM");
     } catch (const std::exception& e) {
         throw Error(Exit::failed, path + ": the picture cannot be read: " + e.what());
     }

@@ -1,0 +1,14 @@
+// picture_read.hpp -- reads pictures of colours as floats: those that are compared, and skies.
+#pragma once
+#include <string>
+
+#include "base/pictures/float_image.hpp"
+
+namespace clarity {
+
+// Reads a picture of colours as linear values, top row first: PFM (1 or 3 channels), EXR (R, G, B or Y of the first part), HDR
+// (Radiance), or PNG (8 or 16 bit; sRGB is decoded by its exact curve, alpha is dropped). One channel becomes three equal ones.
+// Throws Error(failed) with file and reason. For any thread.
+FloatImage read_picture(const std::string& path);
+
+}  // namespace clarity

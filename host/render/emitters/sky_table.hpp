@@ -1,0 +1,18 @@
+// sky_table.hpp -- tables by which directions towards a picture of the sky are drawn (cl/shading/sky.h).
+#pragma once
+#include <vector>
+
+#include "scene/sky.hpp"
+
+namespace clarity {
+
+struct SkyTable {
+    // Running sums of shares of RT_PICKS: height + 1 of the rows, then width + 1 of the cells of each row.
+    std::vector<rt_u32> picks;
+    double flux = 0;  // integral of the picture's mean color over all directions
+};
+
+// A cell of a row is as likely as the light that its part of the sky sends, bilinear between texels.
+SkyTable make_sky_table(const Sky& sky);
+
+}  // namespace clarity

@@ -1,0 +1,22 @@
+// emissive.hpp -- which primitives of a scene emit light, and which of them a path tracer can draw light from.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace clarity {
+
+struct Scene;
+
+// Placed primitives that emit light.
+struct EmissiveCounts {
+    uint64_t triangles = 0, spheres = 0, polygons = 0;
+    // Found by rays alone that happen to hit them.
+    uint64_t planes = 0, shapes = 0, bent_polygons = 0;
+    uint64_t by_rays_alone() const { return planes + shapes + bent_polygons; }
+};
+EmissiveCounts count_emissive(const Scene& scene);
+
+// Whether a polygon, 3 numbers a corner, is convex and its corners are in a plane.
+bool is_convex(const float* corners, size_t count);
+
+}  // namespace clarity
