@@ -57,6 +57,7 @@ typedef struct rt_packed_prim {
  * irradiance. */
 #define RT_LIGHT_FALLOFF 1u
 #define RT_LIGHT_TWO_SIDED 2u /* rect, disc: both sides emit */
+#define RT_LIGHT_STAND_IN 4u  /* by the host, for a scene without lights: no light of `path` where anything else emits */
 
 /* What lies beyond a scene, for the path tracer. */
 #define RT_SKY_CONSTANT 0u

@@ -38,6 +38,21 @@ TEST(Path, DepthCountsEvents) {
     }
 }
 
+// The host's own lights, for a scene without any, must not brighten what lights itself.
+TEST(Path, LightsThatStandInAreLeftOutWhereSomethingEmits) {
+    View view = inside_view(false);
+    rt_light light = whitted_light(RT_LIGHT_POINT, {0.1f, 0.2f, 0.1f}, {5, 5, 5});
+    light.flags = RT_LIGHT_STAND_IN;
+    view.lights = {light};
+    const Pairs settings = {{"depth", "3"}, {"sampler", "independent"}};
+    const PathPicture emits = trace_paths(hollow_sphere(0.8f, 1), view, 64, settings);
+    EXPECT_NEAR(emits.average(), hollow_sphere_radiance(0.8, 3), 4 * emits.average_error() + 2e-5);
+    EXPECT_GT(trace_paths(hollow_sphere(0.8f, 0), view, 16, settings).average(), 1);
+    Scene under_a_sky = hollow_sphere(0.8f, 0);
+    under_a_sky.background = view.background = {0.1f, 0.1f, 0.1f};
+    EXPECT_EQ(trace_paths(under_a_sky, view, 16, settings).average(), 0);
+}
+
 // A white sphere disappears in a white sky.
 TEST(Path, Furnace) {
     View view = view_from({0, 0, 4}, {0, 0, 0}, 40);

@@ -81,8 +81,11 @@ class Collector {
         for (size_t i = 0; i < scene.materials.size(); ++i) emits_.push_back(mean(material(i).emission) > 0);
     }
 
+    // Also where only rays that hit it find what emits.
+    bool any_emits() const { return std::find(emits_.begin(), emits_.end(), true) != emits_.end(); }
+
     void collect() {
-        if (std::find(emits_.begin(), emits_.end(), true) != emits_.end()) {
+        if (any_emits()) {
             add_triangles();
             add_spheres();
             add_polygons();
@@ -240,7 +243,13 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         out.emitters.push_back(emitter);
         powers.push_back(flux * kPi * radius * radius);
     }
-    if (knows_leaves) Collector(scene, accel, view, out, powers).collect();
+    Collector collector(scene, accel, view, out, powers);
+    if (knows_leaves) collector.collect();
+    // A file that says what lies behind its objects says what lights them. Without a word of it, lights that stand in stay.
+    const bool lit = scene.sky.values.kind != RT_NONE || collector.any_emits() ||
+                     (scene.background != Scene{}.background && out.lighting.sky_emitter != RT_NONE);
+    for (size_t i = 0; lit && i < view.lights.size(); ++i)
+        if (view.lights[i].flags & RT_LIGHT_STAND_IN) powers[i] = 0;
     const bool any = std::any_of(powers.begin(), powers.end(), [](double power) { return power > 0; });
     out.lighting.emitter_count = any ? rt_u32(powers.size()) : 0;
     out.lighting.cell_bits = fill_pick_table(powers, out.emitters);

@@ -55,6 +55,7 @@ std::vector<rt_light> default_lights(const Scene& scene, const Camera& camera) {
         lights[0].color[k] = 0.75f;
         lights[1].color[k] = 0.35f;
     }
+    for (rt_light& light : lights) light.flags = RT_LIGHT_STAND_IN;
     return lights;
 }
 
@@ -77,6 +78,7 @@ View make_view(const Scene& scene, float aspect, const std::string& camera, cons
         }
         const std::array<float, 3> at = scene_point({n[0], n[1], n[2]}, scene.origin);
         std::copy(at.begin(), at.end(), view.lights[0].position);
+        view.lights[0].flags &= ~RT_LIGHT_STAND_IN;
     }
     return view;
 }
