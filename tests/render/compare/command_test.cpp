@@ -6,6 +6,7 @@
 
 #include "base/pictures/picture_read.hpp"
 #include "cli/run_program.hpp"
+#include "render/film/image_io.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;
