@@ -90,7 +90,8 @@ TEST(ImportSky, BadPicturesAreWarnings) {
 }
 
 TEST(ImportSky, DamagedSkiesAreRefused) {
-    Scene scene = *load_scene(source_file("scenes/spheres.scene"));
+    const Scratch folder;
+    Scene scene = *load_scene(folder.write("a.scene", "sphere\n"));
     ASSERT_EQ(validate(scene), "");
     scene.sky.values.kind = 9;
     EXPECT_NE(validate(scene), "");
