@@ -221,6 +221,7 @@ bool make_sound(rt_light& light, bool keep_units) {
         set_value(key, &light, to_floats({value[0] / size, value[1] / size, value[2] / size}));
     }
     if (row.complete) row.complete(light);
+    light.flags &= ~RT_LIGHT_STAND_IN;  // a light that somebody has set is one of the scene
     return std::isfinite(light.area) && (row.kind != RT_LIGHT_RECT || light.area > 0);
 }
 

@@ -46,6 +46,7 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
     view.background = {0.1f, 0.2f, 1.0f / 3.0f};
     view.ambient = {0, 0, 0};
     view.lights[0].position[1] = 7.7f;
+    view.lights[0].flags &= ~RT_LIGHT_STAND_IN;  // as whatever sets a light does
     view.lights.push_back(whitted_light(RT_LIGHT_DIRECTIONAL, {0, 0.6f, 0.8f}, {1, 2, 3}));
     edited.lights_on = {true, false, true};
     for (const Material& material : scene.materials) view.materials.push_back(material.values);
