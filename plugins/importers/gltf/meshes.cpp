@@ -119,6 +119,17 @@ std::shared_ptr<const DracoMesh> Meshes::draco_of(const Value& primitive) {
     return mesh;
 }
 
+namespace {
+
+// What Draco has compressed must fit to what it has not: an attribute may be in either.
+void expect_count(const Value& reference, uint64_t found, uint64_t count) {
+    if (count != kAnyCount && found != count)
+        reference.refuse(std::to_string(found) + " elements in what Draco has compressed",
+                         std::to_string(count) + " as in POSITION");
+}
+
+}  // namespace
+
 Elements<float> Meshes::floats(const Part& part, const std::string& attribute, std::string_view types, uint64_t count) {
     const Value reference = part.primitive["attributes"][attribute.c_str()];
     if (!part.draco) return accessors_.floats(reference, types, count);
@@ -128,6 +139,7 @@ Elements<float> Meshes::floats(const Part& part, const std::string& attribute, s
     Elements<float> out;
     out.components = form.components;
     out.count = part.draco->vertex_count();
+    expect_count(reference, out.count, count);
     out.values = part.draco->floats(ids[attribute.c_str()], form.components, form.is_normalized, form.component_type);
     return out;
 }
@@ -140,6 +152,7 @@ Elements<uint32_t> Meshes::integers(const Part& part, const std::string& attribu
     Elements<uint32_t> out;
     out.components = accessors_.form(reference, types, true).components;
     out.count = part.draco->vertex_count();
+    expect_count(reference, out.count, count);
     out.values = part.draco->integers(ids[attribute.c_str()], out.components);
     return out;
 }

@@ -448,6 +448,23 @@ TEST_F(Draco, TakesPlainDataWhereItIsBroken) {
     EXPECT_NE(scene.warnings[0].find("bytes that Draco cannot decode"), std::string::npos) << scene.warnings[0];
 }
 
+// Positions need not be compressed. Where they are more than what is, the rest was read past its end.
+TEST_F(Draco, LeavesOutWhatDoesNotFitPlainPositions) {
+    const Sheet sheet(4);
+    Model model = with_draco(sheet, DracoSheet(sheet));
+    model.primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"].erase("POSITION");
+    std::vector<float> positions = sheet.positions;
+    model.positions(positions);
+    EXPECT_TRUE(import(model).warnings.empty());
+    positions.insert(positions.end(), 3000, 0.5f);
+    model.positions(positions);
+    const Scene scene = import(model);
+    EXPECT_EQ(scene.vertex_count(), sheet.vertex_count() + 1000);
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    for (size_t i : {0, 1})
+        EXPECT_NE(scene.warnings[i].find("in what Draco has compressed, expected "), std::string::npos) << scene.warnings[i];
+}
+
 TEST_F(Draco, RefusesWhatIsWrong) {
     const Sheet sheet(4);
     const DracoSheet draco(sheet);

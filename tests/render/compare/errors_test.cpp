@@ -143,8 +143,8 @@ TEST(ReadPicture, SaysWhatIsWrong) {
         const std::string text = said(bytes);
         EXPECT_NE(text.find(words), std::string::npos) << text;
     };
-    says("", "none of PNG, EXR and PFM");
-    says("GIF89a", "none of PNG, EXR and PFM");
+    says("", "none of PNG, EXR, HDR and PFM");
+    says("GIF89a", "none of PNG, EXR, HDR and PFM");
     says("PF\n4 4\n-1.0\nshort", "cut off");
     says("PF\n4\n", "head");
     says("PF\n-4 4\n-1.0\n", "size");
