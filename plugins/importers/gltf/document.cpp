@@ -53,7 +53,10 @@ std::string in_our_words(const std::string& message) {
     for (const char c : message.substr(dash != message.npos ? dash + 3 : name != message.npos ? name + 2 : 0))
         out += c >= ' ' && c <= '~' ? c : '?';
     if (out.compare(0, 11, "unexpected ") == 0) out.erase(0, 11);
-    const size_t expected = out.rfind("; expected ");
+    size_t expected = out.rfind("; expected ");
+    // What was read may hold these words itself: those of the parser follow its closing quote.
+    const size_t read = out.find("; last read: '");
+    if (expected != out.npos && expected > read && out[expected - 1] != '\'') expected = out.npos;
     const std::string rest = expected == out.npos ? ", expected JSON" : ", " + out.substr(expected + 2);
     out.resize(std::min(expected, out.size()));
     if (out.size() > 120) out = out.substr(0, 120) + (out.back() == '\'' ? "...'" : "...");  // what was read ends with a quote

@@ -191,6 +191,7 @@ TEST_F(Gltf, NamesTheLineOfBrokenJson) {
     expect_refused("{\"asset\": {\"version\": 2.}}", "found invalid number, expected digit after '.'; last read: '2.}'");
     expect_refused("{\"asset\": {\"version\": \"2.0", "found invalid string: missing closing quote; last read: '\"2.0'");
     expect_refused("{\"asset\": {\"version\": \"" + std::string(200, '2'), "2222...', expected JSON");
+    expect_refused("{\"asset\": {\"version\": \"2; expected 3", "last read: '\"2; expected 3', expected JSON");
     expect_refused("{\"asset\": {\"version\": \"" + std::string(100000, 'x'), "...");
     expect_refused("{\"asset\": \"\xC3\x28\"}", "ill-formed UTF-8");
     expect_refused("{\"asset\":\n[1e999]}", "line 2, column 2 (byte 11): found '1e999', expected a number");
