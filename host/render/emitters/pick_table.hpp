@@ -1,5 +1,6 @@
 // pick_table.hpp -- a table by which a random number picks one of many things in proportion to their weights.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "rt_types.h"
