@@ -10,8 +10,8 @@ namespace clarity {
 // The most things that a table can pick from: each with a weight has one of the RT_PICKS numbers at least.
 constexpr size_t kMostPicked = RT_PICKS / 2;
 
-// Deals `total` numbers out in proportion to weights. Who has a weight gets one at least; there must be no more of these than
-// numbers. Nobody gets any if all weights are 0.
+// Deals `total` numbers out in proportion to weights. Each thing with a weight gets one at least; there must be no more of
+// these than numbers. If all weights are 0, none gets any.
 std::vector<rt_u32> deal(const std::vector<double>& weights, rt_u32 total);
 
 // Fills in threshold, alias and pick of the first weights.size() emitters, and appends cells until there are 2^bits, which it
