@@ -81,7 +81,7 @@ TEST_F(Panel, SamplesAccumulateWhileTheCameraRests) {
 TEST_F(Panel, RefusedValuesChangeNothing) {
     const auto window = open();
     const auto before = window->state();
-    EXPECT_NE(window->command("set depth 99"), "");
+    EXPECT_NE(window->command("set depth 999"), "");
     EXPECT_NE(window->command("set packet 3"), "");
     EXPECT_NE(window->command("accel nothing"), "");
     EXPECT_NE(window->command("accel bvh2,max_leaf=-4"), "");

@@ -67,7 +67,7 @@ TEST_F(Presets, AnInvalidPresetChangesNothing) {
         {start + R"(, "edits": [["exposure", "1"]]})", "edit"},
         {start + R"(, "edits": [["background", "1,0,0"], ["material.99.color", "1,0,0"]]})", "material.99"},
         {start + R"(, "edits": [["light.0", "off"], ["hide", "77"]]})", "hide"},
-        {R"({"clarity_preset": 1, "settings": {"depth": "99"}})", "depth"},
+        {R"({"clarity_preset": 1, "settings": {"depth": "999"}})", "depth"},
     };
     for (size_t i = 0; i < wrong.size(); ++i) {
         SCOPED_TRACE(wrong[i].first);

@@ -45,6 +45,11 @@ bool Statement::at_key() const {
     return false;
 }
 
+bool Statement::one_was_enough() const {
+    if (done()) return true;
+    return !tokens_[at_].is_quoted && parse_number(tokens_[at_].text).error == NumberError::not_a_number;
+}
+
 size_t Statement::key() {
     const Token& token = tokens_[at_++];
     const std::string keys = " (keys of " + std::string(word()) + ": " + listed(key_names()) + ")";
@@ -180,7 +185,7 @@ Vec3 Statement::direction(std::string_view what) {
 Vec3 Statement::color(std::string_view what, float most) {
     Vec3 c{};
     for (size_t i = 0; i < 3; ++i) {
-        if (i == 1 && (done() || at_key())) return {c[0], c[0], c[0]};
+        if (i == 1 && one_was_enough()) return {c[0], c[0], c[0]};
         c[i] = number(what, i, 3);
         if (c[i] < 0 || c[i] > most) {
             fail_at_last(in_quotes(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) +
@@ -193,7 +198,7 @@ Vec3 Statement::color(std::string_view what, float most) {
 Vec3 Statement::scale(std::string_view what) {
     Vec3 s{};
     for (size_t i = 0; i < 3; ++i) {
-        if (i == 1 && (done() || at_key())) return {s[0], s[0], s[0]};
+        if (i == 1 && one_was_enough()) return {s[0], s[0], s[0]};
         s[i] = number(what, i, 3);
         if (s[i] == 0) fail_at_last("zero flattens the object; expected another number for " + std::string(what));
     }

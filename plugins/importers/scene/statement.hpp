@@ -59,6 +59,8 @@ class Statement {
 
  private:
     const Token& take(const std::string& expected);
+    // Where 3 numbers may be one: whether what follows the first is no number. A key that nobody knows is then called so.
+    bool one_was_enough() const;
     void check_range(std::string_view what, float value, float least, float most) const;
     std::string text(std::string_view what, size_t most_bytes);
     std::vector<std::string_view> key_names() const;

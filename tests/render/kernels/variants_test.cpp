@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/log.hpp"
+#include "render/settings/aov.hpp"
 #include "render/tracers/inspect/inspect.hpp"
 #include "render/tracers/rays/ray_blocks.hpp"
 #include "support/generated.hpp"
@@ -139,7 +140,7 @@ TEST(Debug, AFullStackIsCountedForEveryAov) {
     EXPECT_GT(of_camera_rays, 0u);
     EXPECT_EQ(overflowed("t"), of_camera_rays) << "each picture starts at 0";
     for (const std::string& aov : find_setting("aov")->choices) {
-        const bool spawns = aov == "color" || aov == "generations";
+        const bool spawns = find_aov(aov).adds_samples() || aov == "generations";
         if (spawns)
             EXPECT_GE(overflowed(aov), of_camera_rays) << aov;
         else
