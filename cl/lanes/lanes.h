@@ -115,6 +115,35 @@ RT_INLINE uint rt_bits4(int4 m)
 #define rt_lowest(bits) popcount(~(bits) & ((bits)-1u)) /* the index of the lowest set bit */
 #define RT_ALL_LANES ((1u << RT_LANES) - 1u)
 
+/* The lanes that hold the same number are handled together:
+ *     int id;
+ *     vmask mine;
+ *     for (rt_groups g = rt_group_lanes(numbers, bits); rt_next_group(&g, &id, &mine);) ...
+ * takes every number of the lanes in `bits` once. mine: all lanes that hold it, also those outside of `bits`. */
+typedef struct rt_groups {
+    vint numbers;
+    int of[RT_LANES];
+    uint left;
+} rt_groups;
+
+RT_INLINE rt_groups rt_group_lanes(vint numbers, uint bits)
+{
+    rt_groups g;
+    g.numbers = numbers;
+    rt_store(numbers, g.of);
+    g.left = bits;
+    return g;
+}
+
+RT_INLINE bool rt_next_group(rt_groups *g, int *id, vmask *mine)
+{
+    if (g->left == 0u) return false;
+    *id = g->of[rt_lowest(g->left)];
+    *mine = RT_MASK(g->numbers == rt_vint(*id));
+    g->left &= ~rt_bits(*mine);
+    return true;
+}
+
 /* Minimum and maximum in one instruction each. On a CPU fmin and fmax take three, since they must look for NaN. On a GPU they
  * take one, but a comparison and a selection take two, which costs an eighth of the time of all rays. */
 #if RT_CPU

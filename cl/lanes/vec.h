@@ -24,6 +24,10 @@ RT_INLINE rt_vec rt_scale(vfloat s, rt_vec a) { return rt_vec_of(s * a.x, s * a.
 /* s a + b */
 RT_INLINE rt_vec rt_along(vfloat s, rt_vec a, rt_vec b) { return rt_vec_of(fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)); }
 RT_INLINE vfloat rt_dot(rt_vec a, rt_vec b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+RT_INLINE rt_vec rt_cross(rt_vec a, rt_vec b)
+{
+    return rt_vec_of(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
+}
 RT_INLINE rt_vec rt_choose(vmask m, rt_vec a, rt_vec b)
 {
     return rt_vec_of(rt_select(m, a.x, b.x), rt_select(m, a.y, b.y), rt_select(m, a.z, b.z));

@@ -28,11 +28,6 @@ typedef struct rt_shape_point {
     int wants_uv;
 } rt_shape_point;
 
-RT_INLINE rt_vec rt_cross(rt_vec a, rt_vec b)
-{
-    return rt_vec_of(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
-}
-
 /* A direction's angle from the x axis to the y axis, in turns, 0 to 1. Lanes are computed one by one, because a library's vector
  * functions need not agree with its scalar ones. */
 RT_INLINE vfloat rt_turns(vfloat x, vfloat y)

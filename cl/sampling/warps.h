@@ -45,7 +45,7 @@ RT_INLINE void rt_warp_triangle(vfloat u1, vfloat u2, vfloat *second, vfloat *th
     *third = root * u2;
 }
 
-/* A direction of the cone about z whose half angle has 1 - cosine = height; density 1 / (2 pi height). height 2: the sphere. Thin
+/* A direction within a cone about z; density 1 / (2 pi height). height: 1 - the cosine of the cone's half angle; 2 is the sphere. Thin
  * cones keep their digits because the cosine itself is not needed. */
 RT_INLINE rt_vec rt_warp_cone(vfloat u1, vfloat u2, vfloat height)
 {

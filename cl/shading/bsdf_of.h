@@ -11,13 +11,9 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
     out.diffuse = out.mirror = out.metal = out.glass = out.alpha = zero;
     out.eta = one;
     out.compensate = rt_vint(-1);
-    int material[RT_LANES];
-    rt_store(s->material, material);
-    uint left = bits;
-    while (left != 0u) {
-        const int id = material[rt_lowest(left)];
-        const vmask mine = RT_MASK(s->material == rt_vint(id));
-        left &= ~rt_bits(mine);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(s->material, bits); rt_next_group(&g, &id, &mine);) {
         const global rt_material *m = ctx->materials + id;
         float diffuse = 0.0f, mirror = 0.0f, metal = 0.0f, glass = 0.0f, alpha = 0.0f;
         if (m->model == RT_MODEL_LAMBERT) {

@@ -31,7 +31,7 @@ RT_INLINE void rt_hit_lights(const rt_ctx *ctx, const constant rt_frame *frame, 
                 meets &= RT_MASK(rt_dot(within, within) <= rt_vfloat(l->radius * l->radius));
             } else {
                 /* Coordinates along u and v, which need not be perpendicular: by the vectors across v and across u. */
-                const rt_vec u = rt_spread(l->u), v = rt_spread(l->v), across_u = rt_cross_vec(n, u), across_v = rt_cross_vec(v, n);
+                const rt_vec u = rt_spread(l->u), v = rt_spread(l->v), across_u = rt_cross(n, u), across_v = rt_cross(v, n);
                 meets &= RT_MASK(fabs(rt_dot(within, across_v)) <= fabs(rt_dot(u, across_v)));
                 meets &= RT_MASK(fabs(rt_dot(within, across_u)) <= fabs(rt_dot(v, across_u)));
             }
@@ -48,12 +48,10 @@ RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfl
     const vfloat zero = rt_vfloat(0.0f);
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
     *pdf = zero;
-    int numbers[RT_LANES];
-    rt_store(light, numbers);
-    for (uint left = rt_bits(lanes & RT_MASK(light >= rt_vint(0))); left != 0u;) {
-        const int i = numbers[rt_lowest(left)];
-        const vmask mine = lanes & RT_MASK(light == rt_vint(i));
-        left &= ~rt_bits(mine);
+    int i;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(light, rt_bits(lanes & RT_MASK(light >= rt_vint(0)))); rt_next_group(&g, &i, &mine);) {
+        mine &= lanes;
         const global rt_light *l = ctx->lights + i;
         vfloat density;
         if (l->kind == RT_LIGHT_SPHERE) {
@@ -61,7 +59,7 @@ RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfl
         } else {
             float u[3], v[3], n[3];
             for (int k = 0; k < 3; ++k) u[k] = l->u[k], v[k] = l->v[k];
-            rt_cross(u, v, n);
+            rt_cross_numbers(u, v, n);
             const float area = l->kind == RT_LIGHT_DISC ? RT_PI * l->radius * l->radius : 4.0f * sqrt(fma(n[0], n[0], fma(n[1], n[1], n[2] * n[2])));
             const vfloat cosine = fabs(rt_dot(rt_spread(l->normal), rt_vec_of(ray->dx, ray->dy, ray->dz)));
             density = rt_flat_density(t * t, rt_vfloat(area), rt_max(cosine, rt_vfloat(1e-20f)));
@@ -81,12 +79,10 @@ RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
     *pdf = zero;
     vmask emits = rt_vint(0);
-    int numbers[RT_LANES];
-    rt_store(surface->material, numbers);
-    for (uint left = rt_bits(lanes); left != 0u;) {
-        const int id = numbers[rt_lowest(left)];
-        vmask mine = lanes & RT_MASK(surface->material == rt_vint(id));
-        left &= ~rt_bits(mine);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(surface->material, rt_bits(lanes)); rt_next_group(&g, &id, &mine);) {
+        mine &= lanes;
         const global rt_material *m = ctx->materials + id;
         if (m->emission[0] <= 0.0f && m->emission[1] <= 0.0f && m->emission[2] <= 0.0f) continue;
         if (m->flags & RT_MATERIAL_ONE_SIDED) mine &= RT_MASK(facing > zero);
@@ -121,7 +117,7 @@ RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const
         if (RT_REF_KIND(leaf->ref) == RT_REF_TRIANGLE) {
             float p[3], u[3], v[3], n[3];
             rt_load_triangle(ctx, leaf, instance[l] < 0 ? RT_NONE : (uint)instance[l], p, u, v);
-            rt_cross(u, v, n);
+            rt_cross_numbers(u, v, n);
             size[l] = 0.5f * sqrt(fma(n[0], n[0], fma(n[1], n[1], n[2] * n[2])));
         }
     }

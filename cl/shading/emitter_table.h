@@ -34,7 +34,7 @@ enum { RT_LIT_P = 0, RT_LIT_U = 3, RT_LIT_V = 6, RT_LIT_COLOR = 9, RT_LIT_RADIUS
 #define RT_LIT(field) out[(field) * (int)RT_LANES]
 #define RT_LIT_3(field, x, y, z) RT_LIT(field) = (x), RT_LIT((field) + 1) = (y), RT_LIT((field) + 2) = (z)
 
-RT_INLINE void rt_cross(const float *a, const float *b, float *c)
+RT_INLINE void rt_cross_numbers(const float *a, const float *b, float *c)
 {
     c[0] = fma(a[1], b[2], -a[2] * b[1]);
     c[1] = fma(a[2], b[0], -a[0] * b[2]);
@@ -57,7 +57,7 @@ RT_INLINE void rt_load_triangle(const rt_ctx *ctx, const global rt_packed_prim *
     float rows[3][3], columns[3][3], moved[3], placed[3][3];
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) rows[i][k] = m[4 * i + k];
-    for (int i = 0; i < 3; ++i) rt_cross(rows[(i + 1) % 3], rows[(i + 2) % 3], columns[i]);
+    for (int i = 0; i < 3; ++i) rt_cross_numbers(rows[(i + 1) % 3], rows[(i + 2) % 3], columns[i]);
     const float determinant = fma(rows[0][0], columns[0][0], fma(rows[0][1], columns[0][1], rows[0][2] * columns[0][2]));
     for (int i = 0; i < 3; ++i) moved[i] = p[i] - m[4 * i + 3];
     for (int k = 0; k < 3; ++k) {
@@ -85,7 +85,7 @@ RT_INLINE void rt_load_polygon(const rt_ctx *ctx, const global rt_packed_prim *l
     for (int k = 0; k < 3; ++k) p[k] = corners[k], v[k] = corners[3 + k] - p[k];
     for (uint c = 2; c < polygon.count; ++c) {
         for (int k = 0; k < 3; ++k) u[k] = v[k], v[k] = corners[3 * c + k] - p[k];
-        rt_cross(u, v, n);
+        rt_cross_numbers(u, v, n);
         const float part = 0.5f * sqrt(fma(n[0], n[0], fma(n[1], n[1], n[2] * n[2])));
         if (left < part || c + 1 == polygon.count) {
             *u1 = part > 0.0f ? min(left / part, 0.99999994f) : 0.0f;

@@ -35,14 +35,7 @@ RT_INLINE vfloat rt_sun_sin2(vfloat radius, vfloat cosine)
 }
 /* 1 - cos of an angle, given its squared sine; angles up to a right one. */
 RT_INLINE vfloat rt_versine(vfloat sin2) { return sin2 / (rt_vfloat(1.0f) + sqrt(rt_max(rt_vfloat(1.0f) - sin2, rt_vfloat(0.0f)))); }
-RT_INLINE vfloat rt_cone_angle(vfloat versine)
-{
-#ifdef RT_FAULT_9 /* half of the solid angle */
-    return rt_vfloat(RT_PI) * versine;
-#else
-    return rt_vfloat(2.0f * RT_PI) * versine;
-#endif
-}
+RT_INLINE vfloat rt_cone_angle(vfloat versine) { return rt_vfloat(2.0f * RT_PI) * versine; }
 
 /* A direction whose cosine to the unit vector `axis` is 1 - height at least. */
 RT_INLINE rt_vec rt_in_cone(rt_vec axis, vfloat u1, vfloat u2, vfloat height)
@@ -92,12 +85,6 @@ RT_INLINE vfloat rt_draw_sphere(rt_vec to, vfloat radius, vfloat u1, vfloat u2, 
 /* The density per solid angle of a point that is drawn uniformly from an area. cosine: of the angle at the light. */
 RT_INLINE vfloat rt_flat_density(vfloat distance2, vfloat area, vfloat cosine)
 {
-#ifdef RT_FAULT_5 /* light pdf without distance^2 */
-    distance2 = rt_vfloat(1.0f);
-#endif
-#ifdef RT_FAULT_6 /* light pdf without cosine */
-    cosine = rt_vfloat(1.0f);
-#endif
     return distance2 / (area * cosine);
 }
 
@@ -106,11 +93,6 @@ RT_INLINE vfloat rt_flat_factor(vint kind)
 {
     return rt_select(RT_MASK(kind == rt_vint((int)RT_LIGHT_RECT)), rt_vfloat(4.0f),
                      rt_select(RT_MASK(kind == rt_vint((int)RT_LIGHT_DISC)), rt_vfloat(RT_PI), rt_vfloat(0.5f)));
-}
-
-RT_INLINE rt_vec rt_cross_vec(rt_vec a, rt_vec b)
-{
-    return rt_vec_of(fma(a.y, b.z, -a.z * b.y), fma(a.z, b.x, -a.x * b.z), fma(a.x, b.y, -a.y * b.x));
 }
 
 /* Draws a point of a rect, a disc or a triangle. *to: from the point `at` to it. *density: without the pick. Returns the lanes that it
@@ -129,7 +111,7 @@ RT_INLINE vmask rt_draw_flat(const rt_lit *lit, rt_vec at, vfloat u1, vfloat u2,
         s = rt_select(disc, x, s);
         t = rt_select(disc, y, t);
     }
-    const rt_vec n = rt_cross_vec(lit->u, lit->v);
+    const rt_vec n = rt_cross(lit->u, lit->v);
     const vfloat size2 = rt_dot(n, n), size = sqrt(size2);
     *to = rt_add(rt_sub(lit->p, at), rt_along(s, lit->u, rt_scale(t, lit->v)));
     const vfloat d2 = rt_dot(*to, *to), facing = -rt_dot(n, *to);

@@ -119,13 +119,9 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
     out.color = out.emission = out.specular = rt_splat(0.0f, 0.0f, 0.0f);
     out.reflect = out.refract = rt_vfloat(0.0f);
     out.shininess = out.ior = rt_vfloat(1.0f);
-    int material[RT_LANES];
-    rt_store(s->material, material);
-    uint left = bits;
-    while (left != 0u) {
-        const int id = material[rt_lowest(left)];
-        const vmask mine = RT_MASK(s->material == rt_vint(id));
-        left &= ~rt_bits(mine);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(s->material, bits); rt_next_group(&g, &id, &mine);) {
         const global rt_material *m = ctx->materials + id;
         out.color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out.color);
         out.emission = rt_choose(mine, rt_spread(m->emission), out.emission);

@@ -26,9 +26,6 @@ RT_INLINE float rt_sky_share(const global uint *sums, uint width, uint height, u
 
 RT_INLINE vfloat rt_sky_density_of_place(vfloat share, vfloat sine)
 {
-#ifdef RT_FAULT_10 /* sine of theta missing */
-    sine = rt_vfloat(1.0f);
-#endif
     return share / (rt_vfloat(2.0f * RT_PI * RT_PI) * rt_max(sine, rt_vfloat(1e-9f)));
 }
 
@@ -38,11 +35,7 @@ RT_INLINE rt_vec rt_sky_picture(const rt_ctx *ctx, rt_vec direction, vmask lanes
     const int w = (int)sky->sky_width, h = (int)sky->sky_height;
     vfloat u, v, sine;
     rt_sky_place(sky, direction, &u, &v, &sine);
-#ifdef RT_FAULT_11 /* half a texel to the side */
-    const vfloat x = u * rt_vfloat((float)w), y = fma(v, rt_vfloat((float)h), rt_vfloat(-0.5f));
-#else
     const vfloat x = fma(u, rt_vfloat((float)w), rt_vfloat(-0.5f)), y = fma(v, rt_vfloat((float)h), rt_vfloat(-0.5f));
-#endif
     const vfloat left = floor(x), above = floor(y);
     int column[RT_LANES], row[RT_LANES], cell_column[RT_LANES], cell_row[RT_LANES];
     float fx[RT_LANES], fy[RT_LANES], share[RT_LANES], red[RT_LANES], green[RT_LANES], blue[RT_LANES];

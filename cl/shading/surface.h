@@ -146,12 +146,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.area = sqrt(rt_dot(s.geometric, s.geometric)) * rt_as_vfloat(exponent);
 #endif
 
-    int leaf_at[RT_LANES];
-    rt_store(hit->leaf, leaf_at);
-    for (uint left = bits & rt_bits(RT_MASK(hit->leaf != rt_vint(-1))); left != 0u;) {
-        const int at = leaf_at[rt_lowest(left)];
-        const vmask mine = RT_MASK(hit->leaf == rt_vint(at));
-        left &= ~rt_bits(mine);
+    int at;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(hit->leaf, bits & rt_bits(RT_MASK(hit->leaf != rt_vint(-1)))); rt_next_group(&g, &at, &mine);) {
 #if RT_HAS_PLANES
         if (at < -1) {
             s.material = rt_select(mine, rt_vint((int)ctx->planes[-2 - at].material), s.material);
@@ -271,12 +268,8 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 
 #if RT_HAS_INSTANCES
-    int instance_at[RT_LANES];
-    rt_store(hit->instance, instance_at);
-    for (uint left = bits & rt_bits(s.hit & RT_MASK(hit->instance >= rt_vint(0))); left != 0u;) {
-        const int at = instance_at[rt_lowest(left)];
-        const vmask mine = RT_MASK(hit->instance == rt_vint(at));
-        left &= ~rt_bits(mine);
+    const uint instanced = bits & rt_bits(s.hit & RT_MASK(hit->instance >= rt_vint(0)));
+    for (rt_groups g = rt_group_lanes(hit->instance, instanced); rt_next_group(&g, &at, &mine);) {
         const global rt_instance *instance = ctx->instances + at;
         if (instance->material != RT_NONE) s.material = rt_select(mine, rt_vint((int)instance->material), s.material);
         /* In object space, in which the ray was traced, `anchor` and the hit's normal are exact. */

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include "device/kernel_files.hpp"
 #include "images/path_checks.hpp"
-#include "support/scratch.hpp"
+#include "support/planted_faults.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -34,15 +33,7 @@ class PathFaults : public testing::TestWithParam<Fault> {};
 
 TEST_P(PathFaults, IsFound) {
     const Fault& fault = GetParam();
-    std::string text = kernel_text(fault.file);
-    const size_t at = text.find(fault.sound);
-    ASSERT_NE(at, std::string::npos) << fault.file << " has no `" << fault.sound << "`";
-    ASSERT_EQ(text.find(fault.sound, at + 1), std::string::npos) << "several places";
-    text.replace(at, std::string(fault.sound).size(), fault.faulty);
-    Scratch scratch;
-    Environment environment;
-    scratch.write(std::string("cl/") + fault.file, text);
-    environment.set("CLARITY_KERNEL_PATH", scratch.path("cl"));
+    const FaultyKernel planted(fault.file, fault.sound, fault.faulty);
     const std::vector<std::string> problems = path_problems(1);
     EXPECT_NE(std::find(problems.begin(), problems.end(), fault.found_as), problems.end())
         << "found: " << testing::PrintToString(problems);

@@ -2,9 +2,11 @@
 // structure and the number of samples in a call.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "images/path_checks.hpp"
+#include "support/scenes.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -128,6 +130,22 @@ TEST_F(PathIndependence, GoesOnFromItsSums) {
     second.write_sums(*prepared, s, sums);
     second.trace(*prepared, s, view_, Samples(2, kSamples - 2), false, progress);
     EXPECT_EQ(differing_values(whole, second.read_values()), 0u);
+}
+
+// Scenes with shapes of plugins, polygons, textures and instances. Of each, all that is compiled fits together.
+TEST(PathScenes, AllAreTraced) {
+    for (const char* name : {"scenes/shapes.scene", "scenes/primitives.scene", "scenes/showpiece.scene"}) {
+        const ScenePtr scene = load_scene(source_file(name));
+        const Settings s = make_settings({{"tracer", "path"}, {"size", "48x36"}, {"depth", "4"}, {"accel", "bvh4"}});
+        Workbench& bench = Workbench::get();
+        Progress progress;
+        bench.frames().trace(*bench.prepare(scene, s), s, make_view(*scene, 4.0f / 3), Samples(0, 4), false, progress);
+        double sum = 0;
+        size_t lit = 0;
+        for (const float value : bench.frames().read_values().pixels) sum += value, lit += value > 0;
+        EXPECT_TRUE(std::isfinite(sum)) << name;
+        EXPECT_GT(lit, size_t(48 * 36 * 3 / 2)) << name << ": most of it is lit, or shows the background";
+    }
 }
 
 // Lanes and devices may differ in last bits, which change where a path goes; the mean stays.

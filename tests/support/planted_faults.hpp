@@ -1,6 +1,8 @@
 // planted_faults.hpp -- faults in the kernels on purpose: tests must find them.
 #pragma once
 #include <cstdio>
+#include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #include <sys/wait.h>
@@ -10,24 +12,36 @@
 
 namespace clarity::test {
 
+// While it lives, kernels that this process and its children read have another text in one place of a file of cl/. Throws
+// std::logic_error unless the file has `from` once.
+class FaultyKernel {
+ public:
+    FaultyKernel(const std::string& file, const std::string& from, const std::string& to) {
+        std::string text = kernel_text(file);
+        const size_t at = text.find(from);
+        if (at == std::string::npos) throw std::logic_error(file + " has no longer the text " + from);
+        if (text.find(from, at + 1) != std::string::npos)
+            throw std::logic_error(file + " has the text more than once: " + from);
+        folder_.write("cl/" + file, text.replace(at, from.size(), to));
+        environment_.set("CLARITY_KERNEL_PATH", folder_.path("cl"));
+    }
+
+ private:
+    Scratch folder_;
+    Environment environment_;
+};
+
 struct PlantedFault {
-    std::string name, file, from, to;  // one place of a file of cl/
+    std::string name, file, from, to;  // as of FaultyKernel
     std::string tests;                 // a filter: what may find it
 };
 
 // Runs tests of this very executable with the fault in the kernels, in a process of its own. Returns "" if one of them failed
 // by its expectations; else why the fault counts as not found.
 inline std::string why_not_found(const PlantedFault& fault) {
-    std::string text = kernel_text(fault.file);
-    const size_t at = text.find(fault.from);
-    if (at == std::string::npos) return fault.file + " has no longer the text " + fault.from;
-    if (text.find(fault.from, at + 1) != std::string::npos) return fault.file + " has the text more than once: " + fault.from;
-    text.replace(at, fault.from.size(), fault.to);
-    const Scratch scratch;
-    scratch.write("cl/" + fault.file, text);
-    const std::string command = "CLARITY_KERNEL_PATH='" + scratch.path("cl") + "' '" +
-                                std::filesystem::read_symlink("/proc/self/exe").string() + "' --gtest_filter='" + fault.tests +
-                                "' 2>&1";
+    const FaultyKernel planted(fault.file, fault.from, fault.to);
+    const std::string command =
+        "'" + std::filesystem::read_symlink("/proc/self/exe").string() + "' --gtest_filter='" + fault.tests + "' 2>&1";
     std::string output;
     FILE* const pipe = popen(command.c_str(), "r");
     if (!pipe) return "cannot run " + command;

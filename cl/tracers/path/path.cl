@@ -3,8 +3,8 @@
  * A lane whose path has ended takes the next pixel of the packet (state.h), so that all lanes have work until few pixels are
  * left. There is no queue of rays. A work-item of one lane does the same with the samples of its pixel. */
 
-/* film: two planes, see sum.h. counters: shadow rays, rays after the camera's, samples that were not finite and full stacks of
- * each packet. distances: those of sample 0's camera rays, as in iterative.cl. */
+/* film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's, 0 dropped rays, and full stacks.
+ * distances: those of sample 0's camera rays, as in iterative.cl. */
 RT_PICTURE_KERNEL
 trace_path(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters, global float *distances,
            RT_CTX_PARAMS)
@@ -15,7 +15,7 @@ trace_path(const constant rt_frame *frame, const uint first_group, global float4
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
-        rt_tally tally = {0, 0, 0, 0};
+        rt_tally tally = {0, 0, 0};
         rt_path paths = rt_no_paths(frame);
         for (uint next = 0;;) {
             rt_refill(frame, origin, &paths, &next);
@@ -24,6 +24,6 @@ trace_path(const constant rt_frame *frame, const uint first_group, global float4
             rt_end_paths(frame, &paths, rt_bits(paths.alive & ~on), film);
             paths.alive = on;
         }
-        counters[number] = (uint4)(tally.shadow, tally.secondary, tally.dropped, tally.overflow);
+        counters[number] = (uint4)(tally.shadow, tally.secondary, 0u, tally.overflow);
     }
 }

@@ -5,9 +5,9 @@
 #ifndef RT_PATH_SCATTER_H
 #define RT_PATH_SCATTER_H
 
-/* Numbers of a work-item's rays: shadow rays, rays after the camera's, samples that were not finite, and full traversal stacks. */
+/* Numbers of a work-item's rays: shadow rays, rays after the camera's, and full traversal stacks. */
 typedef struct rt_tally {
-    uint shadow, secondary, dropped, overflow;
+    uint shadow, secondary, overflow;
 } rt_tally;
 
 /* Where a path meets a surface, and how the surface scatters there. */
@@ -21,7 +21,7 @@ typedef struct rt_meeting {
 /* Paths of fewer events than this end by roulette nowhere. */
 #define RT_ROULETTE_EVENT 3
 
-/* The weight of what a strategy has found whose density is `mine`, where the other one had `other`. */
+/* The weight of light that two strategies find. mine, other: the densities with which this one and the other one do. */
 RT_INLINE vfloat rt_mis_weight(const constant rt_frame *frame, vfloat mine, vfloat other)
 {
     vfloat ratio = other / mine;
@@ -80,14 +80,12 @@ RT_INLINE rt_vec rt_passed(const rt_path *p, vfloat distance)
 RT_INLINE vmask rt_in_medium(const rt_path *p) { return RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)); }
 
 /* The medium of paths that go through a surface: that of the material inside, nothing outside. */
-RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, uint bits)
+RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, vmask lanes)
 {
-    int material[RT_LANES];
-    rt_store(surface->material, material);
-    for (uint left = bits; left != 0u;) {
-        const int id = material[rt_lowest(left)];
-        const vmask mine = rt_mask_of_bits(bits) & RT_MASK(surface->material == rt_vint(id));
-        left &= ~rt_bits(mine);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(surface->material, rt_bits(lanes)); rt_next_group(&g, &id, &mine);) {
+        mine &= lanes;
         const rt_vec inside = rt_choose(entering, rt_spread(ctx->materials[id].absorption), rt_splat(0.0f, 0.0f, 0.0f));
         p->absorption = rt_choose(mine, inside, p->absorption);
     }
@@ -160,8 +158,7 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     p->pdf = rt_select(on, s.pdf, p->pdf);
     p->sharp = rt_select(on, s.delta, p->sharp);
     p->scale = rt_select(on, scale, p->scale);
-    const uint through = rt_bits(on & s.transmitted);
-    if (through != 0u) rt_change_medium(ctx, p, surface, ~point->leaving, through);
+    rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted);
     p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
     p->event += rt_vint(1);
 #ifdef RT_SPLITS_INCOHERENT

@@ -182,7 +182,7 @@ TEST(Lights, NothingIsInfiniteNearLights) {
 
 // Where a device has put the leaves in another order, surfaces are found by rays alone.
 TEST(Lights, SurfacesOfUnknownLeavesAreNotDrawn) {
-    LightBench bench(full_scene(), full_view(), 8, {}, false);
+    LightBench bench(full_scene(), full_view(), 8, false);
     for (const LightDraw& draw : bench.draw({0.1f, 0.05f, -0.2f}, even_numbers(4096, 1))) ASSERT_NE(draw.number, 0x40000000);
     size_t found = 0;
     for (const LightDraw& ray : bench.find({0.1f, 0.05f, -0.2f}, even_numbers(4096, 1))) {

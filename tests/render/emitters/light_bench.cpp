@@ -81,18 +81,18 @@ try_lights(const constant rt_frame *frame, const uint count, const uint draws, c
 }
 )";
 
-const KernelRow& row_with(const std::vector<std::string>& defines) {
-    static std::vector<std::unique_ptr<KernelRow>> rows;  // programs keep references
-    rows.push_back(std::make_unique<KernelRow>());
-    KernelRow& row = *rows.back();
-    row.tracer = "rays";
-    row.what = "light test";
-    row.file = emitter_headers().back();
-    row.entry = "try_lights";
-    row.headers = {"sampling/math.h", "sampling/warps.h"};
-    row.headers.insert(row.headers.end(), emitter_headers().begin(), emitter_headers().end() - 1);
-    row.defines = defines;
-    row.traits = kPicksLights;
+const KernelRow& kernel_row() {
+    static const KernelRow row = [] {
+        KernelRow r;
+        r.tracer = "rays";
+        r.what = "light test";
+        r.file = emitter_headers().back();
+        r.entry = "try_lights";
+        r.headers = {"sampling/math.h", "sampling/warps.h"};
+        r.headers.insert(r.headers.end(), emitter_headers().begin(), emitter_headers().end() - 1);
+        r.traits = kPicksLights;
+        return r;
+    }();
     return row;
 }
 
@@ -155,9 +155,7 @@ struct LightBench::Impl {
     ViewBuffers buffers;
 };
 
-LightBench::LightBench(const Scene& scene, const View& view, int lanes, const std::vector<std::string>& defines,
-                       bool knows_leaves)
-    : impl_(std::make_unique<Impl>()) {
+LightBench::LightBench(const Scene& scene, const View& view, int lanes, bool knows_leaves) : impl_(std::make_unique<Impl>()) {
     Impl& im = *impl_;
     im.scene = shared_scene(with_all_kinds(scene));
     im.view = view;
@@ -168,7 +166,7 @@ LightBench::LightBench(const Scene& scene, const View& view, int lanes, const st
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
     auto accel = std::make_shared<AccelData>(build_accel(*im.scene, plugin, default_parameters(plugin), progress));
     im.prepared = prepare_queries(*im.device, im.scene, std::move(accel), settings, progress);
-    KernelSource source = kernel_for(*im.prepared, row_with(defines));
+    KernelSource source = kernel_for(*im.prepared, kernel_row());
     source.text += kKernel;
     source.declarations = kKernel;
     static ProgramCache programs(im.device);

@@ -30,9 +30,8 @@ Numbers random_numbers(size_t count, unsigned seed);
 
 class LightBench {
  public:
-    // defines: for the kernel, as "RT_FAULT_5". knows_leaves: see make_emitter_table().
-    LightBench(const Scene& scene, const View& view, int lanes = 8, const std::vector<std::string>& defines = {},
-               bool knows_leaves = true);
+    // knows_leaves: see make_emitter_table().
+    LightBench(const Scene& scene, const View& view, int lanes = 8, bool knows_leaves = true);
     ~LightBench();
     // Draws lights from a point.
     std::vector<LightDraw> draw(const Point& at, const Numbers& numbers);
