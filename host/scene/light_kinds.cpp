@@ -72,22 +72,62 @@ void complete_sun(rt_light& light) {
     light.radius = static_cast<float>(sine);
     light.area = static_cast<float>(kPi * sine * sine);
 }
+// Areas of all sides that emit.
+double area_of_rect(const rt_light& light) {
+    return 4 * length(cross(to_vec(light.u), to_vec(light.v))) * sides(light);
+}
+double area_of_disc(const rt_light& light) {
+    return kPi * light.radius * double(light.radius) * sides(light);
+}
+double area_of_sphere(const rt_light& light) {
+    return 4 * kPi * light.radius * double(light.radius);
+}
 void complete_rect(rt_light& light) {
     const Vec n = cross(to_vec(light.u), to_vec(light.v));
     const double size = length(n);
     for (int k = 0; k < 3; ++k) light.normal[k] = size > 0 ? static_cast<float>(n[k] / size) : 0;
-    light.area = static_cast<float>(4 * size * sides(light));
+    light.area = static_cast<float>(area_of_rect(light));
 }
 void complete_disc(rt_light& light) {
-    light.area = static_cast<float>(kPi * light.radius * double(light.radius) * sides(light));
+    light.area = static_cast<float>(area_of_disc(light));
 }
 void complete_sphere(rt_light& light) {
-    light.area = static_cast<float>(4 * kPi * light.radius * double(light.radius));
+    light.area = static_cast<float>(area_of_sphere(light));
 }
 
-LightKind kind(rt_u32 number, const char* name, const char* label, const char* help, std::vector<Key> keys) {
+// Powers: see LightKind::power. Without falloff a colour is an irradiance divided by pi, at any distance.
+double cross_section(double radius) {
+    return kPi * radius * radius;
+}
+bool fades(const rt_light& light) {
+    return (light.flags & RT_LIGHT_FALLOFF) != 0;
+}
+double power_of_point(const rt_light& light, double radius) {
+    return fades(light) ? 4 * kPi : kPi * cross_section(radius);
+}
+double power_of_spot(const rt_light& light, double radius) {
+    return fades(light) ? 2 * kPi * (1 - 0.5 * (double(light.cos_inner) + light.cos_outer)) : kPi * cross_section(radius);
+}
+double power_of_directional(const rt_light& light, double radius) {
+    return (fades(light) ? 1 : kPi) * cross_section(radius);
+}
+double power_of_sun(const rt_light&, double radius) {
+    return cross_section(radius);
+}
+double power_of_rect(const rt_light& light, double) {
+    return kPi * area_of_rect(light);
+}
+double power_of_disc(const rt_light& light, double) {
+    return kPi * area_of_disc(light);
+}
+double power_of_sphere(const rt_light& light, double) {
+    return kPi * area_of_sphere(light);
+}
+
+LightKind kind(rt_u32 number, const char* name, const char* label, const char* help, double (*power)(const rt_light&, double),
+               std::vector<Key> keys) {
     LightKind row;
-    row.kind = number, row.name = name, row.label = label, row.help = help, row.keys = std::move(keys);
+    row.kind = number, row.name = name, row.label = label, row.help = help, row.power = power, row.keys = std::move(keys);
     return row;
 }
 LightKind far_away(LightKind row) {
@@ -119,27 +159,29 @@ std::vector<LightKind> make_kinds() {
     Key legacy = towards;
     legacy.reversed_in_edits = true;
     return {
-        kind(RT_LIGHT_POINT, "point", "lamp", "a point", {place_key("position", "where it is"), color, falloff_key()}),
-        far_away(kind(RT_LIGHT_DIRECTIONAL, "directional", "directional", "parallel light", {legacy, color})),
-        completed(kind(RT_LIGHT_SPOT, "spot", "spot", "a point with a cone",
+        kind(RT_LIGHT_POINT, "point", "lamp", "a point", power_of_point,
+             {place_key("position", "where it is"), color, falloff_key()}),
+        far_away(
+            kind(RT_LIGHT_DIRECTIONAL, "directional", "directional", "parallel light", power_of_directional, {legacy, color})),
+        completed(kind(RT_LIGHT_SPOT, "spot", "spot", "a point with a cone", power_of_spot,
                        {place_key("position", "where it is"), into, color,
                         angle_key("angle", angle, 180, 60, "degrees", "of the whole cone; beyond it there is no light"),
                         angle_key("inner", inner, 180, 45, "degrees", "of the cone within which it has its full intensity"),
                         falloff_key()}),
                   complete_spot),
-        completed(far_away(kind(RT_LIGHT_SUN, "sun", "sun", "a disc in the sky",
+        completed(far_away(kind(RT_LIGHT_SUN, "sun", "sun", "a disc in the sky", power_of_sun,
                                 {towards, irradiance, alias(light_color("color", "Irradiance", "another name of `irradiance`")),
                                  angle_key("angle", angle, 180, 0.53f, "degrees", "across; that of the sun is 0.53")})),
                   complete_sun),
-        completed(with_size(kind(RT_LIGHT_RECT, "rect", "rectangle", "a parallelogram that shines",
+        completed(with_size(kind(RT_LIGHT_RECT, "rect", "rectangle", "a parallelogram that shines", power_of_rect,
                                  {place_key("center", "its middle"), edge_key("u", offsetof(L, u), {1, 0, 0}),
                                   edge_key("v", offsetof(L, v), {0, 0, 1}), radiance, two_sided_key()})),
                   complete_rect),
         completed(with_size(kind(
-                      RT_LIGHT_DISC, "disc", "disc", "a disc that shines",
+                      RT_LIGHT_DISC, "disc", "disc", "a disc that shines", power_of_disc,
                       {place_key("center", "its middle"), normal, length_key("radius", radius), radiance, two_sided_key()})),
                   complete_disc),
-        completed(with_size(kind(RT_LIGHT_SPHERE, "sphere", "sphere", "a ball that shines",
+        completed(with_size(kind(RT_LIGHT_SPHERE, "sphere", "sphere", "a ball that shines", power_of_sphere,
                                  {place_key("center", "its middle"), length_key("radius", radius), radiance})),
                   complete_sphere),
     };

@@ -15,6 +15,9 @@ struct LightKind {
     // Whether it is somewhere in the world: its handle can be dragged. Otherwise it lies in a direction.
     bool has_place = true;
     bool has_size = false;  // Whitted's tracers show it as a point at its middle
+    // The power by which `path` picks it, for a colour of 1, in a scene of that radius: that of a light far away is what falls
+    // on the scene.
+    double (*power)(const rt_light& light, double radius) = nullptr;
     std::vector<Key> keys;
     void (*complete)(rt_light&) = nullptr;  // computes the members that no key holds; or nullptr
 };
@@ -28,8 +31,9 @@ const rt_primitive_kind* light_kind_for_plugins(rt_u32 kind);  // NULL: there is
 // What an importer delivers, in its own coordinates. Sets `problem` as material_of() does. Returns false if it cannot be used:
 // numbers that are not finite, vectors of no length.
 bool light_of(const rt_light_desc& desc, rt_light& light, std::string& problem);
-// Makes directions unit vectors, colours 0 or more, and computes the members that no key holds. Returns false if a member
-// cannot be used. keep_units: a vector of length 1, but for rounding, stays as it is.
+// To be called after any change. Makes directions unit vectors, colours 0 or more, and computes the members that no key holds;
+// the light no longer stands in for another. Returns false if a member cannot be used. keep_units: a vector of length 1, but
+// for rounding, stays as it is.
 bool make_sound(rt_light& light, bool keep_units = false);
 // Moves the light as its keys say, and makes it sound.
 bool move_light(rt_light& light, const Matrix& world_from_local);

@@ -1,6 +1,6 @@
 // packet.hpp -- values in a file in memory, by which the processes of a host give them to each other.
 //
-// Values stand one behind the other, without their names: who writes and who reads visit them in the same order. Plain data is
+// Values stand one behind the other, without their names: writer and reader visit them in the same order. Plain data is
 // its bytes; a text is the number of its bytes (8 bytes) and its bytes; other containers are the number of their elements and
 // these. An array of plain data is the number of its bytes, and these at the next multiple of kAlignment; it is padded to such
 // a multiple. So the large arrays of a file may be used where they lie.

@@ -6,6 +6,7 @@
 #include "base/angle.hpp"
 #include "render/emitters/pick_table.hpp"
 #include "scene/emissive.hpp"
+#include "scene/light_kinds.hpp"
 #include "scene/vec.hpp"
 
 namespace clarity {
@@ -13,30 +14,6 @@ namespace {
 
 double mean(const rt_f32* color) {
     return (double(std::max(color[0], 0.f)) + std::max(color[1], 0.f) + std::max(color[2], 0.f)) / 3;
-}
-
-// The power of a light in a scene of that radius, whatever its unit: that of a light that is far is what falls on the scene.
-double power_of(const rt_light& light, double radius) {
-    const double color = mean(light.color), disc = kPi * radius * radius;
-    const bool falls = (light.flags & RT_LIGHT_FALLOFF) != 0;
-    const double sides = light.flags & RT_LIGHT_TWO_SIDED ? 2 : 1;
-    switch (light.kind) {
-        case RT_LIGHT_POINT:
-            return falls ? 4 * kPi * color : kPi * color * disc;
-        case RT_LIGHT_SPOT:
-            return falls ? 2 * kPi * (1 - 0.5 * (double(light.cos_inner) + light.cos_outer)) * color : kPi * color * disc;
-        case RT_LIGHT_DIRECTIONAL:
-            return (falls ? 1 : kPi) * color * disc;
-        case RT_LIGHT_SUN:
-            return color * disc;
-        case RT_LIGHT_RECT:
-            return 4 * length(cross(to_vec(light.u), to_vec(light.v))) * kPi * sides * color;
-        case RT_LIGHT_DISC:
-            return kPi * light.radius * light.radius * kPi * sides * color;
-        case RT_LIGHT_SPHERE:
-            return 4 * kPi * light.radius * light.radius * kPi * color;
-    }
-    return 0;
 }
 
 // The radius of a sphere around the scene; 1 if it has planes only.
@@ -231,7 +208,7 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         emitter.at = rt_u32(out.emitters.size());
         emitter.instance = emitter.prim = RT_NONE;
         out.emitters.push_back(emitter);
-        powers.push_back(power_of(light, radius));
+        powers.push_back(light_kind_of(light).power(light, radius) * mean(light.color));
         out.lighting.sun_count += light.kind == RT_LIGHT_SUN;
     }
     set_sky(scene.sky, view, out.lighting);

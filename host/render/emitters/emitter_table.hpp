@@ -25,7 +25,7 @@ const std::vector<const char*>& emitter_headers();
 // The emitters of a view. accel: where the scene's primitives are now; only positions in leaf order must be those of the
 // device.
 // sky: of scene.sky. knows_leaves: whether the device has the leaves in the order of accel. Where a device built a tree anew,
-// nobody on the host knows it, and emissive primitives are left to rays that hit them.
+// the host does not know it, and emissive primitives are left to rays that hit them.
 EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
                                 bool knows_leaves = true);
 

@@ -78,7 +78,7 @@ View make_view(const Scene& scene, float aspect, const std::string& camera, cons
         }
         const std::array<float, 3> at = scene_point({n[0], n[1], n[2]}, scene.origin);
         std::copy(at.begin(), at.end(), view.lights[0].position);
-        view.lights[0].flags &= ~RT_LIGHT_STAND_IN;
+        make_sound(view.lights[0], true);
     }
     return view;
 }
