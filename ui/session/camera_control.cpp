@@ -119,7 +119,7 @@ void move_light(rt_light& light, const Camera& camera, const Step& step, float s
     else
         place += offset;
     for (int i = 0; i < 3; ++i) light.position[i] = place[i];
-    light.flags &= ~RT_LIGHT_STAND_IN;
+    make_sound(light, true);
 }
 
 }  // namespace clarity::ui

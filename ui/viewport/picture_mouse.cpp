@@ -110,7 +110,6 @@ void PictureMouse::drag(const Target& target, Session& session, UiState& state, 
         case Grab::light: {
             if (light_ >= session.desired.lights.size()) break;
             rt_light& light = session.desired.lights[light_].values;
-            light.flags &= ~RT_LIGHT_STAND_IN;
             const Projection projection(area, camera_of(target.picture));
             if (!light_kind_of(light).has_place)
                 drag_sun(light, projection, mouse + offset_);
@@ -118,6 +117,7 @@ void PictureMouse::drag(const Target& target, Session& session, UiState& state, 
                 push_point_light(light, projection, std::exp(-moved.y * 0.006f / ui_scale()));
             else
                 drag_point_light(light, projection, mouse + offset_);
+            make_sound(light, true);
             break;
         }
         case Grab::instance:

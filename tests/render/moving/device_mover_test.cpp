@@ -156,20 +156,6 @@ TEST_P(DeviceMoverTest, SaysWhenABuildIsNeeded) {
 INSTANTIATE_TEST_SUITE_P(, DeviceMoverTest, ::testing::Values(BuildForm::groups, BuildForm::serial),
                          [](const auto& info) { return info.param == BuildForm::groups ? "groups" : "serial"; });
 
-std::vector<rt_ray> some_rays() {
-    std::mt19937 random(3);
-    std::normal_distribution<float> any;
-    std::vector<rt_ray> rays;
-    for (int i = 0; i < 2000; ++i) {
-        rt_ray ray{{8 * any(random), 8 * any(random), 8 * any(random)}, 0, {}, INFINITY};
-        float length = 0;
-        for (int k = 0; k < 3; ++k) length += std::pow(ray.direction[k] = 2 * any(random) - ray.origin[k], 2.0f);
-        for (float& d : ray.direction) d /= std::sqrt(length);
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
 // A structure that moves on the device, whose rays are compared with those of a scene that the host has built for the pose.
 class DeviceRays : public ::testing::Test {
  protected:
@@ -217,7 +203,7 @@ class DeviceRays : public ::testing::Test {
     Settings settings_;
     std::shared_ptr<const Prepared> prepared_;
     std::unique_ptr<DeviceMover> motion_;
-    const std::vector<rt_ray> rays_ = some_rays();
+    const std::vector<rt_ray> rays_ = rays_at_rings(2000);
     RayQueries queries_{Workbench::get().shared_device()};
 };
 

@@ -100,24 +100,10 @@ std::vector<rt_hit> trace(const ScenePtr& scene, const std::shared_ptr<const Acc
     return hits;
 }
 
-std::vector<rt_ray> random_rays() {
-    std::mt19937 random(3);
-    std::normal_distribution<float> any;
-    std::vector<rt_ray> rays;
-    for (int i = 0; i < 4000; ++i) {
-        rt_ray ray{{8 * any(random), 8 * any(random), 8 * any(random)}, 0, {}, INFINITY};
-        float length = 0;
-        for (int k = 0; k < 3; ++k) length += std::pow(ray.direction[k] = 2 * any(random) - ray.origin[k], 2.0f);
-        for (float& d : ray.direction) d /= std::sqrt(length);
-        rays.push_back(ray);
-    }
-    return rays;
-}
-
 TEST(HostMover, RaysHitWhatTheyHitInAFreshBuild) {
     Progress progress;
     const auto moved_scene = std::make_shared<const Scene>(posed(*rings(), waved(*rings(), 3)));
-    const std::vector<rt_ray> rays = random_rays();
+    const std::vector<rt_ray> rays = rays_at_rings(4000);
     size_t hit = 0;
     Workbench& bench = Workbench::get();
     const std::vector<std::string> tried = bench.fast_accels();  // a quick test compiles the kernels of one alone
@@ -247,7 +233,7 @@ TEST(HostMover, CostsTellHowMuchATreeHasSuffered) {
 // Where one scene has trees of its own for what the other one flattens, rays that graze an edge may differ.
 void expect_same_hits(const ScenePtr& scene, const std::shared_ptr<const AccelData>& accel, const ScenePtr& fresh,
                       const rt_plugin& plugin) {
-    const std::vector<rt_ray> rays = random_rays();
+    const std::vector<rt_ray> rays = rays_at_rings(4000);
     const auto now = trace(scene, accel, rays), wanted = trace(fresh, build(fresh, plugin), rays);
     size_t differ = 0;
     for (size_t i = 0; i < rays.size(); ++i)

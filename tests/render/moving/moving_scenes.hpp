@@ -1,6 +1,8 @@
 // moving_scenes.hpp -- a scene that moves, its poses and its structures, for tests of refits.
 #pragma once
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "render/accel/accel_build.hpp"
 #include "scene/motion/pose.hpp"
@@ -44,6 +46,21 @@ inline ScenePtr rings() {
         return shared_scene(std::move(s));
     }();
     return scene;
+}
+
+// Rays from far around towards the middle.
+inline std::vector<rt_ray> rays_at_rings(int count) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> any;
+    std::vector<rt_ray> rays;
+    for (int i = 0; i < count; ++i) {
+        rt_ray ray{{8 * any(random), 8 * any(random), 8 * any(random)}, 0, {}, INFINITY};
+        float length = 0;
+        for (int k = 0; k < 3; ++k) length += std::pow(ray.direction[k] = 2 * any(random) - ray.origin[k], 2.0f);
+        for (float& d : ray.direction) d /= std::sqrt(length);
+        rays.push_back(ray);
+    }
+    return rays;
 }
 
 inline Pose pose_of(const Scene& scene) {
