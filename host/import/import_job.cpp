@@ -53,7 +53,7 @@ void import_files(const ImportJob& job, ImportProgress& progress) {
 
 }  // namespace
 
-void import_job(PacketReader& arguments) {
+void import_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<ImportJob>(arguments);
     ImportProgress progress;
     try {

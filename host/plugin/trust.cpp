@@ -25,7 +25,7 @@ constexpr uint64_t kMaxLibraryBytes = uint64_t{1} << 30;
 
 std::string hash_of(const std::string& path) {
     std::string content;
-    if (!try_read_file(path, kMaxLibraryBytes, content).empty()) return {};
+    if (try_read_file(path, kMaxLibraryBytes, content)) return {};
     char text[32];
     std::snprintf(text, sizeof text, "%016llx-%zx", static_cast<unsigned long long>(hash_bytes(content.data(), content.size())),
                   content.size());

@@ -15,12 +15,12 @@ SharedArray<T> borrowed(const T* data, uint64_t count) {
 
 // An array that comes next, as memory that `ask` gives; elements of element_bytes.
 template <class Ask>
-void read_array(PacketReader& packet, bool wanted, uint64_t count, uint64_t element_bytes, const char* what, const Ask& ask) {
-    const uint64_t bytes = packet.begin_array();
-    if (bytes % element_bytes != 0 || bytes / element_bytes != (wanted ? count : 0)) throw PacketDamaged();
+void read_array(ParcelReader& parcel, bool wanted, uint64_t count, uint64_t element_bytes, const char* what, const Ask& ask) {
+    const uint64_t bytes = parcel.begin_array();
+    if (bytes % element_bytes != 0 || bytes / element_bytes != (wanted ? count : 0)) throw ParcelDamaged();
     void* const memory = wanted ? ask() : nullptr;
     if (wanted && !memory) throw Error(Exit::failed, std::string("no memory for ") + what);
-    packet.take(memory, bytes);
+    parcel.take(memory, bytes);
 }
 
 }  // namespace
@@ -40,25 +40,25 @@ BuildJob::BuildJob(std::string library_file, uint64_t memory, const rt_build_inp
     roots = borrowed(tree->roots, tree->group_count);
 }
 
-void BuildAnswer::visit(PacketWriter& packet, const BuildAnswer& answer) {
+void BuildAnswer::visit(ParcelWriter& parcel, const BuildAnswer& answer) {
     const BuilderResult& result = answer.result;
-    packet(result.rooted, result.roots, result.defines, result.stats);
+    parcel(result.rooted, result.roots, result.defines, result.stats);
     for (const BuilderResult::Slot& slot : result.slots) {
-        packet(slot.allocated, slot.count);
-        packet.bytes(slot.memory.data(), slot.allocated ? slot.memory.bytes() : 0);
+        parcel(slot.allocated, slot.count);
+        parcel.bytes(slot.memory.data(), slot.allocated ? slot.memory.bytes() : 0);
     }
-    packet(result.leaves_given, result.leaf_count);
-    packet.bytes(result.refs.data(), result.leaves_given ? result.refs.bytes() : 0);
+    parcel(result.leaves_given, result.leaf_count);
+    parcel.bytes(result.refs.data(), result.leaves_given ? result.refs.bytes() : 0);
 }
 
-void BuildReplay::visit(PacketReader& packet, BuildReplay& replay) {
+void BuildReplay::visit(ParcelReader& parcel, BuildReplay& replay) {
     const rt_build_output& out = replay.out;
     std::vector<bool> rooted;
     std::vector<rt_u32> roots;
     std::map<std::string, rt_u32> defines;
     std::vector<std::pair<std::string, double>> stats;
-    packet(rooted, roots, defines, stats);
-    if (rooted.size() != replay.group_count || roots.size() != replay.group_count) throw PacketDamaged();
+    parcel(rooted, roots, defines, stats);
+    if (rooted.size() != replay.group_count || roots.size() != replay.group_count) throw ParcelDamaged();
     for (rt_u32 g = 0; g < replay.group_count; ++g)
         if (rooted[g]) out.root(out.ctx, g, roots[g]);
     for (const auto& [name, value] : defines) out.define(out.ctx, name.c_str(), value);
@@ -66,16 +66,16 @@ void BuildReplay::visit(PacketReader& packet, BuildReplay& replay) {
     bool given = false;
     uint64_t count = 0;
     for (rt_u32 s = 0; s < replay.accel.slot_count; ++s) {
-        packet(given, count);
-        read_array(packet, given, count, replay.accel.slots[s].elem_bytes, "a slot",
+        parcel(given, count);
+        read_array(parcel, given, count, replay.accel.slots[s].elem_bytes, "a slot",
                    [&] { return out.alloc(out.ctx, s, count); });
     }
-    packet(given, count);
-    read_array(packet, given, count, sizeof(rt_u32), "the leaves",
+    parcel(given, count);
+    read_array(parcel, given, count, sizeof(rt_u32), "the leaves",
                [&] { return static_cast<void*>(out.leaves(out.ctx, count)); });
 }
 
-void build_job(PacketReader& arguments) {
+void build_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<BuildJob>(arguments);
     const PluginRecord record = load_plugin(job.library);
     if (!record.plugin || !record.plugin->accel)

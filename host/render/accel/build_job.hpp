@@ -3,14 +3,14 @@
 #include <string>
 #include <vector>
 
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 #include "render/accel/guarded_build.hpp"
 #include "rt_plugin.h"
 #include "scene/shared_array.hpp"
 
 namespace clarity {
 
-// The library of a builder, and its input. The arrays are the caller's, or lie in the packet.
+// The library of a builder, and its input. The arrays are the caller's, or lie in the parcel.
 struct BuildJob {
     std::string library;
     uint64_t memory_bytes = 0;  // that the builder may map
@@ -26,9 +26,9 @@ struct BuildJob {
     BuildJob() = default;
     BuildJob(std::string library_file, uint64_t memory, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
              const rt_topology* tree);
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.library, self.memory_bytes, self.device, self.params, self.prims, self.groups, self.triangles, self.nodes,
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.library, self.memory_bytes, self.device, self.params, self.prims, self.groups, self.triangles, self.nodes,
                self.refs, self.roots);
     }
 };
@@ -39,14 +39,14 @@ struct BuildReplay {
     const rt_accel& accel;
     rt_u32 group_count;
     const rt_build_output& out;
-    static void visit(PacketReader& packet, BuildReplay& replay);
+    static void visit(ParcelReader& parcel, BuildReplay& replay);
 };
 struct BuildAnswer {
     const BuilderResult& result;
-    static void visit(PacketWriter& packet, const BuildAnswer& answer);
+    static void visit(ParcelWriter& parcel, const BuildAnswer& answer);
 };
 
 // The work of kBuildJob.
-void build_job(PacketReader& arguments);
+void build_job(ParcelReader& arguments);
 
 }  // namespace clarity
