@@ -46,7 +46,7 @@ std::string greeting_of(const char* kind) {
 bool send_message(int fd, const Message& message) {
     const size_t text_bytes = std::min(message.text.size(), kMaxText);
     const MessageHead head = {static_cast<uint32_t>(message.kind), message.level, message.fraction,
-                             static_cast<uint32_t>(text_bytes)};
+                              static_cast<uint32_t>(text_bytes)};
     MessageBytes buffer;
     std::memcpy(buffer.data(), &head, sizeof head);
     std::memcpy(buffer.data() + sizeof head, message.text.data(), text_bytes);

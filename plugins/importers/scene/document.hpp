@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "diagnostics.hpp"
-#include "stated_transform.hpp"
 #include "rt_plugin.h"
+#include "stated_transform.hpp"
 
 namespace scene_format {
 

@@ -7,7 +7,7 @@
 
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
-#include "render/moving/accel_copy.hpp"
+#include "render/accel/accel_copy.hpp"
 
 namespace clarity {
 namespace {

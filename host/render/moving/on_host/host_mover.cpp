@@ -11,7 +11,7 @@
 #include "base/scoped_fp_mode.hpp"
 #include "plugin/extensions.hpp"
 #include "plugin/host_services.hpp"
-#include "render/moving/accel_copy.hpp"
+#include "render/accel/accel_copy.hpp"
 
 namespace clarity {
 namespace {
