@@ -8,6 +8,7 @@
 #include "base/numbers.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/tracer_choice.hpp"
+#include "rt_types.h"
 
 namespace clarity {
 namespace {
@@ -304,6 +305,9 @@ const std::vector<const Setting*>& kernel_numbers() {
         std::vector<const Setting*> found;
         for (const Setting& row : settings_table())
             if (row.number) found.push_back(&row);
+        if (found.size() > RT_MOST_NUMBERS)
+            throw Error(Exit::failed, "rt_frame has no room for " + std::to_string(found.size()) +
+                                          " numbers of kernels: raise RT_MOST_NUMBERS in cl/rt_types.h");
         return found;
     }();
     return numbers;
