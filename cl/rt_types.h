@@ -35,7 +35,7 @@ typedef struct rt_instance {
     rt_u32 hidden;     /* not 0: no ray hits it */
 } rt_instance;
 
-/* A surface. Colours are linear RGB. Whitted's share 1 - reflect - refract is diffuse. 80 B. */
+/* A surface. Colours are linear RGB. Whitted's share 1 - reflect - refract is diffuse. 96 B. */
 typedef struct rt_material {
     rt_f32 color[3];      /* diffuse reflectance; also tints refracted light. Of a conductor: reflectance at normal incidence */
     rt_f32 reflect;       /* 0..1, mirror share */
@@ -49,7 +49,14 @@ typedef struct rt_material {
     rt_u32 model;         /* RT_MODEL_*: what `path` takes the surface for. Whitted's tracers read the members above */
     rt_f32 absorption[3]; /* inside of a dielectric, per unit of length: light falls by exp(-absorption length) */
     rt_f32 roughness;     /* 0..1; GGX with alpha = roughness^2; 0: smooth */
+    rt_u32 alpha;         /* RT_ALPHA_*: what becomes of the alpha, which is opacity times those of the texture and the vertices */
+    rt_f32 opacity;       /* 0..1 */
+    rt_f32 cutoff;        /* RT_ALPHA_MASK: where alpha is below it, there is no surface */
+    rt_u32 pad;
 } rt_material;
+#define RT_ALPHA_OPAQUE 0u /* alpha does not count */
+#define RT_ALPHA_MASK 1u
+#define RT_ALPHA_BLEND 2u  /* the share of the surface that is there; through the rest one sees what is behind */
 
 /* A light. What `color` is depends on the kind: see RT_LIGHT_* in rt_shared.h. 96 B. */
 typedef struct rt_light {

@@ -40,6 +40,7 @@ Problem check_arrays(const Scene& s) {
     if (vertices >= RT_NONE) return "positions: " + std::to_string(vertices) + " vertices are more than an index can name";
     if (!s.normals.empty() && s.normals.size() != s.positions.size()) return "normals: not 3 numbers per vertex";
     if (!s.uvs.empty() && s.uvs.size() != 2 * vertices) return "uvs: not 2 numbers per vertex";
+    if (!s.colors.empty() && s.colors.size() != 4 * vertices) return "colors: not 4 numbers per vertex";
     if (s.triangles.size() % 3 != 0) return "triangles: " + std::to_string(s.triangles.size()) + " indices, not 3 per triangle";
     if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
     if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
@@ -56,6 +57,7 @@ Problem check_arrays(const Scene& s) {
     if (Problem why = check("position", s.positions, 3)) return why;
     if (Problem why = check("normal", s.normals, 3)) return why;
     if (Problem why = check("uv", s.uvs, 2)) return why;
+    if (Problem why = check("color", s.colors, 4)) return why;
     return check("polygon corner", s.polygon_corners, 3);
 }
 

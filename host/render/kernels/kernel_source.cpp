@@ -32,7 +32,8 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_NORMALS", features.normals);
     const bool uvs = features.uvs && (features.textures || row.has(kReadsUvs));
     out.define_int("RT_HAS_UVS", uvs);
-    out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs);
+    out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs || features.colors);
+    if (features.colors) out.define_int("RT_HAS_COLORS", 1);
     out.define_int("RT_HAS_TEXTURES", features.textures);
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
