@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/hash.hpp"
+
 namespace clarity {
 namespace {
 
@@ -26,16 +28,16 @@ constexpr uint64_t kLarge_bytes = 1 << 20;
 constexpr uint32_t kEvents =
     IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 
-// Hash of a file's content (FNV-1a, 64 bits); 0 if it cannot be read. It only has to tell one save from the next, not to resist
+// Hash of a file's content; 0 if it cannot be read. It only has to tell one save from the next, not to resist
 // an attacker.
 uint64_t hash_of(const std::string& path) {
-    uint64_t hash = 14695981039346656037u;
+    uint64_t hash = hash_bytes(nullptr, 0);
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return 0;
     char buffer[1 << 16];
     ssize_t got;
     while ((got = read(file, buffer, sizeof buffer)) > 0 || (got < 0 && errno == EINTR))
-        for (ssize_t i = 0; i < got; ++i) hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 1099511628211u;
+        if (got > 0) hash = hash_bytes(buffer, static_cast<size_t>(got), hash);
     close(file);
     return hash;
 }
