@@ -72,7 +72,8 @@ Setting number(const std::string& key, std::string label, std::string help, doub
         [member](Settings& settings, Number value) { settings.*member = value; });
 }
 
-// A number that only kernels read: RT_SETTING(frame, key). This row is all that there is to it.
+// A number that only kernels read: RT_SETTING(frame, key). This row is all that there is to it. The type of its default
+// says whether it is a whole one.
 template <class Number>
 Setting kernel_number(const std::string& key, std::string label, std::string help, double min, double max, Number standard) {
     const auto read = [=](const Settings& settings) {
