@@ -22,16 +22,15 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
             diffuse = max(1.0f - m->reflect - m->refract, 0.0f);
             mirror = m->reflect;
             glass = m->refract;
-        } else {
+        } else if (RT_LOBES != 0u) {
             alpha = m->roughness * m->roughness;
             if (m->model == RT_MODEL_CONDUCTOR) metal = 1.0f;
             else glass = 1.0f;
-            /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
-            if (glass > 0.0f && fabs(m->ior - 1.0f) < 1e-3f) alpha = 0.0f;
         }
         out.color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out.color);
         out.diffuse = rt_select(mine, rt_vfloat(diffuse), out.diffuse);
         out.mirror = rt_select(mine, rt_vfloat(mirror), out.mirror);
+        if (RT_LOBES == 0u) continue;
         out.metal = rt_select(mine, rt_vfloat(metal), out.metal);
         out.glass = rt_select(mine, rt_vfloat(glass), out.glass);
         out.alpha = rt_select(mine, rt_vfloat(alpha > 0.0f ? max(alpha, RT_LEAST_ALPHA) : 0.0f), out.alpha);

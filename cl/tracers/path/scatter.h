@@ -77,7 +77,10 @@ RT_INLINE rt_vec rt_passed(const rt_path *p, vfloat distance)
     const vfloat way = -rt_min(distance, rt_vfloat(1e30f));
     return rt_vec_of(rt_exp(way * p->absorption.x), rt_exp(way * p->absorption.y), rt_exp(way * p->absorption.z));
 }
-RT_INLINE vmask rt_in_medium(const rt_path *p) { return RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)); }
+RT_INLINE vmask rt_in_medium(const rt_path *p)
+{
+    return RT_MAY_SCATTER(RT_LOBE_ABSORBS) ? RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)) : rt_vint(0);
+}
 
 /* The medium of paths that go through a surface: that of the material inside, nothing outside. */
 RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, vmask lanes)
@@ -116,6 +119,7 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
     ray.dx = s.towards.x, ray.dy = s.towards.y, ray.dz = s.towards.z;
     ray.t_min = zero;
     rt_clear_hits(&hit, asked);
+#endif
     hit.t = rt_select(asked, s.distance, rt_vfloat(-1.0f));
     if (frame->shadows != 0u) {
         rt_prepare(&ray, bits);
@@ -127,7 +131,7 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
         RT_TALLY_OVERFLOW(tally, &hit)
     }
     const vmask lit = asked & RT_MASK(hit.t >= zero);
-    if (rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
+    if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
     const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
@@ -191,15 +195,15 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     vfloat t = hit.t;
     vint light;
     rt_hit_lights(ctx, frame, &ray, &t, &light);
-    if (rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
+    if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
     const vmask lights = p->alive & RT_MASK(light >= rt_vint(0)), hits = p->alive & ~lights & RT_MASK(hit.prim >= rt_vint(0));
     const vmask missed = p->alive & ~lights & ~hits;
     vfloat pdf;
-    if (rt_any(lights)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_SOLID) && rt_any(lights)) {
         const rt_vec found = rt_emission_of_light(ctx, &ray, t, light, lights, &pdf);
         rt_collect(frame, p, lights, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, light);
     }
-    if (rt_any(missed)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_BEYOND) && rt_any(missed)) {
         const vmask seen = missed & RT_MASK(p->event == rt_vint(0));
         rt_vec found = rt_scale(rt_vfloat(0.0f), p->direction);
         if (rt_any(missed & ~seen)) {
@@ -214,8 +218,10 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
     rt_meeting m;
     m.point = rt_point_of(&ray, &surface, hits);
-    const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
-    rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
+    if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE)) {
+        const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
+        rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
+    }
 
     const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
     const uint scattered_bits = rt_bits(scattered);

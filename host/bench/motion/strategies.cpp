@@ -13,6 +13,7 @@
 #include "render/frame/preparer.hpp"
 #include "render/moving/follow/pose_follower.hpp"
 #include "render/moving/on_host/host_mover.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -88,7 +89,7 @@ class StrategiesCase {
             s.follower.built(from, scene, pose, s.accel, std::make_unique<HostMover>(scene, s.accel));
         }
         const double update_ms = ms_since(begin);
-        const auto prepared = preparer_.prepare(scene, settings_, progress_, s.accel);
+        const auto prepared = preparer_.prepare(scene, with_optics(settings_, *scene, fixture_.view()), progress_, s.accel);
         s.last_trace_ms = trace_ms(*prepared);
         if (frame == 0) return;
         s.update_ms += update_ms;

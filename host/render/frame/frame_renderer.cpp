@@ -251,6 +251,9 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
         throw Error(Exit::failed, im.device->info().name + " has failed before: it has to be opened anew");
     return wrap_cl_errors(*im.device, "tracing", [&] {
         const Impl::Picture picture{prepared, settings, view, shared, progress};
+    if (!prepared.knows(view))
+        throw Error(Exit::failed, "tracing: the view has kinds of lights or surfaces that the kernels were not compiled for: " +
+                                      std::string("prepare the scene with the view's optics in the settings"));
         im.begin(picture);
         // If the last picture was displayed, tone mapping and copy are queued right behind the trace, so that the host waits
         // once instead of twice.

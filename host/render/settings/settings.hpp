@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "render/settings/optics.hpp"
+
 namespace clarity {
 
 // What the host must redo after a change of this setting, cheapest first. display: only how a traced film is shown. samples:
@@ -55,6 +57,8 @@ struct Settings {
     double exposure = 1.0;
     std::string tone = "linear";  // linear|reinhard|aces|agx
     double scale_max = 0;         // value at the upper end of false colours; 0: the largest of the picture
+    // Not for users: what views may have that the scene's own has not, so that kernels know it, too (optics_of()).
+    Optics optics;
 };
 
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.

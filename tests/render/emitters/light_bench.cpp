@@ -160,6 +160,7 @@ LightBench::LightBench(const Scene& scene, const View& view, int lanes, bool kno
     im.scene = shared_scene(with_all_kinds(scene));
     im.view = view;
     im.knows_leaves = knows_leaves;
+    settings.optics = {RT_LIGHTS_ALL, RT_LOBES_ALL};
     im.device = Workbench::get().shared_device();
     Settings settings = make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}});
     Progress progress;
