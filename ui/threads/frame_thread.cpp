@@ -408,6 +408,10 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         picture->other = side_of(1, *job.ready->other, *on_other, *job.other_settings);
         ms += picture->other->frame_ms;
     }
+    uint64_t& broken = picture->main.stats.not_finite;
+    if (retrace && sample > 0 && last) broken += last->main.stats.not_finite;
+    if (broken > 0 && job.moving_fps <= 0 && std::exchange(told_revision_, job.revision) != job.revision)
+        log(LogLevel::error, not_finite_text(broken) + ". There may be more in the samples to come");
     picture->job.settings = picture->main.settings;
     picture->reduced = reduced;
     const bool same = shown && retrace && shown->job.revision == job.revision && shown->job.ready == job.ready &&

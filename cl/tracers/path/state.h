@@ -129,8 +129,11 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
     return p;
 }
 
-/* Adds the light of paths that have ended to their pixels. */
-RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, uint bits, global float4 *film)
+/* Whether a number is infinite or none, by its bits: compilers may take isfinite() for granted. */
+RT_INLINE bool rt_is_broken(float x) { return (as_uint(x) & 0x7f800000u) == 0x7f800000u; }
+
+/* Adds the light of paths that have ended to their pixels. *not_finite: counts light that is no number, which is added all the same. */
+RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, uint bits, global float4 *film, uint *not_finite)
 {
     const size_t pixels = (size_t)frame->width * frame->height;
     float4 light[RT_LANES];
@@ -144,3 +147,5 @@ RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, ui
 }
 
 #endif
+            *not_finite += rt_is_broken(light[l].x) || rt_is_broken(light[l].y) || rt_is_broken(light[l].z) ? 1u : 0u;
+        }

@@ -221,7 +221,7 @@ struct FrameRenderer::Impl {
         const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
         stats.shadow = counts.shadow;
         stats.secondary = counts.secondary;
-        stats.dropped = counts.dropped;
+        (sums_samples ? stats.not_finite : stats.dropped) = counts.dropped;
         stats.overflowed = counts.overflowed;
     }
     // Debug programs that trace only camera rays have no ray counters, so they count full stacks separately.
