@@ -125,6 +125,7 @@ struct FrameRenderer::Impl {
             tracer = open_tracer(device, prepared.program);
         }
         program = prepared.program;
+        if (bound != prepared.on_device) view.forget_emitters();  // a structure that moves may be in buffers of an earlier pose
         bound = prepared.on_device;
         bound_moves = prepared.is_moved;
         debug = prepared.settings.debug;
@@ -186,7 +187,8 @@ struct FrameRenderer::Impl {
         }
         view.write(queue, *prepared.scene, *prepared.on_device, frames, view_of, table);
         if (program->row.has(kPicksLights))
-            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of, !prepared.is_moved);
+            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of,
+                                prepared.is_moved ? prepared.on_device.get() : nullptr);
 
         const auto go_on = [&progress = picture.progress] {
             if (progress.cancelled()) throw Cancelled();
@@ -249,11 +251,11 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
     Impl& im = *impl_;
     if (im.device->loss()->lost())
         throw Error(Exit::failed, im.device->info().name + " has failed before: it has to be opened anew");
-    return wrap_cl_errors(*im.device, "tracing", [&] {
-        const Impl::Picture picture{prepared, settings, view, shared, progress};
     if (!prepared.knows(view))
         throw Error(Exit::failed, "tracing: the view has kinds of lights or surfaces that the kernels were not compiled for: " +
                                       std::string("prepare the scene with the view's optics in the settings"));
+    return wrap_cl_errors(*im.device, "tracing", [&] {
+        const Impl::Picture picture{prepared, settings, view, shared, progress};
         im.begin(picture);
         // If the last picture was displayed, tone mapping and copy are queued right behind the trace, so that the host waits
         // once instead of twice.
