@@ -9,6 +9,7 @@
 #include "base/statistics.hpp"
 #include "bench/motion/motions.hpp"
 #include "device/cl_errors.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -66,7 +67,12 @@ Scene with_object(Scene scene) {
 
 MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device> device, const Scene& scene,
                            const Settings& settings, const View& view, Motion motion, Progress& progress)
-    : device_(std::move(device)), settings_(settings), view_(view), kind_(motion), kernels_(device_), frames_(device_) {
+    : device_(std::move(device)),
+      settings_(with_optics(settings, scene, view)),
+      view_(view),
+      kind_(motion),
+      kernels_(device_),
+      frames_(device_) {
     if (plays_clip()) rest_scene_ = std::make_shared<const Scene>(scene);
     scene_ = staged(scene);
     const bool waves = kind_ == Motion::wave_refitted || kind_ == Motion::wave_built;

@@ -65,6 +65,7 @@ std::string try_on_small_scene(const TrialJob& job, const PluginRegistry& plugin
     const auto scene = std::make_shared<const Scene>(trial_scene(job.features, kinds, job.shapes));
     Settings settings = job.settings;
     settings.debug = true;  // stacks are checked
+    settings.optics = job.features.optics;
     settings.width = kWidth;
     settings.height = kHeight;
     settings.depth = std::min(settings.depth, kDepth);
