@@ -10,7 +10,7 @@ namespace clarity::test {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-// A picture by `path` with its noise. Settings are "lanes 4, 64x64 pixels" and those given.
+// A picture by `path` with its noise. Settings are what compiles fast, 64x64 pixels, and those given.
 struct PathPicture {
     FloatImage mean, error;  // 3 channels; standard error of the mean luminance
     double average() const;  // of green, over pixels
@@ -32,8 +32,8 @@ Scene sphere_over_floor();
 View floor_view();
 constexpr double kFloorRadiance = 0.20410496026731736;  // 1.5 / sqrt(3.78)^3, of a sphere of radius 1 at (1.2, 1.5, 0.3)
 
-// What is wrong of the tracer with the kernels in force, a word for each: "depth", "roulette", "cosine", "last event",
-// "directions", "noise", "sums". Empty of sound ones.
-std::vector<std::string> path_problems(int seed);
+// What is wrong of the tracer with the kernels in force, a word for each: "depth", "last event", "roulette", "cosine",
+// "directions", "noise", "glass", "facets". Empty of sound ones. only: that check alone.
+std::vector<std::string> path_problems(int seed, const std::string& only = {});
 
 }  // namespace clarity::test

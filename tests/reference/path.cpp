@@ -25,27 +25,33 @@ struct Axes {
 
 class PathTracer {
  public:
-    PathTracer(const Scene& scene, const View& view, unsigned depth)
-        : scene_(scene), view_(view), depth_(depth), world_(scene) {}
+    PathTracer(const Scene& scene, const View& view, const PathLimits& limits)
+        : scene_(scene), view_(view), depth_(limits.depth), bounce_(limits.bounce), world_(scene) {}
 
     Vec radiance(Ray ray, Dice& dice) const {
         Vec light{}, weight{1, 1, 1};
+        const auto add = [&](unsigned events, const Vec& found) {
+            if (bounce_ < 0 || int(events) == bounce_) light = light + times(weight, found);
+        };
         bool asked = false;  // whether suns were asked at the last event
         for (unsigned event = 0;; ++event) {
             Hit hit;
             const bool met = world_.nearest(ray, hit);
             Vec emitted;
-            if (meets_light(ray, met ? hit.t : INFINITY, emitted)) return light + times(weight, emitted);
+            if (meets_light(ray, met ? hit.t : INFINITY, emitted)) {
+                add(event, emitted);
+                return light;
+            }
             if (!met) {
-                light = light + times(weight, to_vec(view_.background));
-                if (!asked) light = light + times(weight, suns_seen(ray.direction));
+                add(event, sky(ray.direction));
+                if (!asked) add(event, suns_seen(ray.direction));
                 return light;
             }
             const rt_material& m = material(hit.material);
             const bool entering = dot(hit.geometric, ray.direction) < 0;
             if (!entering)
                 for (size_t c = 0; c < 3; ++c) weight[c] *= std::exp(-double(m.absorption[c]) * hit.t);
-            if (entering || !(m.flags & RT_MATERIAL_ONE_SIDED)) light = light + times(weight, to_vec(m.emission));
+            if (entering || !(m.flags & RT_MATERIAL_ONE_SIDED)) add(event, to_vec(m.emission));
             if (event == depth_) return light;
 
             const Vec at = ray.at(hit.t), side = entering ? hit.geometric : -1 * hit.geometric;
@@ -54,8 +60,7 @@ class PathTracer {
             const Axes axes(normal);
             const Vec wo = axes.local(-1 * ray.direction);
             const PathSurface surface(m, color_at(m, at), entering);
-            for (const rt_light& l : view_.lights)
-                light = light + times(weight, from_light(l, at, side, axes, surface, wo, dice));
+            for (const rt_light& l : view_.lights) add(event + 1, from_light(l, at, side, axes, surface, wo, dice));
             const Bounce bounce = surface.draw(wo, dice);
             if (std::max({bounce.weight[0], bounce.weight[1], bounce.weight[2]}) <= 0) return light;
             const Vec direction = normalized(axes.world(bounce.wi));
@@ -106,6 +111,28 @@ class PathTracer {
         return found;
     }
 
+    Vec sky(const Vec& d) const {
+        const SkyValues& s = scene_.sky.values;
+        if (s.kind == RT_NONE) return to_vec(view_.background);
+        if (s.kind == RT_SKY_CONSTANT) return double(s.strength) * to_vec(s.color);
+        if (s.kind == RT_SKY_GRADIENT)
+            return double(s.strength) * (d[1] < 0 ? to_vec(s.ground) : d[1] * to_vec(s.color) + (1 - d[1]) * to_vec(s.horizon));
+        // Bilinear between the middles of texels; around the zenith the picture has no end.
+        const double turn = 0.5 + std::atan2(d[2], d[0]) / (2 * kPi) + s.rotate_deg / 360.0;
+        const double x = turn * s.width - 0.5, y = std::acos(std::clamp(d[1], -1.0, 1.0)) / kPi * s.height - 0.5;
+        const double column = std::floor(x), row = std::floor(y);
+        Vec sum{};
+        for (const int down : {0, 1})
+            for (const int right : {0, 1}) {
+                const auto at_x = size_t(long(column + right + 4.0 * s.width) % long(s.width));
+                const auto at_y = size_t(std::clamp(row + down, 0.0, s.height - 1.0));
+                const float* const texel = scene_.sky.texels.data() + 3 * (at_y * s.width + at_x);
+                const double part = (right ? x - column : 1 - (x - column)) * (down ? y - row : 1 - (y - row));
+                for (size_t k = 0; k < 3; ++k) sum[k] += part * s.strength * texel[k];
+            }
+        return sum;
+    }
+
     Vec suns_seen(const Vec& direction) const {
         Vec sum{};
         for (const rt_light& l : view_.lights)
@@ -148,6 +175,7 @@ class PathTracer {
     const Scene& scene_;
     const View& view_;
     const unsigned depth_;
+    const int bounce_;
     const World world_;
 };
 
@@ -167,7 +195,7 @@ double PathPicture::total_error(int channel) const {
 PathPicture trace_paths(const Scene& scene, const View& view, const PathLimits& limits) {
     for (const Material& m : scene.materials)
         if (m.values.texture != RT_NONE) throw std::invalid_argument("the reference knows no textures: " + m.name);
-    const PathTracer tracer(scene, view, limits.depth);
+    const PathTracer tracer(scene, view, limits);
     const Vec eye = to_vec(view.camera.eye), w = normalized(to_vec(view.camera.target) - eye);
     const Vec u = normalized(cross(w, to_vec(view.camera.up))), v = cross(u, w);
     const double tangent = std::tan(0.5 * view.camera.fov_y_rad), aspect = double(limits.width) / limits.height;

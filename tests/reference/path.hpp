@@ -25,6 +25,7 @@ struct PathLimits {
     unsigned depth;    // scattering events; the last ray finds emission only
     unsigned samples;  // of a pixel, drawn uniformly in it
     uint64_t seed = 1;
+    int bounce = -1;  // light that came by so many events only; -1: all
 };
 
 // Keeps no reference. Throws std::invalid_argument if the scene has textures.

@@ -10,7 +10,7 @@ using namespace clarity::reference;
 
 TEST(PathReference, MeetsClosedForms) {
     for (const ClosedForm& form : closed_forms()) {
-        const PathPicture picture = trace_paths(form.scene, form.view, {8, 8, form.depth, 1600});
+        const PathPicture picture = trace_paths(form.scene, form.view, {8, 8, form.depth, 1600, 1, form.bounce});
         for (size_t c = 0; c < 3; ++c) {
             const double error = picture.total_error(int(c));
             EXPECT_NEAR(picture.total()[c], form.expected[c], 4 * error + form.rounding) << form.name << ", channel " << c;

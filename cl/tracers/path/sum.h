@@ -20,7 +20,8 @@ RT_INLINE void rt_add_sample(global float4 *film, size_t pixels, size_t at, floa
     float4 left = lost - (total - rough);
     const float value = RT_LUMINANCE(light), before = RT_LUMINANCE(sum) / max(sum.w, 1.0f);
     const float count = rough.w, after = RT_LUMINANCE(total) / count;
-    left.w = is_first ? 0.0f : rest.w + (value - before) * (value - after);
+    /* The mean lies between before and the value; rounding may put it beyond. */
+    left.w = is_first ? 0.0f : rest.w + max((value - before) * (value - after), 0.0f);
     film[at] = (float4)(total.xyz, count);
     film[pixels + at] = left;
 }

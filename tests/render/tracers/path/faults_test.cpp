@@ -32,6 +32,8 @@ TEST(PathFaults, AreFound) {
          "*u = rt_min(rest, rt_vfloat(0.99999994f));", "PathLobes.LanesAgree"},
         {"the disc is an ellipse", "sampling/warps.h", "*y = radius * sine;", "*y = rt_vfloat(0.97f) * radius * sine;",
          "PathMath.Warps*"},
+        {"sums drift", "tracers/path/sum.h", "const float4 total = rough + lost;", "const float4 total = rough;",
+         "PathSums.OfAM*"},
         {"a sine with a wrong digit", "sampling/math.h", "-1.666666664e-1f", "-1.666566664e-1f", "PathMath.Functions*"},
     };
     for (const PlantedFault& fault : faults) EXPECT_EQ(why_not_found(fault), "") << fault.name;
