@@ -119,7 +119,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     mesh.face_materials = materials.data();
     instance.name = is("loses_name") ? nullptr : "triangles";
     instance.mesh = rt::id(sink_of->mesh(sink_of->ctx, &mesh));
-    if (is("moves_instance")) instance.world_from_object[3] = 0.25f;
+    if (is("moves_instance") && count == 4) instance.world_from_object[3] = 0.25f;
     if (is("singular")) instance.world_from_object[10] = 0;
     if (is("first_differs") && imports++ == 0) instance.world_from_object[3] = 1e-3f;
     if (!is("no_instance")) rt::id(sink_of->instance(sink_of->ctx, &instance));

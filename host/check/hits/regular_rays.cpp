@@ -195,6 +195,7 @@ std::vector<RaySet> each_ray_sets(const BuildScene& scene, size_t count, uint64_
                "a leaf's last primitive, a small tree or a kind of leaf is left out"};
     for (size_t i = 0; count > 0 && i <= scene.instances.size(); ++i) {  // the last one stands for the world
         const bool world = i == scene.instances.size();
+        if (!world && scene.instances[i].hidden != 0) continue;
         const rt_group& group = scene.groups[world ? 0 : scene.group_of_instance[i]];
         const Affine m = world ? kIdentity : scene.world_from_object[i];
         for (rt_u32 p = group.first; p < group.first + group.count; ++p) {
