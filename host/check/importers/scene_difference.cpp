@@ -177,6 +177,8 @@ std::string difference_of_materials(const Scene& scene, const Contents& truth) {
 std::string difference_of_instances(const Scene& scene, const Contents& truth) {
     for (const Contents::Placed& wanted : truth.placed) {
         std::string why = "has no instance with the name '" + wanted.name + "'";
+        for (size_t i = 0; i < std::min(scene.instances.size(), kMostShown); ++i)
+            why += (i ? ", '" : ": its first ones are '") + scene.instances[i].name + "'";
         for (const Instance& instance : scene.instances) {
             if (instance.name != wanted.name) continue;
             const Mesh& mesh = scene.meshes[instance.mesh];
