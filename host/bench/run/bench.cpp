@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "bench/baselines/speedup.hpp"
-#include "bench/cases/case_runner.hpp"
+#include "bench/cases/case_run.hpp"
 #include "bench/cases/entry.hpp"
 #include "bench/cases/ranks.hpp"
 #include "bench/run/failure.hpp"
@@ -107,7 +107,7 @@ class Session {
         try {
             if (c.measure == "ranks")
                 return measure_ranks(suite_.scenes[c.scene].source, plugins_, request_, c, options_, rules, progress_);
-            return run_case(fixture_, plugins_, request_, c, rules, progress_);
+            return run_case({fixture_, plugins_, request_, c, rules, progress_});
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& e) {
