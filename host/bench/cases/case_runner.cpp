@@ -4,6 +4,7 @@
 
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/baseline_entries.hpp"
+#include "bench/cases/light.hpp"
 #include "bench/cases/own_entries.hpp"
 #include "bench/cases/pictures.hpp"
 #include "bench/motion/motion.hpp"
@@ -78,6 +79,8 @@ class CaseRunner {
                 add_whitted(state_, entry, settings, held);
             else if (case_.measure == "moving")
                 add_moving(state_, entry, settings, held, variant.overlapped);
+            else if (case_.measure == "light")
+                add_light(state_, entry, settings, held, request_.reference);
             else if (case_.measure == "dropped")
                 entry.finish = [=](BenchRecord& r) { count_rays(state_, r, settings, held, fixture_.view()); };
             else

@@ -33,27 +33,6 @@ struct Crew {
     Json stats;                                        // of the last repetition
 };
 
-// The words of `clarity render` that all crews share.
-std::vector<std::string> render_words(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
-                                      const Variant& variant, const import::ImportOptions& import) {
-    std::vector<std::string> words = scene.files;
-    const auto add = [&](const char* option, const std::string& value) {
-        if (value.empty()) return;
-        words.emplace_back(option);
-        words.push_back(value);
-    };
-    for (const PluginRecord& record : plugins.records())  // ranks find the others themselves
-        if (record.plugin && !is_own_library(record.path)) add("--plugin", record.path);
-    for (const std::string& folder : import.search_paths) add("--search-path", folder);
-    for (const std::string& importer : import.importers) add("--importer", importer);
-    for (const auto* settings : {&request.settings, &variant.settings})
-        for (const auto& [key, value] : *settings) add("--set", key + "=" + value);
-    add("--accel", variant.accel);
-    add("--camera", scene.camera);
-    add("--light", scene.light);
-    return words;
-}
-
 Crew make_crew(unsigned ranks, const std::vector<DeviceInfo>& devices, const BenchRecord& row, const std::string& label) {
     const std::vector<DeviceInfo> own(devices.begin(), devices.begin() + std::min<std::ptrdiff_t>(ranks, devices.size()));
     Crew crew;
@@ -95,27 +74,6 @@ Sample note(Crew& crew, const RankRun& run) {
     return {slowest, trace + traced + collect};
 }
 
-// What the ranks told about settings, structure and rays.
-void describe(BenchRecord& row, const Json& stats) {
-    row.accel = stats.at("accel");
-    row.tracer = stats.at("tracer");
-    row.depth = stats.at("depth");
-    std::sscanf(stats.at("size").get<std::string>().c_str(), "%dx%d", &row.width, &row.height);
-    std::sscanf(stats.at("packet").get<std::string>().c_str(), "%dx%d", &row.packet_w, &row.packet_h);
-    row.lanes = stats.at("lanes");
-    row.triangles = stats.at("triangles");
-    row.build_ms = stats.at("build_ms");
-    row.pack_ms = stats.at("pack_ms");
-    row.compile_ms = stats.at("compile_ms");
-    row.accel_bytes = stats.at("accel_bytes");
-    row.nodes = stats.at("nodes");
-    row.bytes_per_triangle = row.triangles > 0 ? double(row.accel_bytes) / double(row.triangles) : 0;
-    row.rays_primary = stats.at("rays").at("primary");
-    row.rays_shadow = stats.at("rays").at("shadow");
-    row.rays_secondary = stats.at("rays").at("secondary");
-    row.rays_dropped = stats.at("dropped_rays");
-}
-
 void finish(Crew& crew, const Crew& first, const Measured& measured) {
     BenchRecord& row = crew.row;
     if (!crew.stats.is_null()) describe(row, crew.stats);
@@ -134,6 +92,46 @@ unsigned device_count(const BenchRecord& row, size_t devices) {
 }
 
 }  // namespace
+
+std::vector<std::string> render_words(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
+                                      const Variant& variant, const import::ImportOptions& import) {
+    std::vector<std::string> words = scene.files;
+    const auto add = [&](const char* option, const std::string& value) {
+        if (value.empty()) return;
+        words.emplace_back(option);
+        words.push_back(value);
+    };
+    for (const PluginRecord& record : plugins.records())  // ranks find the others themselves
+        if (record.plugin && !is_own_library(record.path)) add("--plugin", record.path);
+    for (const std::string& folder : import.search_paths) add("--search-path", folder);
+    for (const std::string& importer : import.importers) add("--importer", importer);
+    for (const auto* settings : {&request.settings, &variant.settings})
+        for (const auto& [key, value] : *settings) add("--set", key + "=" + value);
+    add("--accel", variant.accel);
+    add("--camera", scene.camera);
+    add("--light", scene.light);
+    return words;
+}
+
+void describe(BenchRecord& row, const nlohmann::json& stats) {
+    row.accel = stats.at("accel");
+    row.tracer = stats.at("tracer");
+    row.depth = stats.at("depth");
+    std::sscanf(stats.at("size").get<std::string>().c_str(), "%dx%d", &row.width, &row.height);
+    std::sscanf(stats.at("packet").get<std::string>().c_str(), "%dx%d", &row.packet_w, &row.packet_h);
+    row.lanes = stats.at("lanes");
+    row.triangles = stats.at("triangles");
+    row.build_ms = stats.at("build_ms");
+    row.pack_ms = stats.at("pack_ms");
+    row.compile_ms = stats.at("compile_ms");
+    row.accel_bytes = stats.at("accel_bytes");
+    row.nodes = stats.at("nodes");
+    row.bytes_per_triangle = row.triangles > 0 ? double(row.accel_bytes) / double(row.triangles) : 0;
+    row.rays_primary = stats.at("rays").at("primary");
+    row.rays_shadow = stats.at("rays").at("shadow");
+    row.rays_secondary = stats.at("rays").at("secondary");
+    row.rays_dropped = stats.at("dropped_rays");
+}
 
 std::vector<BenchRecord> measure_ranks(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
                                        const BenchCase& c, const BenchOptions& options, const MeasureRules& rules,

@@ -37,7 +37,8 @@ void send(pid_t group, int signal) {
 
 // Starts a program in a process group of its own, so that Ctrl-C reaches only us, and waits for its end. messages: a file for
 // its stdout and stderr.
-Ended run_program(std::vector<std::string> words, const std::string& messages, const Progress& progress) {
+Ended run_program(std::vector<std::string> words, const std::string& messages, const std::string& install,
+                  const Progress& progress) {
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
@@ -60,9 +61,7 @@ Ended run_program(std::vector<std::string> words, const std::string& messages, c
     const int error = posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&files);
-    if (error != 0)
-        throw Error(Exit::failed, words[0] + " cannot be started: " + std::strerror(error) +
-                                      "; install Open MPI (Debian: openmpi-bin), or name what starts ranks with --mpirun");
+    if (error != 0) throw Error(Exit::failed, words[0] + " cannot be started: " + std::strerror(error) + "; " + install);
     constexpr double kPatienceMs = 5000;  // mpirun ends the ranks when it gets SIGTERM
     Clock::time_point cancelled;
     for (bool asked = false;;) {
@@ -105,29 +104,16 @@ std::string words_of(const std::string& messages) {
 
 }  // namespace
 
-RankRunner::RankRunner(const std::string& mpirun, std::vector<std::string> render)
-    : folder_("clarity-ranks"), render_(std::move(render)) {
-    std::istringstream words(mpirun);
-    for (std::string word; words >> word;) mpirun_.push_back(word);
-    if (mpirun_.empty()) throw Error(Exit::usage, "--mpirun: name a program, as in --mpirun \"mpirun --oversubscribe\"");
-}
-
-RankRun RankRunner::run(unsigned ranks, const std::string& device, const Progress& progress) const {
-    const std::string stats = folder_.path() + "/stats.json", picture = folder_.path() + "/picture.pfm",
-                      messages = folder_.path() + "/messages";
+RankRun run_render(std::vector<std::string> words, const std::string& folder, const std::string& install,
+                   const Progress& progress) {
+    const std::string stats = folder + "/stats.json", picture = folder + "/picture.pfm", messages = folder + "/messages";
     unlink(stats.c_str());
     unlink(picture.c_str());
-    std::vector<std::string> words = mpirun_;
-    for (const std::string& word : {std::string("-n"), std::to_string(ranks), program_file().string(), std::string("render")})
+    for (const std::string& word : {std::string("-q"), std::string("-o"), picture, std::string("--stats"), stats})
         words.push_back(word);
-    words.insert(words.end(), render_.begin(), render_.end());
-    for (const std::string& word : {std::string("--mpi"), std::string("-q"), std::string("--device"), device, std::string("-o"),
-                                    picture, std::string("--stats"), stats})
-        words.push_back(word);
-    const Ended ended = run_program(words, messages, progress);
+    const Ended ended = run_program(words, messages, install, progress);
     if (!WIFEXITED(ended.status) || WEXITSTATUS(ended.status) != 0)
-        throw Error(Exit::failed, mpirun_[0] + " -n " + std::to_string(ranks) + ": " + cause(ended.status) +
-                                      words_of(read_file(messages, kMaxTextFileBytes, Exit::failed)));
+        throw Error(Exit::failed, cause(ended.status) + words_of(read_file(messages, kMaxTextFileBytes, Exit::failed)));
     RankRun run;
     run.whole_ms = ended.ms;
     try {
@@ -138,6 +124,27 @@ RankRun RankRunner::run(unsigned ranks, const std::string& device, const Progres
     run.picture = digest_of_file(picture);
     if (run.picture.empty()) throw Error(Exit::failed, picture + ": cannot be read");
     return run;
+}
+
+RankRunner::RankRunner(const std::string& mpirun, std::vector<std::string> render)
+    : folder_("clarity-ranks"), render_(std::move(render)) {
+    std::istringstream words(mpirun);
+    for (std::string word; words >> word;) mpirun_.push_back(word);
+    if (mpirun_.empty()) throw Error(Exit::usage, "--mpirun: name a program, as in --mpirun \"mpirun --oversubscribe\"");
+}
+
+RankRun RankRunner::run(unsigned ranks, const std::string& device, const Progress& progress) const {
+    std::vector<std::string> words = mpirun_;
+    for (const std::string& word : {std::string("-n"), std::to_string(ranks), program_file().string(), std::string("render")})
+        words.push_back(word);
+    words.insert(words.end(), render_.begin(), render_.end());
+    for (const std::string& word : {std::string("--mpi"), std::string("--device"), device}) words.push_back(word);
+    try {
+        return run_render(words, folder_.path(),
+                          "install Open MPI (Debian: openmpi-bin), or name what starts ranks with --mpirun", progress);
+    } catch (const Error& e) {
+        throw Error(e.code(), mpirun_[0] + " -n " + std::to_string(ranks) + ": " + e.what());
+    }
 }
 
 }  // namespace clarity::bench

@@ -15,6 +15,12 @@ struct RankRun {
     std::string picture;   // digest of the picture's file
 };
 
+// Runs a command that ends in the words of `clarity render`, and waits. folder: takes statistics, picture and messages; the
+// command gets their options. install: what to do if the program cannot be started. Throws Error(failed) with the program's
+// last words if it fails, and Cancelled, after it has ended with all that it has started.
+RankRun run_render(std::vector<std::string> words, const std::string& folder, const std::string& install,
+                   const Progress& progress);
+
 // Used from one thread.
 class RankRunner {
  public:
