@@ -35,7 +35,7 @@ typedef struct rt_instance {
     rt_u32 hidden;     /* not 0: no ray hits it */
 } rt_instance;
 
-/* A surface. Colours are linear RGB. Whitted's share 1 - reflect - refract is diffuse. 80 B. */
+/* A surface. Colours are linear RGB. Whitted's share 1 - reflect - refract is diffuse. 96 B. */
 typedef struct rt_material {
     rt_f32 color[3];      /* diffuse reflectance; also tints refracted light. Of a conductor: reflectance at normal incidence */
     rt_f32 reflect;       /* 0..1, mirror share */
@@ -49,7 +49,14 @@ typedef struct rt_material {
     rt_u32 model;         /* RT_MODEL_*: what `path` takes the surface for. Whitted's tracers read the members above */
     rt_f32 absorption[3]; /* inside of a dielectric, per unit of length: light falls by exp(-absorption length) */
     rt_f32 roughness;     /* 0..1; GGX with alpha = roughness^2; 0: smooth */
+    rt_u32 alpha;         /* RT_ALPHA_*: what becomes of the alpha, which is opacity times those of the texture and the vertices */
+    rt_f32 opacity;       /* 0..1 */
+    rt_f32 cutoff;        /* RT_ALPHA_MASK: where alpha is below it, there is no surface */
+    rt_u32 pad;
 } rt_material;
+#define RT_ALPHA_OPAQUE 0u /* alpha does not count */
+#define RT_ALPHA_MASK 1u
+#define RT_ALPHA_BLEND 2u  /* the share of the surface that is there; through the rest one sees what is behind */
 
 /* A light. What `color` is depends on the kind: see RT_LIGHT_* in rt_shared.h. 96 B. */
 typedef struct rt_light {
@@ -115,7 +122,9 @@ typedef struct rt_texture {
 } rt_texture;
 #define RT_WRAP_ALONG_V 4u
 
-/* Values that may change from frame to frame while program and scene stay the same. 228 B. */
+#define RT_MOST_NUMBERS 16
+
+/* Values that may change from frame to frame while program and scene stay the same. 276 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
     rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
@@ -134,7 +143,6 @@ typedef struct rt_frame {
     rt_u32 adds;   /* 0: the sample replaces what is in the film; else it is added */
     rt_u32 layers; /* samples of the launch, this one first, each into a film of its own; so many rt_frame follow each other */
     rt_u32 packet_w, packet_h;    /* pixels of one work-item */
-    rt_f32 min_weight;            /* rays of a smaller weight are not spawned */
     rt_u32 shadows;               /* 0: no shadow rays */
     rt_u32 aov;                   /* what aov.cl writes: RT_AOV_T, ... */
     rt_u32 root;                  /* root of group 0's tree */
@@ -144,15 +152,13 @@ typedef struct rt_frame {
     rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
     rt_u32 samples;    /* `path`: of this launch, this one first; they are added to the film in their order */
-    rt_u32 seed;       /* `path`: pictures of two seeds have independent noise */
     rt_u32 path_flags; /* RT_PATH_* */
     rt_f32 focus;          /* thin lens: distance along `forward` that is sharp */
     rt_f32 lens_x, lens_y; /* radius of the lens by the lengths of right and up; 0: a pinhole */
     /* The paths that count (--only-paths); RT_NONE: all. */
-    rt_u32 only_bounce; /* number of events between light and camera */
     rt_u32 only_by;     /* RT_BY_* */
     rt_u32 only_first;  /* RT_FIRST_*, of the first event */
-    rt_u32 only_light;  /* number of a light */
+    rt_u32 numbers[RT_MOST_NUMBERS]; /* settings that kernels read by their keys: RT_SETTING(frame, key) */
 } rt_frame;
 /* How a path came to its light: by a point that was drawn on it, or by the ray of a surface or the camera. */
 #define RT_BY_NEE 0u

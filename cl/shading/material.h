@@ -96,7 +96,7 @@ RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, v
 }
 #endif
 
-/* The color of one material in the lanes `mine`, checkerboard and texture included. */
+/* The color of one material in the lanes `mine`, with its checkerboard and texture and the colours of vertices. */
 RT_INLINE rt_vec rt_material_color(const rt_ctx *ctx, const global rt_material *m, const rt_surface *s, vmask mine, rt_vec at)
 {
     rt_vec color = rt_spread(m->color);
@@ -107,6 +107,9 @@ RT_INLINE rt_vec rt_material_color(const rt_ctx *ctx, const global rt_material *
     }
 #if RT_HAS_TEXTURES
     if (m->texture != RT_NONE) color = rt_mul(color, rt_sample_texture(ctx, m->texture, mine, s->tex_u, s->tex_v));
+#endif
+#ifdef RT_HAS_COLORS
+    color = rt_mul(color, s->color);
 #endif
     return color;
 }

@@ -150,7 +150,7 @@ RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, 
                              vmask *refracted)
 {
     const rt_split split = rt_fresnel(p, m);
-    const vfloat least = rt_vfloat(frame->min_weight), heaviest = rt_largest(weight);
+    const vfloat least = rt_vfloat(RT_SETTING(frame, min_weight)), heaviest = rt_largest(weight);
     *mirrored = p->hits & RT_MASK(split.mirrored * heaviest > least);
     *refracted = p->hits & RT_MASK(split.refracted * heaviest > least);
     return split;

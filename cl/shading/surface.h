@@ -47,6 +47,9 @@ typedef struct rt_surface {
     rt_vec geometric;    /* unit normal, world, on the primitive's own side */
     rt_vec normal;       /* unit shading normal, on the side of `geometric`; interpolated where there are vertex normals */
     vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
+#ifdef RT_HAS_COLORS
+    rt_vec color;        /* of the vertices, linear; 1 where there are none */
+#endif
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;         /* twice the triangle's area; infinite for other kinds of primitives */
 #endif
@@ -137,6 +140,10 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_UVS
     vfloat corner_u[3] = {zero, zero, zero}, corner_v[3] = {zero, zero, zero};
 #endif
+#ifdef RT_HAS_COLORS
+    rt_vec corner_color[3];
+    for (uint i = 0; i < 3u; ++i) corner_color[i] = rt_splat(1.0f, 1.0f, 1.0f);
+#endif
 #if RT_HAS_TEXTURES
     vmask planar = rt_vint(0);
     uint round = 0;
@@ -206,6 +213,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
                 corner_u[i] = rt_select(mine, rt_vfloat(ctx->uvs[2u * tri->v[i]]), corner_u[i]);
                 corner_v[i] = rt_select(mine, rt_vfloat(ctx->uvs[2u * tri->v[i] + 1u]), corner_v[i]);
 #endif
+#ifdef RT_HAS_COLORS
+                corner_color[i] = rt_choose(mine, rt_spread(ctx->colors + 4u * (size_t)tri->v[i]), corner_color[i]);
+#endif
             }
         }
 #endif
@@ -222,6 +232,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_UVS
     s.tex_u = fma(u, corner_u[0], fma(v, corner_u[1], w * corner_u[2]));
     s.tex_v = fma(u, corner_v[0], fma(v, corner_v[1], w * corner_v[2]));
+#endif
+#ifdef RT_HAS_COLORS
+    s.color = rt_along(u, corner_color[0], rt_along(v, corner_color[1], rt_scale(w, corner_color[2])));
 #endif
 #if RT_HAS_SPHERES && RT_HAS_TEXTURES
     /* Longitude and latitude, poles on Y. Lanes are computed one by one, because a library's vector functions need not agree with

@@ -84,6 +84,7 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["triangles"] = scene.placed_triangle_count();
     json["unique_triangles"] = scene.triangle_count();
     json["vertices"] = scene.vertex_count();
+    json["vertex_colors"] = !scene.colors.empty();
     json["faces"] = face_count(scene);
     json["polygons"] = scene.polygons.size();
     json["spheres"] = scene.spheres.size();
@@ -145,7 +146,7 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     if (placed != scene.triangle_count()) more += ", " + grouped(scene.triangle_count()) + " of them different";
     if (faces != placed) more += ", from " + grouped(faces) + " " + noun(faces, "face");
     count_row("triangles", placed, more);
-    count_row("vertices", scene.vertex_count());
+    count_row("vertices", scene.vertex_count(), scene.colors.empty() ? "" : ", with colours");
     count_row("meshes", scene.meshes.size());
     count_row("instances", scene.instances.size());
     count_row("spheres", scene.spheres.size());

@@ -72,7 +72,8 @@ struct Converted {
 // The one list of all sections: whoever writes, reads or compares scenes uses it, so that they always agree.
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {
-    v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.triangles), v(s.triangle_materials), v(c.meshes), v(c.instances);
+    v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.colors), v(s.triangles), v(s.triangle_materials);
+    v(c.meshes), v(c.instances);
     v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.shape_kinds), v(s.shapes), v(s.shape_parts);
     v(s.shape_numbers), v(c.materials), v(s.textures), v(s.texels), v(s.sky.texels), v(c.lights);
     v(c.cameras), v(c.nodes), v(c.clips), v(c.morphs);

@@ -126,6 +126,7 @@ struct Scene {
     SharedArray<float> positions;            // 3 per vertex
     SharedArray<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
     SharedArray<float> uvs;                  // 2 per vertex; or empty
+    SharedArray<float> colors;               // linear r, g, b and alpha per vertex, 1 for meshes without colours; or empty
     SharedArray<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
     SharedArray<rt_u32> triangle_materials;  // 1 per triangle
     std::vector<Mesh> meshes;

@@ -39,6 +39,7 @@ std::string check_arrays(const Scene& s) {
     if (vertices >= RT_NONE) return "positions: " + std::to_string(vertices) + " vertices are more than an index can name";
     if (!s.normals.empty() && s.normals.size() != s.positions.size()) return "normals: not 3 numbers per vertex";
     if (!s.uvs.empty() && s.uvs.size() != 2 * vertices) return "uvs: not 2 numbers per vertex";
+    if (!s.colors.empty() && s.colors.size() != 4 * vertices) return "colors: not 4 numbers per vertex";
     if (s.triangles.size() % 3 != 0) return "triangles: " + std::to_string(s.triangles.size()) + " indices, not 3 per triangle";
     if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
     if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
@@ -55,6 +56,7 @@ std::string check_arrays(const Scene& s) {
     std::string why = check("position", s.positions, 3);
     if (why.empty()) why = check("normal", s.normals, 3);
     if (why.empty()) why = check("uv", s.uvs, 2);
+    if (why.empty()) why = check("color", s.colors, 4);
     return why.empty() ? check("polygon corner", s.polygon_corners, 3) : why;
 }
 

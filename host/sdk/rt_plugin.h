@@ -24,7 +24,8 @@
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
- *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky of rt_scene_sink. */
+ *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky of rt_scene_sink; colors of
+ *      meshes. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -327,6 +328,8 @@ typedef struct rt_mesh {
     uint64_t face_count;
     const rt_u32 *face_materials; /* per face, ids that the sink's `material` returned; NULL: all have `material` */
     double origin[3]; /* appended: what was subtracted from positions in double precision, so that floats keep their details */
+    const float *colors; /* appended: linear r, g, b and alpha per vertex, which multiply the color of the material; or NULL */
+    rt_u32 color_stride, pad;
 } rt_mesh;
 
 typedef struct rt_instance_desc {

@@ -112,6 +112,8 @@ inline void ReadingSink::mesh(const rt_mesh& d) {
         if (d.normals)
             read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.normals) + uint64_t(i) * d.normal_stride), 3);
         if (d.uvs) read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.uvs) + uint64_t(i) * d.uv_stride), 2);
+        if (d.colors)
+            read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.colors) + uint64_t(i) * d.color_stride), 4);
     }
     read(d.indices, d.index_count);
     read(d.face_sizes, d.face_count);

@@ -17,7 +17,7 @@ Picture trace(const Scene& scene, const View& view, int width, int height, int d
     settings.width = width;
     settings.height = height;
     settings.depth = depth;
-    settings.min_weight = 0;
+    set_setting(settings, "min_weight", "0");
     Picture picture{width, height, {}, {}};
     picture.image = Workbench::get().values(shared_scene(scene), settings, view, &picture.stats);
     return picture;

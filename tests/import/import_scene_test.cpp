@@ -19,6 +19,7 @@ Scene sample() {
     s.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 500, 500, 500};
     s.normals.assign(12, 0.f);
     s.uvs.assign(8, 0.f);
+    s.colors.assign(16, 1.f);
     s.triangles = {0, 1, 2};
     s.triangle_materials = {0};
     s.meshes = {{"m", 0, 4, 0, 1, 1}};
@@ -65,6 +66,8 @@ TEST(Scene, validate_names_every_damage) {
         {"normal 2", [](Scene& s) { s.normals.own()[6] = kNan; }},
         {"uvs", [](Scene& s) { s.uvs.resize(3); }},
         {"uv 3", [](Scene& s) { s.uvs.own()[7] = kNan; }},
+        {"colors", [](Scene& s) { s.colors.resize(12); }},
+        {"color 3", [](Scene& s) { s.colors.own()[15] = kNan; }},
         {"triangles", [](Scene& s) { s.triangles.push_back(0); }},
         {"triangle materials", [](Scene& s) { s.triangle_materials.clear(); }},
         {"material 1 of 1", [](Scene& s) { s.triangle_materials.own()[0] = 1; }},

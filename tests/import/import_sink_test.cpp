@@ -42,6 +42,10 @@ TEST_P(Sink, strided_attributes_are_unpacked_and_padded) {
     EXPECT_EQ(scene.normals[3 * 5 + 2], 1.f);
     EXPECT_EQ(scene.uvs[2 * 5], 1.f);
     EXPECT_EQ(scene.uvs[2 * 5 + 1], 1.f);
+    ASSERT_EQ(scene.colors.size(), 28u);
+    for (size_t i = 0; i < 12; ++i) EXPECT_EQ(scene.colors[i], 1.f) << "the first mesh has none";
+    const std::vector<float> last(scene.colors.begin() + 20, scene.colors.begin() + 24);
+    EXPECT_EQ(last, (std::vector<float>{1, 0.5f, 100, 0})) << "what is out of range is limited";
     EXPECT_EQ(scene.meshes.at(1).polygon_count, 1u);
     EXPECT_EQ(scene.meshes.at(1).triangle_count, 2u);
 }

@@ -33,6 +33,7 @@ Scene sample() {
     s.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     s.normals.assign(9, 0.5f);
     s.uvs = {0, 0, 1, 0, 0, 1};
+    s.colors = {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 0.5f};
     s.triangles = {0, 1, 2};
     s.triangle_materials = {1};
     s.meshes = {{"a mesh", 0, 3, 0, 1, 1}, {"", 0, 3, 0, 1, 1}};

@@ -102,13 +102,13 @@ struct Run {
         return fail("the sink took it");
     }
 
-    // A mesh of one face, with corners as x y pairs. It tests triangulation, or with `strided` the copying with normals and
-    // uvs.
+    // A mesh of one face, with corners as x y pairs. It tests triangulation, or with `strided` the copying with normals,
+    // uvs and colours, of which blue and alpha may be out of range.
     int32_t face(std::istream& words) const {
         std::vector<float> data;
         std::vector<rt_u32> indices;
         for (float x = 0, y = 0; words >> x >> y;) {
-            for (const float value : {x, y, 0.f, 0.f, 0.f, 1.f, x, y}) data.push_back(value);
+            for (const float value : {x, y, 0.f, 0.f, 0.f, 1.f, x, y, x, 0.5f, 200.f * y, -1.f}) data.push_back(value);
             indices.push_back(static_cast<rt_u32>(indices.size()));
         }
         const rt_u32 size = static_cast<rt_u32>(indices.size());
@@ -116,8 +116,9 @@ struct Run {
         mesh.positions = data.data();
         mesh.normals = data.data() + 3;
         mesh.uvs = data.data() + 6;
+        mesh.colors = data.data() + 8;
         mesh.vertex_count = size;
-        mesh.position_stride = mesh.normal_stride = mesh.uv_stride = 32;
+        mesh.position_stride = mesh.normal_stride = mesh.uv_stride = mesh.color_stride = 48;
         mesh.indices = indices.data();
         mesh.index_count = size;
         mesh.face_sizes = &size;

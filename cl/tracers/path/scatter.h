@@ -59,10 +59,10 @@ RT_INLINE vint rt_first_kind(const rt_path *p, const rt_bsdf *bsdf, vmask sharp,
  * RT_BY_*. */
 RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lanes, rt_vec light, vint bounce, uint by, vint first, vint number)
 {
-    if (frame->only_bounce != RT_NONE) lanes &= RT_MASK(bounce == rt_vint((int)frame->only_bounce));
+    if (RT_SETTING(frame, only_bounce) >= 0) lanes &= RT_MASK(bounce == rt_vint(RT_SETTING(frame, only_bounce)));
     if (frame->only_by != RT_NONE && frame->only_by != by) return;
     if (frame->only_first != RT_NONE) lanes &= RT_MASK(first == rt_vint((int)frame->only_first));
-    if (frame->only_light != RT_NONE) lanes &= RT_MASK(number == rt_vint((int)frame->only_light));
+    if (RT_SETTING(frame, only_light) >= 0) lanes &= RT_MASK(number == rt_vint(RT_SETTING(frame, only_light)));
     light = rt_mul(p->weight, light);
 #ifdef RT_SHOW_MIS
     const vfloat all = RT_LUMINANCE(light);

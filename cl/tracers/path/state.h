@@ -52,7 +52,7 @@ RT_INLINE rt_sampler rt_sampler_of(const constant rt_frame *frame, const rt_path
     s.pixel = p->pixel;
     s.sample = p->sample;
     s.end = frame->sample + frame->samples;
-    s.seed = frame->seed;
+    s.seed = RT_SETTING(frame, seed);
     s.sobol = frame->path_flags & RT_PATH_SOBOL;
     return s;
 }

@@ -34,7 +34,7 @@ WhittedScene whitted_scene(const View& view, const Settings& settings) {
     whitted.light = view.lights.at(0);
     whitted.color = view.materials.at(0).color[0];
     whitted.reflect = view.materials.at(0).reflect;
-    whitted.min_weight = static_cast<float>(settings.min_weight);
+    whitted.min_weight = static_cast<float>(number_of(settings, "min_weight"));
     whitted.generations = static_cast<unsigned>(settings.depth);
     return whitted;
 }

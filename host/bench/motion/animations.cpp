@@ -56,6 +56,7 @@ Scene single_triangles(const Scene& scene) {
     soup.positions.clear();
     soup.normals.clear();
     soup.uvs.clear();
+    soup.colors = {};
     std::vector<rt_u32>& corners = soup.triangles.own();
     for (Mesh& mesh : soup.meshes) {
         const rt_u32 first = soup.vertex_count();

@@ -46,6 +46,7 @@ Scene with_object(Scene scene) {
             if (!scene.normals.empty()) scene.normals.push_back(0);
             if (!scene.uvs.empty() && a < 2) scene.uvs.push_back(0);
         }
+    if (!scene.colors.empty()) scene.colors.resize(4 * size_t(scene.vertex_count()), 1.0f);
     for (rt_u32 t = 0; t < 8; ++t) {
         const rt_u32 x = t & 1, y = 2 + (t >> 1 & 1), z = 4 + (t >> 2 & 1);
         const bool turned = (t ^ t >> 1 ^ t >> 2) & 1;

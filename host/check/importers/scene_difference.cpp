@@ -209,6 +209,7 @@ std::string difference(const Scene& a, const Scene& b) {
     std::string why = numbers("a coordinate", 3, a.positions, b.positions);
     if (why.empty()) why = numbers("the normal", 3, a.normals, b.normals);
     if (why.empty()) why = numbers("a texture coordinate", 2, a.uvs, b.uvs);
+    if (why.empty()) why = numbers("the colour", 4, a.colors, b.colors);
     if (!why.empty()) return why;
     if (const size_t at = first_difference(a.triangles, b.triangles); at != SIZE_MAX)
         return "the indices of triangle " + std::to_string(at / 3);

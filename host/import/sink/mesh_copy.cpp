@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "scene/material_keys.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -18,6 +19,7 @@ std::string check_description(const rt_mesh& m) {
         if (bad_stride(m.position_stride, 12)) return "position_stride " + std::to_string(m.position_stride);
         if (m.normals && bad_stride(m.normal_stride, 12)) return "normal_stride " + std::to_string(m.normal_stride);
         if (m.uvs && bad_stride(m.uv_stride, 8)) return "uv_stride " + std::to_string(m.uv_stride);
+        if (m.colors && bad_stride(m.color_stride, 16)) return "color_stride " + std::to_string(m.color_stride);
     }
     if (m.index_count > 0 && !m.indices) return "it has faces but no indices";
     // Every corner and every face takes 4 bytes of the plugin's memory, so a larger number is a wrong count.
@@ -53,19 +55,29 @@ bool copy_strided(const float* from, rt_u32 stride, rt_u32 count, rt_u32 width, 
     return good;
 }
 
-// A scene has normals and uvs either for all vertices or for none: earlier meshes without them get zeros. reserved: numbers for
-// which the array of positions has space.
-void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count, rt_u32 width, size_t reserved,
+// A scene has normals, uvs and colours either for all vertices or for none: meshes without them, and elements that are not
+// usable, get `none`. reserved: numbers for which the array of positions has space.
+void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count, rt_u32 width, float none, size_t reserved,
                     std::vector<float>& to) {
     if (!from && to.empty()) return;
     to.reserve(reserved / 3 * width);
-    to.resize(size_t(width) * (size_t(first) + count), 0.f);
+    to.resize(size_t(width) * (size_t(first) + count), none);
     if (!from || count == 0) return;
     float* values = to.data() + size_t(width) * first;
     if (copy_strided(from, stride, count, width, values)) return;
     for (rt_u32 i = 0; i < count; ++i, values += width) {
-        if (!are_usable(values, width)) std::fill(values, values + width, 0.f);
+        if (!are_usable(values, width)) std::fill(values, values + width, none);
     }
+}
+
+// Brings colours into the range of a material's color and opacity: files of no meaning have others.
+void limit_colors(rt_u32 first_vertex, SharedArray<float>& colors) {
+    const Key& key = material_key("color");
+    const auto most = static_cast<float>(key.max);
+    const size_t first = 4 * size_t(first_vertex);
+    const auto limit = [&](size_t i) { return std::clamp(colors[i], 0.f, i % 4 == 3 ? 1.f : most); };
+    for (size_t i = first; i < colors.size(); ++i)
+        if (colors[i] != limit(i)) colors.own()[i] = limit(i);
 }
 
 // Maps the material ids of a mesh's faces to scene materials.
@@ -168,8 +180,11 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
             if (unusable[i]) std::fill(positions, positions + 3, 0.f);
         }
     }
-    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, all_positions.capacity(), scene.normals.own());
-    copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, all_positions.capacity(), scene.uvs.own());
+    const size_t reserved = all_positions.capacity();
+    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, 0, reserved, scene.normals.own());
+    copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, 0, reserved, scene.uvs.own());
+    copy_attribute(m.colors, m.color_stride, first_vertex, m.vertex_count, 4, 1, reserved, scene.colors.own());
+    limit_colors(first_vertex, scene.colors);
 
     Mesh mesh;
     mesh.name = m.name ? m.name : "";

@@ -22,9 +22,11 @@ std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& sce
     pieces.push_back({"leaves", (counts.references + kLeafPadding) * sizeof(rt_packed_prim)});
     if (accel.slot_count > 0)
         pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
-    if (!scene.normals.empty() || !scene.uvs.empty()) pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
+    if (!scene.normals.empty() || !scene.uvs.empty() || !scene.colors.empty())
+        pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
     pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
     pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});
+    pieces.push_back({"colours of vertices", scene.colors.size() * sizeof(float)});
     pieces.push_back({"numbers of shapes", scene.shape_numbers.size() * sizeof(float)});
     pieces.push_back({"textures", scene.texels.size() * sizeof(uint32_t)});
     return pieces;

@@ -14,6 +14,16 @@ void write_layout(SourceWriter& out, const Layout& layout) {
     out.define_int("RT_GROUP_SIDE", layout.group_side);
 }
 
+// Settings that a kernel reads by their keys stand in rt_frame as bits.
+void write_numbers(SourceWriter& out) {
+    out.line("#define RT_SETTING(frame, key) RT_SETTING_##key((frame)->numbers)");
+    size_t at = 0;
+    for (const Setting* row : kernel_numbers()) {
+        const char* const type = row->kind == Setting::Kind::integer ? "as_int" : "as_float";
+        out.line("#define RT_SETTING_" + row->key + "(numbers) " + type + "((numbers)[" + std::to_string(at++) + "])");
+    }
+}
+
 void write_features(SourceWriter& out, const SceneFeatures& features, const KernelRow& row) {
     out.define_int("RT_HAS_INSTANCES", features.instances);
     out.define_int("RT_HAS_SPHERES", features.spheres);
@@ -22,7 +32,8 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_NORMALS", features.normals);
     const bool uvs = features.uvs && (features.textures || row.has(kReadsUvs));
     out.define_int("RT_HAS_UVS", uvs);
-    out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs);
+    out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs || features.colors);
+    if (features.colors) out.define_int("RT_HAS_COLORS", 1);
     out.define_int("RT_HAS_TEXTURES", features.textures);
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
@@ -73,6 +84,7 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
 
     SourceWriter out;
     write_layout(out, layout);
+    write_numbers(out);
     write_features(out, features, row);
     if (settings.portable) out.line("#define RT_PORTABLE");
     if (settings.debug) out.line("#define RT_DEBUG");

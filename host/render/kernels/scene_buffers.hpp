@@ -14,6 +14,7 @@ struct SceneBuffer {
     size_t checked_bytes;      // if not 0: the size of the type, which is compared with the device's
     bool of_shapes = false;    // only kernels of scenes with shapes have it
     bool of_emitters = false;  // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
+    bool of_colors = false;    // only kernels of scenes whose vertices have colours have it
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {
@@ -26,6 +27,7 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"rt_triangle", "triangles", "triangles", 0},
     {"float", "normals", "normals", 0},
     {"float", "uvs", "texture coordinates", 0},
+    {"float", "colors", "colours of vertices", 0, false, false, true},
     {"rt_texture", "textures", "texture table", 0},
     {"uint", "texels", "textures", 0},
     {"rt_light", "lights", "lights", 0},

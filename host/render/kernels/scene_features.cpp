@@ -19,6 +19,7 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
     f.wraps = f.textures && std::any_of(scene.textures.begin(), scene.textures.end(),
                                         [](const rt_texture& texture) { return texture.wrap != RT_WRAP_REPEAT; });
     f.sky_picture = scene.sky.values.kind == RT_SKY_PICTURE;
+    f.colors = !scene.colors.empty() && !build.attribute_triangle.empty();
     f.uvs = !scene.uvs.empty() && !build.attribute_triangle.empty();
     return f;
 }

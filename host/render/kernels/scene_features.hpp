@@ -8,7 +8,8 @@ struct SceneFeatures {
     bool instances = false, spheres = false, polygons = false, planes = false, normals = false, uvs = false, textures = false,
          shapes = false;
     bool sky_picture = false;
-    bool wraps = false;  // a texture is clamped or mirrored somewhere; otherwise all repeat
+    bool colors = false;  // vertices have colours
+    bool wraps = false;   // a texture is clamped or mirrored somewhere; otherwise all repeat
 };
 SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 

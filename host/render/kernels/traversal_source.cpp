@@ -85,6 +85,7 @@ std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneF
     };
     for (const SceneBuffer& buffer : kSceneBuffers) {
         if ((buffer.of_shapes && !features.shapes) || (buffer.of_emitters && !picks_lights)) continue;
+        if (buffer.of_colors && !features.colors) continue;
         add(buffer.type, buffer.name);
         if (buffer.checked_bytes) check(buffer.type, buffer.type, buffer.checked_bytes);
     }

@@ -137,7 +137,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     : loss_(device.loss()), scene_(std::move(scene)), accel_(std::move(accel)) {
     for (const Material& material : scene_->materials) materials_.push_back(material.values);
     const BuildScene& build = accel_->scene;
-    if (!scene_->normals.empty() || !scene_->uvs.empty()) {
+    if (!scene_->normals.empty() || !scene_->uvs.empty() || !scene_->colors.empty()) {
         attributes_.resize(build.attribute_triangle.size());
         for (size_t i = 0; i < attributes_.size(); ++i)
             for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
@@ -158,6 +158,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("textures", bytes_of(scene_->textures)),
         content("texels", bytes_of(scene_->texels)),
     };
+    if (!scene_->colors.empty()) contents.push_back(content("colors", bytes_of(scene_->colors)));
     if (!build.shapes.empty()) {
         contents.push_back(content("shapes", bytes_of(build.shapes)));
         contents.push_back(content("shape_numbers", bytes_of(scene_->shape_numbers)));

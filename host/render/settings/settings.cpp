@@ -1,6 +1,8 @@
 #include "render/settings/settings.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
@@ -44,30 +46,49 @@ Setting with_choices(Setting s, const std::vector<std::string>& choices, Read re
     return s;
 }
 
-Setting integer(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
-                int Settings::*member) {
-    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::integer, min, max);
-    s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
-    s.set = [=](Settings& settings, const std::string& text) {
-        int value = 0;
+// Gives a row of a number its text. `value` is the number's place in Settings, `whole` whether it is an integer.
+template <class Number, class Read, class Write>
+Setting with_number(Setting s, double min, double max, Read read, Write write) {
+    constexpr bool kWhole = std::is_integral_v<Number>;
+    s = with_range(std::move(s), kWhole ? Setting::Kind::integer : Setting::Kind::real, min, max);
+    s.get = [read](const Settings& settings) { return exact_text(static_cast<double>(read(settings))); };
+    s.set = [=, key = s.key](Settings& settings, const std::string& text) {
+        Number value = 0;
         if (!read_number(text, value) || value < min || value > max)
-            refuse_value(key, text, "a whole number from " + exact_text(min) + " to " + exact_text(max));
-        settings.*member = value;
+            refuse_value(key, text,
+                         (kWhole ? "a whole number from " : "a number from ") + exact_text(min) + " to " + exact_text(max));
+        write(settings, value);
     };
     return s;
 }
 
-Setting real(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
-             double Settings::*member) {
-    Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::real, min, max);
-    s.get = [member](const Settings& settings) { return exact_text(settings.*member); };
-    s.set = [=](Settings& settings, const std::string& text) {
-        double value = 0;
-        if (!read_number(text, value) || value < min || value > max)
-            refuse_value(key, text, "a number from " + exact_text(min) + " to " + exact_text(max));
-        settings.*member = value;
+template <class Number>
+Setting number(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
+               Number Settings::*member) {
+    return with_number<Number>(
+        row_of(key, std::move(label), std::move(help), effect, member), min, max,
+        [member](const Settings& settings) { return settings.*member; },
+        [member](Settings& settings, Number value) { settings.*member = value; });
+}
+
+// A number that only kernels read: RT_SETTING(frame, key). This row is all that there is to it.
+template <class Number>
+Setting kernel_number(const std::string& key, std::string label, std::string help, double min, double max, Number standard) {
+    const auto read = [=](const Settings& settings) {
+        const auto found = settings.numbers.find(key);
+        return found == settings.numbers.end() ? standard : static_cast<Number>(found->second);
     };
-    return s;
+    const auto write = [=](Settings& settings, Number value) {
+        if (value == standard)
+            settings.numbers.erase(key);
+        else
+            settings.numbers[key] = value;
+    };
+    Setting s = row_of(key, std::move(label), std::move(help), Effect::frame);
+    s.equal = [=](const Settings& a, const Settings& b) { return read(a) == read(b); };
+    s.copy = [=](Settings& to, const Settings& from) { write(to, read(from)); };
+    s.number = standard;
+    return with_number<Number>(std::move(s), min, max, read, write);
 }
 
 Setting boolean(const std::string& key, std::string label, std::string help, Effect effect, bool Settings::*member) {
@@ -179,22 +200,21 @@ std::vector<Setting> settings_of_paths() {
             "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers that are "
             "spread evenly over the samples of a pixel, with less noise",
             {"independent", "sobol"}, Effect::frame, &Settings::sampler),
-        integer("seed", "Seed", "of `path`: pictures of two seeds have independent noise", 0, 1 << 30, Effect::frame,
-                &Settings::seed),
+        kernel_number("seed", "Seed", "of `path`: pictures of two seeds have independent noise", 0, 1 << 30, 0),
         choice("filter", "Pixel filter",
                "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and those of "
                "its neighbours too (deviation half a pixel, cut at one and a half)",
                {"box", "gaussian"}, Effect::frame, &Settings::filter),
-        integer("only_bounce", "Only bounce",
-                "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all", -1,
-                kMostDepth, Effect::frame, &Settings::only_bounce),
+        kernel_number("only_bounce", "Only bounce",
+                      "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all", -1,
+                      kMostDepth, -1),
         choice("only_by", "Only by", "of `path`: light of points that were drawn on lamps (nee), or that rays found (bsdf)",
                {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by),
         choice("only_first", "Only first",
                "of `path`: light whose last event before the camera was of this kind; mirrors are glossy",
                {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first),
-        integer("only_light", "Only light", "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1,
-                1 << 20, Effect::frame, &Settings::only_light),
+        kernel_number("only_light", "Only light",
+                      "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1, 1 << 20, -1),
     };
     for (Setting& row : table) row = row.in(SettingGroup::paths).only_of(kPathPicture);
     return table;
@@ -208,7 +228,7 @@ const std::vector<Setting>& settings_table() {
         choice("tracer", "Tracer", tracer_help(), tracer_names(), Effect::recompile, &Settings::tracer)
             .in(kTracing)
             .only_ways(),  // what a tracer's pictures show: TracerChoice::picture
-        integer(
+        number(
             "depth", "Depth",
             "generations of rays, 1: camera rays only; of `path` the most events of scattering, each lit by lamps, and a last "
             "ray that may only find light",
@@ -220,13 +240,13 @@ const std::vector<Setting>& settings_table() {
             .in(kTracing)
             .only_ways(),
         lanes_setting().in(kTracing).only_ways(),
-        integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
-                Effect::recompile, &Settings::ray_slots)
+        number("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
+               Effect::recompile, &Settings::ray_slots)
             .in(kTracing)
             .only_of(kWhittedPicture),
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows).in(kTracing),
-        real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
-             &Settings::min_weight)
+        kernel_number("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1,
+                      1.0 / 512)
             .in(kTracing)
             .only_of(kWhittedPicture),
         choice("poses", "Each pose",
@@ -238,18 +258,20 @@ const std::vector<Setting>& settings_table() {
             .only_ways(),
         size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height)
             .in(kPicture),
-        integer("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::samples, &Settings::spp).in(kPicture),
-        real("shutter", "Shutter",
-             "motion blur: the share of a frame's time that the shutter is open, half of it before the frame's time; 0: none. "
-             "Each sample shows the scene at a time of its own, so take 16 samples or more. While the window plays, pictures "
-             "are not blurred",
-             0, 1, Effect::frame, &Settings::shutter)
+        number("spp", "Samples", "samples a pixel", 1, 1 << 20, Effect::samples, &Settings::spp).in(kPicture),
+        number(
+            "shutter", "Shutter",
+            "motion blur: the share of a frame's time that the shutter is open, half of it before the frame's time; 0: none. "
+            "Each sample shows the scene at a time of its own, so take 16 samples or more. While the window plays, pictures "
+            "are not blurred",
+            0, 1, Effect::frame, &Settings::shutter)
             .in(kPicture),
         choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov).in(kPicture),
-        real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
-             Effect::display, &Settings::scale_max)
+        number("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
+               Effect::display, &Settings::scale_max)
             .in(kPicture),
-        real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::display, &Settings::exposure).in(kPicture),
+        number("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::display, &Settings::exposure)
+            .in(kPicture),
         choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::display, &Settings::tone)
             .in(kPicture),
         boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
@@ -275,6 +297,32 @@ const std::vector<Setting>& settings_table() {
         return all;
     }();
     return table;
+}
+
+const std::vector<const Setting*>& kernel_numbers() {
+    static const std::vector<const Setting*> numbers = [] {
+        std::vector<const Setting*> found;
+        for (const Setting& row : settings_table())
+            if (row.number) found.push_back(&row);
+        return found;
+    }();
+    return numbers;
+}
+
+uint32_t Setting::bits(const Settings& settings) const {
+    const double value = number_of(settings, key);
+    if (kind == Kind::integer) return static_cast<uint32_t>(static_cast<int32_t>(value));
+    const float single = static_cast<float>(value);
+    uint32_t bits = 0;
+    std::memcpy(&bits, &single, sizeof bits);
+    return bits;
+}
+
+double number_of(const Settings& settings, const std::string& key) {
+    const Setting* const row = find_setting(key);
+    if (!row || !row->number) throw Error(Exit::usage, "no number of kernels `" + key + "`");
+    const auto found = settings.numbers.find(key);
+    return found == settings.numbers.end() ? *row->number : found->second;
 }
 
 const Setting* find_setting(const std::string& key) {

@@ -1,6 +1,9 @@
 // settings.hpp -- everything that a user can tune, as one table for panel, command line, presets and tests.
 #pragma once
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,19 +45,16 @@ struct Settings {
     std::string strategy = "mis";   // nee|bsdf|mis
     std::string mis = "power";      // balance|power
     std::string sampler = "sobol";  // independent|sobol
-    int seed = 0;
-    std::string filter = "box";  // box|gaussian
-    // The paths that count: those of so many events, -1: any; found by nee|bsdf|any; whose first event is
-    // diffuse|glossy|transmission|any; from the light of that number, -1: any.
-    int only_bounce = -1;
+    std::string filter = "box";     // box|gaussian
+    // The paths that count: found by nee|bsdf|any; whose first event is diffuse|glossy|transmission|any.
     std::string only_by = "any", only_first = "any";
-    int only_light = -1;
-    double min_weight = 1.0 / 512.0;  // rays that would add a smaller share are not followed
-    std::string aov = "color";        // a name of aov_table()
+    std::string aov = "color";  // a name of aov_table()
     // The display.
     double exposure = 1.0;
     std::string tone = "linear";  // linear|reinhard|aces|agx
     double scale_max = 0;         // value at the upper end of false colours; 0: the largest of the picture
+    // What only kernels read, by its key; without those that have their default. See number_of() and kernel_numbers().
+    std::map<std::string, double> numbers = {};
 };
 
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.
@@ -81,6 +81,7 @@ struct Setting {
     bool shared() const { return group == SettingGroup::picture; }
     bool at_once() const { return effect <= Effect::frame; }  // nothing must be prepared
     bool used(const Settings& settings) const;                // whether it is for the tracer that is chosen
+    uint32_t bits(const Settings& settings) const;            // of a row of kernel_numbers(), as kernels get it
     // For the table.
     Setting in(SettingGroup of) const;
     Setting only_ways() const;  // changes_picture is false
@@ -88,6 +89,7 @@ struct Setting {
 
     // TracerChoice::picture of the tracers that it is for; empty: for all.
     std::string picture = {};
+    std::optional<double> number = {};  // of a row of kernel_numbers(): its default
 };
 
 // All settings but accel and its parameters, which come from the plugins (see parameters.hpp).
@@ -96,6 +98,11 @@ const std::vector<Setting>& settings_table();
 const Setting* find_setting(const std::string& key);
 // Reads a value. Throws Error(usage); for an unknown key the message lists the known ones.
 void set_setting(Settings& settings, const std::string& key, const std::string& value);
+
+// The rows that have no member of Settings. Kernels read them by their keys: RT_SETTING(frame, min_weight).
+const std::vector<const Setting*>& kernel_numbers();
+// The value of such a row. Throws Error(usage) if there is none of that key.
+double number_of(const Settings& settings, const std::string& key);
 
 // Returns the names of the tone curves in the order of their numbers in cl/film.cl.
 std::vector<std::string> tone_names();

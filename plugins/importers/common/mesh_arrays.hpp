@@ -35,9 +35,10 @@ struct Box {
 };
 
 struct MeshArrays {
-    std::vector<float> positions, normals, uvs;  // 3, 3 and 2 for each vertex; normals and uvs may be empty
-    double origin[3] = {0, 0, 0};                // what was subtracted from positions
-    std::vector<rt_u32> sizes;                   // corners of each face; empty: all faces are triangles
+    // 3, 3, 2 and 4 for each vertex; all but positions may be empty. colors: linear r, g, b, and alpha.
+    std::vector<float> positions, normals, uvs, colors;
+    double origin[3] = {0, 0, 0};  // what was subtracted from positions
+    std::vector<rt_u32> sizes;     // corners of each face; empty: all faces are triangles
 
     // Whether the positions lie so far from 0, as seen by their own size, that floats lose details of them which the file has.
     bool is_far() const { return Box(positions).is_far(); }
@@ -67,6 +68,8 @@ struct MeshArrays {
         std::copy_n(origin, 3, out.origin);
         out.normals = normals.empty() ? nullptr : normals.data();
         out.uvs = uvs.empty() ? nullptr : uvs.data();
+        out.colors = colors.empty() ? nullptr : colors.data();
+        out.color_stride = 4 * sizeof(float);
         out.indices = corners;
         out.index_count = corner_count;
         out.face_sizes = sizes.empty() ? nullptr : sizes.data();
@@ -78,25 +81,27 @@ struct MeshArrays {
     }
 };
 
-// Gives each corner a vertex with its normal and uv: the file's own vertex for the first set of values, and a copy of it for
-// each further set.
+// Gives each corner a vertex with its normal, uv and colour: the file's own vertex for the first set of values, and a copy of
+// it for each further set.
 class VertexCopies {
  public:
     // copy_of: receives the file's vertex of each copy. Copies stand behind the file's vertices.
-    VertexCopies(MeshArrays& mesh, bool normals, bool uvs, std::vector<rt_u32>& copy_of)
+    VertexCopies(MeshArrays& mesh, bool normals, bool uvs, bool colors, std::vector<rt_u32>& copy_of)
         : mesh_(mesh), copy_of_(copy_of), next_(mesh.positions.size() / 3), used_(next_.size()) {
         if (normals) mesh.normals.resize(mesh.positions.size());
         if (uvs) mesh.uvs.resize(mesh.positions.size() / 3 * 2);
+        if (colors) mesh.colors.resize(mesh.positions.size() / 3 * 4, 1.0f);
     }
-    rt_u32 vertex(rt_u32 point, const float* normal, const float* uv) {
+    // color: of a mesh without colours of corners NULL. Copies of a vertex then have its own.
+    rt_u32 vertex(rt_u32 point, const float* normal, const float* uv, const float* color = nullptr) {
         if (!used_[point]) {
             used_[point] = true;
-            store(point, normal, uv);
+            store(point, normal, uv, color);
             return point;
         }
         rt_u32 at = point;
         for (int step = 0;; ++step, at = next_[at]) {
-            if (matches(at, normal, uv)) return at;
+            if (matches(at, normal, uv, color)) return at;
             if (next_[at] == 0 || step == kMaxChain) break;
         }
         const rt_u32 copy = static_cast<rt_u32>(next_.size());
@@ -106,20 +111,23 @@ class VertexCopies {
         for (int k = 0; k < 3; ++k) mesh_.positions.push_back(mesh_.positions[3 * size_t(point) + k]);
         if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.normals.size() + 3);
         if (!mesh_.uvs.empty()) mesh_.uvs.resize(mesh_.uvs.size() + 2);
-        store(copy, normal, uv);
+        for (size_t k = 0; k < 4 && !mesh_.colors.empty(); ++k) mesh_.colors.push_back(mesh_.colors[4 * size_t(point) + k]);
+        store(copy, normal, uv, color);
         return copy;
     }
 
  private:
     // Values of one vertex that are compared, at most (at the hub of a fan there are many). Beyond, a further copy is made.
     static constexpr int kMaxChain = 32;
-    bool matches(rt_u32 at, const float* normal, const float* uv) const {
+    bool matches(rt_u32 at, const float* normal, const float* uv, const float* color) const {
         return (mesh_.normals.empty() || std::memcmp(&mesh_.normals[3 * size_t(at)], normal, 12) == 0) &&
-               (mesh_.uvs.empty() || std::memcmp(&mesh_.uvs[2 * size_t(at)], uv, 8) == 0);
+               (mesh_.uvs.empty() || std::memcmp(&mesh_.uvs[2 * size_t(at)], uv, 8) == 0) &&
+               (!color || std::memcmp(&mesh_.colors[4 * size_t(at)], color, 16) == 0);
     }
-    void store(rt_u32 at, const float* normal, const float* uv) {
+    void store(rt_u32 at, const float* normal, const float* uv, const float* color) {
         if (!mesh_.normals.empty()) std::copy_n(normal, 3, &mesh_.normals[3 * size_t(at)]);
         if (!mesh_.uvs.empty()) std::copy_n(uv, 2, &mesh_.uvs[2 * size_t(at)]);
+        if (color) std::copy_n(color, 4, &mesh_.colors[4 * size_t(at)]);
     }
     MeshArrays& mesh_;
     std::vector<rt_u32>& copy_of_;

@@ -10,6 +10,12 @@
 
 namespace importers {
 
+// A channel of a colour as screens have it, as linear light. Outside of 0..1 it is limited. IEC 61966-2-1.
+inline float linear_of_srgb(double x) {
+    if (!(x > 0)) return 0;  // NaN, too
+    return static_cast<float>(x >= 1 ? 1 : x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+}
+
 // Reads a number at any address. The caller has checked that its bytes are there.
 template <class T>
 T load(const char* at, bool big_endian) {

@@ -44,15 +44,19 @@ void Layer::settle(const MeshCounts& counts) {
 
 const float* Layer::at(const Corner& corner) const {
     static constexpr float zeros[3] = {};
+    return at(corner, zeros);
+}
+
+const float* Layer::at(const Corner& corner, const float* none) const {
     size_t i = mapping_ == by_corner   ? corner.corner
                : mapping_ == by_vertex ? corner.vertex
                : mapping_ == by_face   ? corner.face
                                        : 0;
     if (is_indexed_) {
-        if (i >= indices_.size() || indices_[i] < 0) return zeros;
+        if (i >= indices_.size() || indices_[i] < 0) return none;
         i = static_cast<size_t>(indices_[i]);
     }
-    return (i + 1) * width_ <= values_.size() ? &values_[i * width_] : zeros;
+    return (i + 1) * width_ <= values_.size() ? &values_[i * width_] : none;
 }
 
 std::vector<int32_t> material_slots(const Document& document, const Node& geometry, size_t faces) {

@@ -35,8 +35,9 @@ class Layer {
     bool empty() const { return mapping_ == none; }
     // Finds an unknown mapping by the count of elements. Call it before `at`.
     void settle(const MeshCounts& counts);
-    // The numbers of a corner, or zeros if the file has none.
+    // The numbers of a corner, or zeros (`none`) if the file has none.
     const float* at(const Corner& corner) const;
+    const float* at(const Corner& corner, const float* none) const;
 
  private:
     Mapping mapping_ = none;

@@ -1,7 +1,8 @@
 #include <algorithm>
-#include <set>
+#include <array>
 
 #include "../common/mesh_arrays.hpp"
+#include "../common/numbers.hpp"
 #include "layers.hpp"
 #include "scene.hpp"
 
@@ -71,23 +72,35 @@ Layer read_uvs(const Document& document, const Node& geometry, const Node* layer
                  document.numbers<int32_t>(info, "TextureUVVerticeIndex"));
 }
 
+// r, g, b and alpha. The format does not say in which space they are; Maya and 3ds Max have them as shown on the screen, and
+// Blender and three.js read them as sRGB.
+Layer read_colors(const Document& document, const Node& geometry) {
+    return Layer(document, document.child(&geometry, "LayerElementColor"), "Colors", "ColorIndex", 4);
+}
+std::array<float, 4> linear_color(const Layer& colors, const Corner& corner) {
+    static constexpr float ones[4] = {1, 1, 1, 1};
+    const float* const c = colors.at(corner, ones);
+    return {importers::linear_of_srgb(c[0]), importers::linear_of_srgb(c[1]), importers::linear_of_srgb(c[2]), c[3]};
+}
+
 MeshData read_mesh(const Context& context, const Wanted& wanted) {
     const Document& document = context.document;
     const Node& geometry = *wanted.geometry;
     MeshData mesh;
-    Layer normals;
+    Layer normals, colors;
     std::vector<size_t> uv_of_slot;
     const std::vector<const Node*> layers = uv_layers(document, wanted, uv_of_slot);
     std::vector<Layer> uvs(layers.size());
     // Most of the time is spent on the arrays, which can be inflated at the same time.
-    rt::parallel_for(context.host, static_cast<rt_u32>(3 + uvs.size()), [&](rt_u32 i) {
+    rt::parallel_for(context.host, static_cast<rt_u32>(4 + uvs.size()), [&](rt_u32 i) {
         if (i == 0) mesh.indices = document.numbers<int32_t>(&geometry, "PolygonVertexIndex");
         if (i == 1) {
             mesh.positions = document.numbers<float>(&geometry, "Vertices");
             if (mesh.is_far()) mesh.set_positions(document.numbers<double>(&geometry, "Vertices"));
         }
         if (i == 2) normals = read_normals(document, geometry);
-        if (i > 2) uvs[i - 3] = read_uvs(document, geometry, layers[i - 3]);
+        if (i == 3) colors = read_colors(document, geometry);
+        if (i > 3) uvs[i - 4] = read_uvs(document, geometry, layers[i - 4]);
     });
     mesh.points = mesh.positions.size() / 3;
     mesh.positions.resize(3 * mesh.points);
@@ -96,19 +109,23 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     mesh.slots = material_slots(document, geometry, mesh.faces());
     const MeshCounts counts = {mesh.indices.size(), mesh.points, mesh.faces()};
     normals.settle(counts);
+    colors.settle(counts);
     for (Layer& layer : uvs) layer.settle(counts);
     if (normals.empty()) {
         normals =
             Layer(Layer::by_corner, 3, normals_of_smoothing(document, geometry, mesh.positions, mesh.indices, mesh.sizes));
     }
     const bool has_uvs = std::any_of(uvs.begin(), uvs.end(), [](const Layer& layer) { return !layer.empty(); });
-    if (normals.empty() && !has_uvs) return mesh;
-    importers::VertexCopies copies(mesh, !normals.empty(), has_uvs, mesh.copy_of);
+    if (normals.empty() && colors.empty() && !has_uvs) return mesh;
+    importers::VertexCopies copies(mesh, !normals.empty(), has_uvs, !colors.empty(), mesh.copy_of);
     for_corners(mesh.indices, mesh.sizes, [&](const Corner& c) {
         if (c.vertex >= mesh.points) return;
         const size_t slot = mesh.slots.empty() ? 0 : static_cast<size_t>(mesh.slots[c.face]);
         const Layer& uv = uvs[slot < uv_of_slot.size() ? uv_of_slot[slot] : 0];
-        const rt_u32 vertex = copies.vertex(static_cast<rt_u32>(c.vertex), normals.at(c), uv.at(c));
+        std::array<float, 4> color{};
+        if (!colors.empty()) color = linear_color(colors, c);
+        const rt_u32 vertex =
+            copies.vertex(static_cast<rt_u32>(c.vertex), normals.at(c), uv.at(c), colors.empty() ? nullptr : color.data());
         mesh.indices[c.corner] = static_cast<int32_t>(vertex);
     });
     return mesh;
@@ -145,22 +162,6 @@ void show(const Context& context, const SceneNode& node, rt_u32 mesh) {
     out.translation = exact;
     out.node = node.id;
     rt::id(context.sink.instance(context.sink.ctx, &out));
-}
-
-// Warns about colours of vertices.
-void report_colors(const Context& context, const std::vector<Wanted>& wanted) {
-    std::set<uint32_t> colored;  // geometries, which may be wanted several times
-    const Wanted* first = nullptr;
-    for (const Wanted& w : wanted) {
-        const Node* layer = context.document.child(w.geometry, "LayerElementColor");
-        if (!context.document.child(layer, "Colors")) continue;
-        if (!first) first = &w;
-        colored.insert(w.object);
-    }
-    if (!first) return;
-    context.warn("LayerElementColor of '" + context.objects[first->object].name +
-                 "': colours of vertices are not read; they are left out" +
-                 (colored.size() > 1 ? ", in " + std::to_string(colored.size()) + " meshes" : ""));
 }
 
 // Numbers of geometry that are decoded at the same time, about: 12 MB.
@@ -212,7 +213,6 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
         rt::progress(context.host, 0.1f + 0.8f * static_cast<float>(first) / static_cast<float>(wanted.size()));
     }
     materials.report();
-    report_colors(context, wanted);
     for (const auto& [node, mesh] : shown) show(context, nodes[node], meshes[mesh].id);
     return meshes;
 }

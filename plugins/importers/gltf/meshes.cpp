@@ -24,7 +24,7 @@ enum Mode : uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStri
 struct Meshes::Geometry : importers::MeshArrays {
     std::vector<rt_u32> indices, materials;
     std::vector<Part> parts;
-    bool has_normals = false, has_uvs = false;
+    bool has_normals = false, has_uvs = false, has_colors = false;
 };
 
 Meshes::Meshes(const Document& document, Accessors& accessors, Materials& materials, const NodeTree& tree,
@@ -62,9 +62,6 @@ const std::vector<rt_u32>& Meshes::morphs(size_t node) const {
 
 void Meshes::report() const {
     if (copies_left_out_) rt::warn(sink_, "copies by EXT_mesh_gpu_instancing are left out: one of each is there");
-    if (colored_ > 0)
-        rt::warn(sink_, first_colored_ + ": colours of vertices are not read; they are left out" +
-                            (colored_ > 1 ? ", in " + std::to_string(colored_) + " primitives" : ""));
     if (unweighted_ > 0)
         rt::warn(sink_, unweighted_ == 1 ? "a vertex of a mesh with a skin has no weights; it follows the first joint"
                                          : std::to_string(unweighted_) +
@@ -86,6 +83,7 @@ Meshes::Built Meshes::build(const Value& mesh, const Value& node, const std::str
     triangles_ += g.indices.size() / 3;
     g.normals.resize(g.has_normals ? g.positions.size() : 0);  // zeros: the vertex has none
     g.uvs.resize(g.has_uvs ? g.positions.size() / 3 * 2 : 0);
+    g.colors.resize(g.has_colors ? g.positions.size() / 3 * 4 : 0, 1.0f);  // ones: the material's colour stays as it is
 
     built.mesh = g.pass(name, g.indices.data(), g.indices.size(), g.materials, sink_);
     if (const auto skin = node.index("skin", skins_)) add_skin(skins_[*skin], built.mesh, g.parts);
@@ -101,7 +99,6 @@ void Meshes::add_primitive(const Value& primitive, Geometry& g) {
         ++points_and_lines_;
         return;
     }
-    if (attributes.has("COLOR_0") && colored_++ == 0) first_colored_ = attributes.path() + ".COLOR_0";
     add_faces(primitive, add_vertices(primitive, g), g);
 }
 
@@ -202,6 +199,18 @@ const Part& Meshes::add_vertices(const Value& primitive, Geometry& g) {
                 g.uvs.push_back(to_float(1 - (m[3] * u + m[4] * v + m[5])));  // (0, 0) is at the top left in glTF
             }
             g.has_uvs = true;
+        });
+    }
+    if (attributes.has("COLOR_0")) {
+        spared(sink_, "the colours of vertices are left out", [&] {
+            const Elements<float> colors = floats(part, "COLOR_0", "VEC3 or VEC4", count);
+            g.colors.resize(4 * first, 1.0f);
+            // Linear, and limited to 0..1: specification, section 3.7.2.1.
+            for (size_t i = 0; i < count; ++i)
+                for (size_t k = 0; k < 4; ++k)
+                    g.colors.push_back(k < colors.components ? std::clamp(colors.values[colors.components * i + k], 0.0f, 1.0f)
+                                                             : 1.0f);
+            g.has_colors = true;
         });
     }
     g.parts.push_back(std::move(part));

@@ -62,8 +62,7 @@ class Meshes {
     // By mesh, skin, and node if its weights are its own; size_t(-1): none.
     std::map<std::tuple<size_t, size_t, size_t>, Built> built_;
     std::map<size_t, const Built*> of_node_;
-    uint64_t points_and_lines_ = 0, triangles_ = 0, colored_ = 0, unweighted_ = 0;
-    std::string first_colored_;  // place of the first primitive with colours
+    uint64_t points_and_lines_ = 0, triangles_ = 0, unweighted_ = 0;
     bool copies_left_out_ = false;
 };
 

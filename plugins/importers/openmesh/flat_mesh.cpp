@@ -93,7 +93,7 @@ void FlatMesh::copy_vertices() {
     // Values of vertices (PLY has both) stay with the copies.
     const std::vector<float> own_normals = normals, own_uvs = uvs;
     std::vector<rt_u32> copy_of;
-    importers::VertexCopies copies(*this, has_normals || !normals.empty(), has_uvs || !uvs.empty(), copy_of);
+    importers::VertexCopies copies(*this, has_normals || !normals.empty(), has_uvs || !uvs.empty(), false, copy_of);
     const float zero[3] = {0, 0, 0};
     const auto value = [&](const std::vector<rt_u32>& of_corner, const std::vector<float>& values, size_t corner,
                            const std::vector<float>& own, size_t width) {

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "../common/mapped_file.hpp"
+#include "../common/numbers.hpp"
 #include "mtl.hpp"
 #include "obj_libraries.hpp"
 #include "readers.hpp"
@@ -84,7 +85,6 @@ class ObjReader {
     std::vector<std::string> libraries;  // what stands behind each `mtllib`
     uint64_t points_and_lines = 0, bad_faces = 0;
     std::string first_bad_face;
-    bool has_colors = false;
 
  private:
     void vertex(std::string_view rest) {
@@ -92,10 +92,14 @@ class ObjReader {
         bool good = true;
         for (double& x : xyz) good = parse_float(next_word(rest), x) && good;
         mesh_.add_vertex(good ? xyz[0] : NAN, xyz[1], xyz[2]);
-        if (has_colors || rest.empty()) return;
+        // `v x y z r g b`; one number more is a weight. Files of scans have them in sRGB, as the pictures that they come from,
+        // and Blender and three.js read them so; the format does not know them.
+        float rgb[3];
         int more = 0;
-        while (!next_word(rest).empty()) ++more;
-        has_colors = good && more >= 3;  // `v x y z r g b`; one number more is a weight
+        for (double x; more < 3 && parse_float(next_word(rest), x); ++more) rgb[more] = importers::linear_of_srgb(x);
+        if (more < 3 && mesh_.colors.empty()) return;
+        mesh_.colors.resize(4 * mesh_.vertex_count(), 1.0f);
+        if (more == 3) std::copy_n(rgb, 3, mesh_.colors.end() - 4);
     }
     static void values(std::string_view rest, int count, std::vector<float>& out) {
         for (int i = 0; i < count; ++i) {
@@ -218,7 +222,6 @@ Reading read_obj(const Source& source, FlatMesh& mesh) {
     reading.points_and_lines = reader.points_and_lines;
     if (mesh.sizes.empty()) return reading;
     assign_materials(source, reader, mesh);
-    if (reader.has_colors) warn(source, "its vertices have colours, which are left out");
     if (reader.points_and_lines > 0) warn(source, counted(reader.points_and_lines, "point or line element") + " skipped");
     return reading;
 }

@@ -200,16 +200,18 @@ class ElementReader {
     }
     void vertex(const Element& element) {
         double at[3] = {0, 0, 0};
-        float numbers[8] = {};  // from Role::x to Role::v
-        bool has_normal = false, has_uv = false;
+        float numbers[12] = {};  // from Role::x to Role::alpha
+        numbers[11] = 1;
+        bool has_normal = false, has_uv = false, has_blue = false;
         for (const Property& p : element.properties) {
-            if (p.role < Role::x || p.role > Role::v) {
+            if (p.role < Role::x || p.role > Role::alpha) {
                 pass_over(p);
                 continue;
             }
             const double number = values_.number(p);
             if (p.role <= Role::z) at[int(p.role) - int(Role::x)] = number;
-            numbers[int(p.role) - int(Role::x)] = static_cast<float>(number);
+            numbers[int(p.role) - int(Role::x)] = p.role < Role::red ? static_cast<float>(number) : channel(p, number);
+            has_blue = has_blue || p.role == Role::blue;
             has_normal = has_normal || p.role == Role::nz;
             has_uv = has_uv || p.role == Role::v;
         }
@@ -218,6 +220,15 @@ class ElementReader {
         if (has_normal && element.has(Role::nx) && element.has(Role::ny))
             mesh_.normals.insert(mesh_.normals.end(), numbers + 3, numbers + 6);
         if (has_uv && element.has(Role::u)) mesh_.uvs.insert(mesh_.uvs.end(), numbers + 6, numbers + 8);
+        if (has_blue && element.has(Role::red) && element.has(Role::green))
+            mesh_.colors.insert(mesh_.colors.end(), numbers + 8, numbers + 12);
+    }
+    // Integers are shares of their type's largest value. Except for alpha they are sRGB, as the pictures are that such files
+    // come from, and as Blender 3.6 and three.js read them; the format itself does not say. Floating-point numbers are linear.
+    static float channel(const Property& p, double number) {
+        if (p.type->is_float()) return static_cast<float>(number);
+        const double most = std::ldexp(1.0, 8 * p.type->bytes - (p.type->is_signed() ? 1 : 0)) - 1;
+        return p.role == Role::alpha ? static_cast<float>(number / most) : importers::linear_of_srgb(number / most);
     }
     // A face, or a strip of triangles.
     void face(const Element& element) {
@@ -292,9 +303,7 @@ Reading read_ply(const Source& source, FlatMesh& mesh) {
     // Triangles of strips have no uvs of corners.
     if (!mesh.uv_of_corner.empty()) mesh.uv_of_corner.resize(mesh.corners.size(), RT_NONE);
     for (const Element& element : header.elements)
-        if (element.has_colors() && element.kind != Kind::other)
-            warn(source, std::string("its ") + (element.kind == Kind::faces ? "faces" : "vertices") +
-                             " have colours, which are left out");
+        if (element.has_colors() && element.kind == Kind::faces) warn(source, "its faces have colours, which are left out");
     Reading reading;
     reading.texture = header.texture;
     return reading;

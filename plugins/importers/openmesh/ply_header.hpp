@@ -12,9 +12,10 @@ struct Type {
     int bytes;
     Number number;
     bool is_float() const { return number == Number::float32 || number == Number::float64; }
+    bool is_signed() const { return number == Number::int8 || number == Number::int16 || number == Number::int32; }
 };
 // What the importer takes from a property. Others are passed over.
-enum class Role { none, x, y, z, nx, ny, nz, u, v, indices, texcoords };
+enum class Role { none, x, y, z, nx, ny, nz, u, v, red, green, blue, alpha, indices, texcoords };
 struct Property {
     std::string name;
     const Type* type = nullptr;

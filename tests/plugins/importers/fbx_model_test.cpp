@@ -46,16 +46,25 @@ TEST_P(FbxModelForm, ShowsANodeOfSeveralParentsOnce) {
     EXPECT_TRUE(import(objects, {link(3, 0), link(4, 0), link(2, 3), link(2, 3), link(1, 2)}).warnings.empty());
 }
 
-TEST_P(FbxModelForm, NamesColoursOfVerticesThatAreLeftOut) {
+TEST_P(FbxModelForm, ReadsColoursOfVertices) {
     const auto colors = [](const std::vector<FbxNode>& children) { return node("LayerElementColor", {whole(0)}, children); };
     const FbxNode red = colors({node("MappingInformationType", {text("AllSame")}), node("Colors", {Numbers{1, 0, 0, 1}})});
     Scene scene = import({geometry(1, {red}), model(2, "A")}, {link(2, 0), link(1, 2)});
-    ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("LayerElementColor of 'Square': colours of vertices are not read; they are left out"),
-              std::string::npos)
-        << scene.warnings[0];
+    EXPECT_TRUE(scene.warnings.empty());
+    ASSERT_EQ(scene.colors.size(), 4 * scene.vertex_count());
+    for (size_t i = 0; i < scene.colors.size(); ++i) EXPECT_EQ(scene.colors[i], i % 4 == 0 || i % 4 == 3 ? 1 : 0) << i;
+    // In the file's order, one of them twice, one not at all; 0.735357 is half of the light.
+    const FbxNode each = colors(
+        {node("MappingInformationType", {text("ByPolygonVertex")}), node("ReferenceInformationType", {text("IndexToDirect")}),
+         node("Colors", {Numbers{0.735357, 0, 0, 0.5, 0, 1, 0, 1}}), node("ColorIndex", {Indices{0, 1, 1, 0, 1, -1}})});
+    scene = import({geometry(1, {each}), model(2, "A")}, {link(2, 0), link(1, 2)});
+    ASSERT_EQ(scene.colors.size(), 16u);
+    EXPECT_NEAR(scene.colors[0], 0.5, 1e-5);
+    EXPECT_EQ(scene.colors[3], 0.5f);
+    for (const size_t green : {5u, 9u}) EXPECT_EQ(scene.colors[green], 1) << green;
+    for (size_t k = 12; k < 16; ++k) EXPECT_EQ(scene.colors[k], 1) << "there is none";
     scene = import({geometry(1, {colors({node("Name", {text("")})})}), model(2, "A")}, {link(2, 0), link(1, 2)});
-    EXPECT_TRUE(scene.warnings.empty()) << "an empty layer has no colours";
+    EXPECT_TRUE(scene.colors.empty()) << "an empty layer has no colours";
 }
 
 TEST_P(FbxModelForm, TurnsAboutPivotsAndInheritsScaleAsItSays) {

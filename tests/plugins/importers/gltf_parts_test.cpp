@@ -194,8 +194,6 @@ TEST_F(GltfParts, AStrideOfZeroIsPacked) {
 }
 
 TEST_F(GltfParts, ThatAreNotReadYetAreNamed) {
-    spared("meshes[0].primitives[0].attributes.COLOR_0: colours of vertices are not read",
-           [](Model& m) { m.primitive()["attributes"]["COLOR_0"] = m.add(std::vector<float>(12, 1), "VEC3", 5126, 3); });
     spared("materials[0].alphaMode: MASK is not read", [](Model& m) { m["materials"][0]["alphaMode"] = "MASK"; });
     spared("materials[0].alphaMode: BLEND is not read for the alpha of its texture",
            [](Model& m) { m["materials"][0]["alphaMode"] = "BLEND"; });
@@ -203,6 +201,46 @@ TEST_F(GltfParts, ThatAreNotReadYetAreNamed) {
     Model opaque = rich();
     opaque["materials"][0]["alphaMode"] = "OPAQUE";
     EXPECT_TRUE(import(opaque).warnings.empty());
+}
+
+// Specification, section 3.7.2.1: floats or shares of an integer's range, with or without alpha, linear, limited to 0..1.
+TEST_F(GltfParts, ColoursOfVerticesAreReadInEveryForm) {
+    const auto colors = [&](const std::function<size_t(Model&)>& add) {
+        Model model = rich();
+        model.primitive()["attributes"]["COLOR_0"] = add(model);
+        return import(model).colors.copy();
+    };
+    const std::vector<float> plain = colors([](Model& m) {
+        return m.add(std::vector<float>{1, 0.25f, 0, 2, -1, 0, 0, 0, 0, 0, 0, 1}, "VEC3", 5126, 3);
+    });
+    EXPECT_EQ(plain, (std::vector<float>{1, 0.25f, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1}));
+    const auto of_bytes = colors([](Model& m) {
+        const size_t at = m.add(std::vector<uint8_t>{255, 51, 0, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255}, "VEC4", 5121, 4);
+        m["accessors"][at]["normalized"] = true;
+        return at;
+    });
+    EXPECT_EQ((std::vector<float>(of_bytes.begin(), of_bytes.begin() + 4)), (std::vector<float>{1, 0.2f, 0, 0.4f}));
+    const auto of_words = colors([](Model& m) {
+        const size_t at = m.add(std::vector<uint16_t>{13107, 65535, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 5123, 4);
+        m["accessors"][at]["normalized"] = true;
+        return at;
+    });
+    EXPECT_EQ((std::vector<float>(of_words.begin(), of_words.begin() + 4)), (std::vector<float>{0.2f, 1, 0, 0}));
+    spared("the colours of vertices are left out",
+           [](Model& m) { m.primitive()["attributes"]["COLOR_0"] = m.add(std::vector<float>(8, 1), "VEC2", 5126, 2); });
+}
+
+// A second primitive without colours keeps those of its material.
+TEST_F(GltfParts, VerticesWithoutColoursAreWhite) {
+    Model model = rich();
+    nlohmann::json other = model.primitive();
+    model.primitive()["attributes"]["COLOR_0"] = model.add(std::vector<float>(12, 0.5f), "VEC3", 5126, 3);
+    model["meshes"][0]["primitives"].push_back(other);
+    const Scene scene = import(model);
+    ASSERT_EQ(scene.colors.size(), 32u);
+    EXPECT_EQ(scene.colors[0], 0.5f);
+    EXPECT_EQ(scene.colors[16], 1);
+    EXPECT_EQ(scene.colors[31], 1);
 }
 
 // What makes geometry doubtful stays an error.

@@ -187,11 +187,55 @@ TEST_F(MeshFiles, BinaryPlyBehindCrBeginsWithAnyByte) {
     expect_square("a.ply", with_ends(ply(faces + vertices, "", "binary_little_endian"), "\r") + data);
 }
 
-TEST_F(MeshFiles, PlyColoursAreNamed) {
-    const Scene scene = import("a.ply", ply("element vertex 3\n" + kXyz + "property uchar red\nproperty uchar green\n" +
-                                                "property uchar blue\nelement face 1\n" + kIndices,
-                                            "0 0 0 9 9 9\n1 0 0 9 9 9\n0 1 0 9 9 9\n3 0 1 2\n"));
-    EXPECT_TRUE(warns(scene, "its vertices have colours"));
+std::vector<float> first_color(const Scene& scene) {
+    return scene.colors.size() < 4 ? std::vector<float>() : std::vector<float>(scene.colors.begin(), scene.colors.begin() + 4);
+}
+
+// Bytes are sRGB (188 is half of the light), alpha is not; floating-point numbers are linear.
+TEST_F(MeshFiles, PlyColoursAreLinearInTheScene) {
+    const auto color = [&](const std::string& type, const std::string& names, const std::string& values) {
+        std::string properties, lines;
+        for (size_t at = 0; at < names.size(); ++at) {
+            const std::string name = names[at] == 'r'   ? "red"
+                                     : names[at] == 'g' ? "green"
+                                     : names[at] == 'b' ? "blue"
+                                                        : "alpha";
+            properties += "property " + type + " " + name + "\n";
+        }
+        for (const char* at : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) lines += at + values + "\n";
+        return first_color(import(
+            "a.ply", ply("element vertex 3\n" + kXyz + properties + "element face 1\n" + kIndices, lines + "3 0 1 2\n")));
+    };
+    const std::vector<float> bytes = color("uchar", "rgba", "188 255 0 51");
+    ASSERT_EQ(bytes.size(), 4u);
+    EXPECT_NEAR(bytes[0], 0.5029, 1e-4);
+    EXPECT_EQ(bytes[1], 1);
+    EXPECT_EQ(bytes[2], 0);
+    EXPECT_FLOAT_EQ(bytes[3], 0.2f);
+    EXPECT_EQ(color("float", "bgr", "0.25 0.5 1"), (std::vector<float>{1, 0.5f, 0.25f, 1}));
+    EXPECT_FLOAT_EQ(color("ushort", "rgb", "65535 0 0").at(0), 1);
+    EXPECT_TRUE(color("uchar", "rg", "9 9").empty()) << "two channels are no colour";
+    const Scene faces = import("a.ply", ply("element vertex 3\n" + kXyz + "element face 1\n" + kIndices +
+                                                "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+                                            "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 9 9 9\n"));
+    EXPECT_TRUE(warns(faces, "its faces have colours"));
+}
+
+// As scanners write them. One number more than three is a weight. Copies of a vertex have its colour.
+TEST_F(MeshFiles, ObjColoursAreLinearInTheScene) {
+    const Scene scene = import("a.obj",
+                               "v 0 0 0 1\nv 1 0 0 0.735357 0 1\nv 1 1 0\nv 0 1 0 2 nonsense 0\nvn 0 0 1\nvn 0 1 0\n"
+                               "f 1//1 2//1 3//1\nf 1//1 3//1 4//1\nf 2//2 3//1 4//1\n");
+    ASSERT_EQ(scene.vertex_count(), 5u) << "the second vertex has two normals";
+    ASSERT_EQ(scene.colors.size(), 20u);
+    EXPECT_EQ(first_color(scene), (std::vector<float>{1, 1, 1, 1}));
+    for (const size_t vertex : {1u, 4u}) {
+        EXPECT_NEAR(scene.colors[4 * vertex], 0.5, 1e-5) << vertex;
+        EXPECT_EQ(scene.colors[4 * vertex + 1], 0) << vertex;
+        EXPECT_EQ(scene.colors[4 * vertex + 2], 1) << vertex;
+    }
+    EXPECT_EQ(scene.colors[12], 1) << "what is no number is no colour";
+    EXPECT_TRUE(import("b.obj", "v 0 0 0 1\nv 1 0 0 1\nv 1 1 0 1\nf 1 2 3\n").colors.empty());
 }
 
 // ---- STL
@@ -341,11 +385,6 @@ TEST_F(MeshFiles, ObjKeepsFacesOfAreaZeroAndFacesBeforeVertices) {
     EXPECT_EQ(scene.triangle_count(), 5u);
     EXPECT_NEAR(scene.surface_area(), 1, 1e-6);
     EXPECT_TRUE(scene.warnings.empty());
-}
-
-TEST_F(MeshFiles, ObjColoursAreNamed) {
-    EXPECT_TRUE(warns(import("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n"), "colours"));
-    EXPECT_TRUE(import("b.obj", "v 0 0 0 1.0\nv 1 0 0 1.0\nv 0 1 0 1.0 # w\nf 1 2 3# a comment\n").warnings.empty());
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST(Settings, NumbersWrittenAsTextAreReadBackBitByBit) {
             row.set(settings, exact_text(value));
             row.set(again, row.get(settings));
             EXPECT_EQ(row.get(again), exact_text(value)) << row.key;
-            EXPECT_EQ(again.min_weight, settings.min_weight);
+            EXPECT_EQ(number_of(again, "min_weight"), number_of(settings, "min_weight"));
             EXPECT_EQ(again.exposure, settings.exposure);
             EXPECT_EQ(again.scale_max, settings.scale_max);
         }

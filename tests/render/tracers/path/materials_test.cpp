@@ -12,7 +12,7 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr unsigned kWords = 20;  // of a material, and so of a row
+constexpr unsigned kWords = 24;  // of a material, and so of a row
 static_assert(sizeof(rt_material) == 4 * kWords);
 
 // The first rows are materials; the next one is a texture and its texels. The others ask for a material, at texture

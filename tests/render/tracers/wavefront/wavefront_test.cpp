@@ -123,7 +123,7 @@ TEST(Wavefront, CountsDroppedRays) {
     const ScenePtr scene = shared_scene(std::move(balls));
     const View view = view_from({0, 0, 6}, {0, 0, 0}, 20);
     Settings settings = kGroup.settings("64x48", "12");
-    settings.min_weight = 2e-3;
+    set_setting(settings, "min_weight", "2e-3");
     settings.ray_slots = 64;
     const Traced all = trace(scene, view, settings, "wavefront");
     EXPECT_EQ(all.stats.dropped, 0u);
