@@ -245,7 +245,7 @@ void run_all(const CheckJob& job) {
 
 }  // namespace
 
-void check_job(PacketReader& arguments) {
+void check_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<CheckJob>(arguments);
     try {
         run_all(job);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 #include "check/steps.hpp"
 #include "import/wire.hpp"
 #include "worker/job.hpp"
@@ -22,9 +22,9 @@ struct CheckJob {
     bool quick = false, large = false, list = false, stop_at_first = false;
     uint64_t seed = 0;
     std::vector<import::SentScene> scene;  // to `rays`; none or one
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.library, self.phase, self.device, self.report, self.truth, self.scratch, self.rays, self.beside,
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.library, self.phase, self.device, self.report, self.truth, self.scratch, self.rays, self.beside,
                self.samples, self.only, self.done, self.lanes, self.quick, self.large, self.list, self.stop_at_first, self.seed,
                self.scene);
     }
@@ -38,6 +38,6 @@ struct CheckResult {
 
 extern const worker::JobKind kCheckJob;
 // The work of kCheckJob. Its steps are the name of a check, what it tries and what it does now, each on a line of its own.
-void check_job(PacketReader& arguments);
+void check_job(ParcelReader& arguments);
 
 }  // namespace clarity::check

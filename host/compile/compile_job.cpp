@@ -69,7 +69,7 @@ CompileOutcome compile(const CompileJob& job) {
 
 }  // namespace
 
-void compile_job(PacketReader& arguments) {
+void compile_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<CompileJob>(arguments);
     if (!job.pocl_cache.empty()) setenv("POCL_CACHE_DIR", job.pocl_cache.c_str(), 1);
     worker::enter_sandbox(worker::WorkerKind::driver);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 
 namespace clarity {
 
@@ -15,9 +15,9 @@ struct CompileJob {
     bool ends_on_zeros = false;
     bool wants_binary = false;
     std::string pocl_cache;  // the folder that PoCL compiles into; empty: its own
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.source, self.options, self.device, self.name, self.driver, self.ends_on_zeros, self.wants_binary,
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.source, self.options, self.device, self.name, self.driver, self.ends_on_zeros, self.wants_binary,
                self.pocl_cache);
     }
 };
@@ -29,13 +29,13 @@ struct CompileOutcome {
     int32_t error = 0;         // OpenCL's, if failed
     std::string log;           // the compiler's; why, if there is no device
     std::vector<char> binary;  // empty: not asked for, or the driver gives none
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.state, self.error, self.log, self.binary);
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.state, self.error, self.log, self.binary);
     }
 };
 
 // The work of kCompileJob.
-void compile_job(PacketReader& arguments);
+void compile_job(ParcelReader& arguments);
 
 }  // namespace clarity

@@ -103,7 +103,7 @@ std::optional<std::vector<char>> find_program(const std::string& key) {
     std::error_code error;
     if (path.empty() || !fs::exists(path, error)) return std::nullopt;
     StoredHead head{};
-    if (!try_read_file(path.string(), kMostProgramBytes + sizeof head, content).empty()) return std::nullopt;
+    if (try_read_file(path.string(), kMostProgramBytes + sizeof head, content)) return std::nullopt;
     const char* binary = content.data() + sizeof head;
     if (content.size() >= sizeof head) std::memcpy(&head, content.data(), sizeof head);
     if (std::memcmp(head.magic, kStoredMagic, sizeof kStoredMagic) != 0 || head.bytes != content.size() - sizeof head ||

@@ -16,6 +16,7 @@
 
 #include "base/log.hpp"
 #include "base/lower.hpp"
+#include "base/problem.hpp"
 #include "device/pocl_cache.hpp"
 
 namespace clarity {
@@ -98,7 +99,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsi
 }
 
 // Returns why a device cannot be used; empty if it can.
-std::string why_unusable(const cl::Device& device) {
+Problem why_unusable(const cl::Device& device) {
     if (!ask<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "its driver says that it is not available";
     if (!ask<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "its driver has no compiler";
     return {};
@@ -117,15 +118,16 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
         return;
     }
     for (unsigned i = 0; i < devices.size(); ++i) {
-        std::string why;
+        Problem why;
         try {
             why = why_unusable(devices[i]);
-            if (why.empty()) found.push_back(describe(platform, devices[i], index, i));
+            if (!why) found.push_back(describe(platform, devices[i], index, i));
         } catch (const cl::Error& e) {
             why = error_name(e.err());
         }
-        if (!why.empty())
-            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + name + " is skipped: " + why, false);
+        if (why)
+            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + name + " is skipped: " + why.text(),
+                 false);
     }
 }
 

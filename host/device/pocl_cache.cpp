@@ -15,6 +15,7 @@
 #include "base/files/cache_folder.hpp"
 #include "base/files/own_folder.hpp"
 #include "base/files/process_folder.hpp"
+#include "base/problem.hpp"
 #include "worker/channel.hpp"
 
 namespace clarity {
@@ -37,7 +38,7 @@ fs::path pocl_folder() {
 }
 
 // Writes a file there, which is gone afterwards. Returns why it failed; empty: it did not.
-std::string why_unwritable(const fs::path& folder) {
+Problem why_unwritable(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) return error.message();
@@ -82,7 +83,7 @@ bool take_own_folder() {
     const char* named = std::getenv("POCL_CACHE_DIR");
     const fs::path candidates[] = {named && *named ? folder_of_user(named) : fs::path(), temporary_folder(), folder_in_cache()};
     for (const fs::path& parent : candidates) {
-        if (parent.empty() || !make_own_folder(parent) || !why_unwritable(parent).empty()) continue;
+        if (parent.empty() || !make_own_folder(parent) || why_unwritable(parent)) continue;
         own_folder() = ProcessFolder::make(parent, "process");
         if (!own_folder()) continue;
         setenv("POCL_CACHE_DIR", own_folder()->path().c_str(), 1);
@@ -94,11 +95,11 @@ bool take_own_folder() {
 std::string use_writable_folder() {
     const fs::path folder = pocl_folder();
     if (folder.empty()) return {};
-    const std::string why = why_unwritable(folder);
-    if (why.empty()) return {};
-    const std::string what = "PoCL's cache " + folder.string() + " cannot be written: " + why;
+    const Problem why = why_unwritable(folder);
+    if (!why) return {};
+    const std::string what = "PoCL's cache " + folder.string() + " cannot be written: " + why.text();
     for (const fs::path& other : {folder_in_cache(), temporary_folder()}) {
-        if (other.empty() || !make_own_folder(other) || !why_unwritable(other).empty()) continue;
+        if (other.empty() || !make_own_folder(other) || why_unwritable(other)) continue;
         setenv("POCL_CACHE_DIR", other.c_str(), 1);
         return what + "; " + other.string() + " is used instead";
     }

@@ -63,8 +63,8 @@ void check_model_file(const std::string& path) {
     if (!file || !file.get(first)) refuse(path, std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EIO));
     if (is_packed(path)) {
         std::string head;
-        const std::string why = unpack_head(path, 1, head);
-        if (!why.empty() && head.empty()) refuse(path, why);
+        const Problem why = unpack_head(path, 1, head);
+        if (why && head.empty()) refuse(path, why.text());
         if (head.empty()) refuse(path, "is packed with gzip, and nothing is in it");
     } else if (name_without_gz(path) != path) {
         refuse(path, "is no gzip file, as its name says: its first bytes are others; copy it again, or name it without .gz");

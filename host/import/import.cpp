@@ -20,13 +20,13 @@ Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::st
 
 }  // namespace
 
-std::string complete_scene(const PluginRegistry& plugins, Scene& scene) {
+Problem complete_scene(const PluginRegistry& plugins, Scene& scene) {
     for (ShapeKind& kind : scene.shape_kinds) {
         kind.plugin = plugins.primitive(kind.id);
         if (!kind.plugin) return "has shapes of the unknown kind " + kind.id;
     }
-    const std::string why = validate(scene);
-    return why.empty() ? why : "is not sound: " + why;
+    if (const Problem why = validate(scene)) return "is not sound: " + why.text();
+    return {};
 }
 
 Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
@@ -40,8 +40,8 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
     }
     Scene scene = options.in_process ? import_in_process(plugins, files, options, progress)
                                      : import_in_worker(plugins, files, options, progress);
-    const std::string why = complete_scene(plugins, scene);
-    if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the imported scene " + why);
+    if (const Problem why = complete_scene(plugins, scene))
+        throw Error(Exit::import_failed, files.front() + ": the imported scene " + why.text());
     for (const std::string& warning : scene.warnings)
         if (options.log_warnings) log(LogLevel::warning, warning);
     return scene;

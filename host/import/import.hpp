@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
@@ -25,8 +26,8 @@ struct ImportOptions {
 Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                    Progress& progress);
 
-// Finds the plugins of the shapes in a scene that has come as plain arrays, and validates it. Returns an empty text on success,
+// Finds the plugins of the shapes in a scene that has come as plain arrays, and validates it. Returns nothing on success,
 // otherwise what the scene has or is ("is not sound: ...").
-std::string complete_scene(const PluginRegistry& plugins, Scene& scene);
+Problem complete_scene(const PluginRegistry& plugins, Scene& scene);
 
 }  // namespace clarity::import

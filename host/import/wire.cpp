@@ -9,60 +9,60 @@ namespace {
 constexpr uint64_t kMagic = 0x32656E6563536C43;  // "ClScene2"
 
 template <class T>
-void give(PacketWriter& packet, std::vector<T>& array) {
+void give(ParcelWriter& parcel, std::vector<T>& array) {
     static_assert(std::is_trivially_copyable_v<T>, "only plain data goes through shared memory");
-    packet.bytes(array.data(), array.size() * sizeof(T), true);
+    parcel.bytes(array.data(), array.size() * sizeof(T), true);
     std::vector<T>().swap(array);
 }
 
 // Elements that others have, too, are copied.
 template <class T>
-void give(PacketWriter& packet, SharedArray<T>& array) {
+void give(ParcelWriter& parcel, SharedArray<T>& array) {
     if (array.is_sole_owner())
-        give(packet, array.own());
+        give(parcel, array.own());
     else
-        packet(array);
+        parcel(array);
     array.clear();
 }
 
-Scene scene_in(PacketReader packet) {
+Scene scene_in(ParcelReader parcel) {
     SentScene sent;
-    packet(sent);
-    packet.end();
+    parcel(sent);
+    parcel.end();
     return std::move(sent.scene);
 }
 
 }  // namespace
 
-void SentScene::send(PacketWriter& packet, Scene scene) {
+void SentScene::send(ParcelWriter& parcel, Scene scene) {
     Converted converted = convert(scene);
-    packet(kMagic);
-    import::visit(scene, converted, [&](auto& array) { give(packet, array);
+    parcel(kMagic);
+    import::visit(scene, converted, [&](auto& array) { give(parcel, array);
 });
 }  // namespace clarity::import
 
-void SentScene::receive(PacketReader& packet, Scene& scene) {
+void SentScene::receive(ParcelReader& parcel, Scene& scene) {
     uint64_t magic = 0;
-    packet(magic);
+    parcel(magic);
     if (magic != kMagic) throw Error(Exit::failed, "the shared memory holds no scene");
     Converted converted;
-    import::visit(scene, converted, [&](auto& array) { packet(array);
+    import::visit(scene, converted, [&](auto& array) { parcel(array);
 });
-if (!convert_back(converted, scene)) throw PacketDamaged();
+if (!convert_back(converted, scene)) throw ParcelDamaged();
 }
 
 void write_scene(MemoryFile& file, Scene scene) {
-    PacketWriter packet(file);
-    SentScene::send(packet, std::move(scene));
-    packet.finish();
+    ParcelWriter parcel(file);
+    SentScene::send(parcel, std::move(scene));
+    parcel.finish();
 }
 
 Scene read_scene(const MemoryFile& file) {
-    return scene_in(PacketReader(file, PacketReader::How::emptied));
+    return scene_in(ParcelReader(file, ParcelReader::How::emptied));
 }
 
 Scene map_scene(const MemoryFile& file) {
-    return scene_in(PacketReader(file, PacketReader::How::mapped));
+    return scene_in(ParcelReader(file, ParcelReader::How::mapped));
 }
 
 }  // namespace clarity::import

@@ -1,25 +1,25 @@
-// wire.hpp -- passes a Scene from one process to another, in a file in memory (base/files/packet.hpp).
+// wire.hpp -- passes a Scene from one process to another, in a file in memory (base/files/parcel.hpp).
 #pragma once
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::import {
 
-// A scene among the values of a packet. What is sent without being shared goes back to the system piece by piece, so that the
+// A scene among the values of a parcel. What is sent without being shared goes back to the system piece by piece, so that the
 // scene is not held twice. Indices and numbers that arrive are not checked here but by validate().
 struct SentScene {
     Scene scene;
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        if constexpr (!Packet::kWrites)
-            receive(packet, self.scene);
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        if constexpr (!Parcel::kWrites)
+            receive(parcel, self.scene);
         else if constexpr (std::is_const_v<Self>)
-            send(packet, self.scene);
+            send(parcel, self.scene);
         else
-            send(packet, std::move(self.scene));
+            send(parcel, std::move(self.scene));
     }
-    static void send(PacketWriter& packet, Scene scene);
-    static void receive(PacketReader& packet, Scene& scene);
+    static void send(ParcelWriter& parcel, Scene scene);
+    static void receive(ParcelReader& parcel, Scene& scene);
 };
 
 // Writes the scene into an empty file, whose size is sealed then. Throws Error(failed), as the other functions do.

@@ -145,8 +145,8 @@ Scene MpiRanks::share_scene(const PluginRegistry& plugins, const std::function<S
     }
     wait_for(file, first_of_host_, progress);
     Scene scene = import::map_scene(file);
-    const std::string why = import::complete_scene(plugins, scene);
-    if (!why.empty()) throw Error(Exit::import_failed, "the scene that rank 0 has sent " + why);
+    if (const Problem why = import::complete_scene(plugins, scene))
+        throw Error(Exit::import_failed, "the scene that rank 0 has sent " + why.text());
     return scene;
 }
 

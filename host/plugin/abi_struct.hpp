@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "base/problem.hpp"
 #include "rt_device.h"
 #include "rt_plugin.h"
 #include "rt_refit.h"
@@ -82,10 +83,10 @@ inline constexpr uint32_t kLeastBytes<rt_device_build> = 64;
 // More than any struct of the ABI will have, and far less than a random word is likely to hold.
 inline constexpr uint32_t kMostBytes = 4096;
 
-// Returns an empty text if `bytes` may be the size of a T of version 2, otherwise what was found, what is expected and what to
+// Returns nothing if `bytes` may be the size of a T of version 2, otherwise what was found, what is expected and what to
 // do. what: the struct's name, "rt_accel". field: the field that tells the size.
 template <class T>
-std::string check_bytes(const char* what, uint32_t bytes, const char* field = "struct_bytes") {
+Problem check_bytes(const char* what, uint32_t bytes, const char* field = "struct_bytes") {
     static_assert(kLeastBytes<T> > 0 && sizeof(T) >= kLeastBytes<T> && alignof(T) == 8);
     if (bytes >= kLeastBytes<T> && bytes <= kMostBytes && bytes % 8 == 0) return {};
     return std::string(what) + " has " + field + " " + std::to_string(bytes) + ", ABI version " +

@@ -211,7 +211,7 @@ class SymbolLookup {
     const char* name_;
 };
 
-std::string check_header(const File& file, Header& header) {
+Problem check_header(const File& file, Header& header) {
     const std::string rebuild = "; build the plugin with cmake as docs/plugins.md shows, and name the .so that it makes";
     if (file.bytes() == 0) return "is an empty file, not a shared library" + rebuild;
     unsigned char ident[EI_NIDENT];
@@ -238,7 +238,7 @@ std::string check_header(const File& file, Header& header) {
     return {};
 }
 
-std::string read_segments(const File& file, const Header& header, std::vector<Segment>& segments) {
+Problem read_segments(const File& file, const Header& header, std::vector<Segment>& segments) {
     if (header.e_phentsize != sizeof(Segment) || header.e_phnum == 0) return "is a damaged ELF file: it has no program headers";
     segments.resize(header.e_phnum);
     if (!file.read(header.e_phoff, segments.data(), segments.size() * sizeof(Segment)))
@@ -254,7 +254,7 @@ std::string read_segments(const File& file, const Header& header, std::vector<Se
     return {};
 }
 
-std::string read_dynamic(const File& file, const std::vector<Segment>& segments, DynamicTables& tables) {
+Problem read_dynamic(const File& file, const std::vector<Segment>& segments, DynamicTables& tables) {
     for (const Segment& segment : segments) {
         if (segment.p_type != PT_DYNAMIC) continue;
         for (uint64_t at = 0; at + sizeof(Dynamic) <= segment.p_filesz && at / sizeof(Dynamic) < kMaxSteps;
@@ -290,16 +290,16 @@ std::string read_dynamic(const File& file, const std::vector<Segment>& segments,
 
 }  // namespace
 
-std::string read_elf_symbol(const std::string& path, const char* name, ElfSymbol& symbol) {
+Problem read_elf_symbol(const std::string& path, const char* name, ElfSymbol& symbol) {
     symbol = {};
     const File file(path);
     if (!file.why().empty()) return file.why();
     Header header{};
     std::vector<Segment> segments;
     DynamicTables tables;
-    if (std::string why = check_header(file, header); !why.empty()) return why;
-    if (std::string why = read_segments(file, header, segments); !why.empty()) return why;
-    if (std::string why = read_dynamic(file, segments, tables); !why.empty()) return why;
+    if (Problem why = check_header(file, header)) return why;
+    if (Problem why = read_segments(file, header, segments)) return why;
+    if (Problem why = read_dynamic(file, segments, tables)) return why;
     const Image image(file, std::move(segments));
     Symbol found{};
     const int result = SymbolLookup(image, tables, name).find(found);

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include "base/problem.hpp"
 
 namespace clarity {
 
@@ -14,8 +15,8 @@ struct ElfSymbol {
 };
 
 // Looks up an exported symbol through the tables that the dynamic loader uses. Every offset is checked against the file's size,
-// so a hostile or truncated file gives an error text, not a crash. Returns an empty text if the file is a complete shared
+// so a hostile or truncated file gives an error text, not a crash. Returns nothing if the file is a complete shared
 // library for this machine (`symbol.found` tells whether it exports the name), otherwise what is wrong and what to do.
-std::string read_elf_symbol(const std::string& path, const char* name, ElfSymbol& symbol);
+Problem read_elf_symbol(const std::string& path, const char* name, ElfSymbol& symbol);
 
 }  // namespace clarity

@@ -81,7 +81,7 @@ std::string private_copy(const std::string& path) {
 
 std::string content_of(const std::string& path) {
     std::string content;
-    return try_read_file(path, uint64_t{1} << 30, content).empty() ? content : std::string();
+    return try_read_file(path, uint64_t{1} << 30, content) ? std::string() : content;
 }
 
 std::vector<std::string> paths_of(const PluginRegistry& plugins) {
@@ -168,12 +168,12 @@ std::vector<RebuiltLibrary> LibraryWatch::apply() {
         bool was_there = false;
         for (const PluginRecord& old : plugins_.records())
             if (old.path == record.path) result.before = old.plugin, was_there = was_there || old.plugin;
-        std::string why = record.plugin ? plugins_.replace(record) : record.why;
-        if (why.empty()) {
+        const Problem why = record.plugin ? plugins_.replace(record) : record.why;
+        if (!why) {
             result.now = record.plugin;
             log(LogLevel::info, record.path + ": was built again and is in force now");
         } else {
-            result.why = record.path + ": was built again and is refused: " + why +
+            result.why = record.path + ": was built again and is refused: " + why.text() +
                          (was_there ? ". The build before it stays in force" : "");
         }
         results.push_back(std::move(result));

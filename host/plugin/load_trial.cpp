@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kAdvice = "; the file may be damaged: build it or copy it again";
 
-void load(PacketReader& arguments) {
+void load(ParcelReader& arguments) {
     const auto library = worker::arguments_in<std::string>(arguments);
     load_plugin(library);  // the parent finds out itself why a library is refused
     // Its destructors would run at the end of the program.
@@ -37,7 +37,7 @@ const worker::JobKind kLoadJob = {
      "took more than {how} of memory when it was opened{advice}", "was being opened when that process was killed{advice}"},
     load};
 
-std::string try_to_load(const std::string& path) {
+Problem try_to_load(const std::string& path) {
     if (worker::in_worker() || trust_of(path) != Trust::none) return {};
     worker::Job job(kLoadJob, "a library that was opened", {10, 0, uint64_t(4) << 30});
     job.advice = kAdvice;

@@ -3,13 +3,14 @@
 #pragma once
 #include <string>
 
+#include "base/problem.hpp"
 #include "worker/job.hpp"
 
 namespace clarity {
 
-// Opens and checks a library without trust (trust.hpp) in a worker. Returns an empty text if that worker came to
+// Opens and checks a library without trust (trust.hpp) in a worker. Returns nothing if that worker came to
 // an end, or could not be started; otherwise how it died: the library must then not be opened here. Thread-safe.
-std::string try_to_load(const std::string& path);
+Problem try_to_load(const std::string& path);
 
 extern const worker::JobKind kLoadJob;
 

@@ -23,7 +23,7 @@ std::string hex(uint32_t word) {
 }  // namespace
 
 // Texts are shown on terminals and in the window, so they must be one line without control characters.
-std::string check_text(const char* what, const char* text, bool required) {
+Problem check_text(const char* what, const char* text, bool required) {
     if (!text) return required ? std::string(what) + " is missing (NULL)" : "";
     const size_t bytes = strnlen(text, kMaxText);
     if (bytes == kMaxText) return std::string(what) + " is longer than " + std::to_string(kMaxText) + " bytes, or has no end";
@@ -51,12 +51,12 @@ bool is_type_name(const char* text) {
     return true;
 }
 
-std::string check_choices(const std::string& who, const rt_param& param) {
+Problem check_choices(const std::string& who, const rt_param& param) {
     if (!param.choices) return who + " is an ENUM without choices";
     std::set<std::string> seen;
     rt_u32 count = 0;
     for (; count <= kMaxChoices && param.choices[count]; ++count) {
-        if (std::string why = check_text("a choice", param.choices[count], true); !why.empty()) return who + ": " + why;
+        if (const Problem why = check_text("a choice", param.choices[count], true)) return who + ": " + why.text();
         if (std::string(param.choices[count]).find_first_of(",= ") != std::string::npos)
             return who + ": the choice '" + param.choices[count] +
                    "' cannot be typed on the command line: no ',', '=' or blank in it";
@@ -69,11 +69,11 @@ std::string check_choices(const std::string& who, const rt_param& param) {
     return {};
 }
 
-std::string check_param(const rt_param& param, rt_u32 number) {
+Problem check_param(const rt_param& param, rt_u32 number) {
     if (!is_identifier(param.key)) return "parameter " + std::to_string(number) + " has no key, or one that is no identifier";
     const std::string who = "parameter '" + std::string(param.key) + "'";
-    if (std::string why = check_text("label", param.label, true); !why.empty()) return who + ": " + why;
-    if (std::string why = check_text("help", param.help, true); !why.empty()) return who + ": " + why;
+    if (const Problem why = check_text("label", param.label, true)) return who + ": " + why.text();
+    if (const Problem why = check_text("help", param.help, true)) return who + ": " + why.text();
     if (param.kind < RT_PARAM_INT || param.kind > RT_PARAM_ENUM)
         return who + " has the unknown kind " + std::to_string(param.kind);
     if (param.effect != RT_EFFECT_REBUILD && param.effect != RT_EFFECT_RECOMPILE)
@@ -88,28 +88,28 @@ std::string check_param(const rt_param& param, rt_u32 number) {
     return param.kind == RT_PARAM_ENUM ? check_choices(who, param) : "";
 }
 
-std::string check_params(const rt_plugin& plugin) {
+Problem check_params(const rt_plugin& plugin) {
     if (plugin.param_count > kMaxParams)
         return "it declares " + std::to_string(plugin.param_count) + " parameters, at most " + std::to_string(kMaxParams) +
                " are taken";
     if (plugin.param_count > 0 && !plugin.params) return "param_count is not 0, but params is NULL";
     std::set<std::string> keys;
     for (rt_u32 i = 0; i < plugin.param_count; ++i) {
-        if (std::string why = check_param(plugin.params[i], i); !why.empty()) return why;
+        if (Problem why = check_param(plugin.params[i], i)) return why;
         if (!keys.insert(plugin.params[i].key).second)
             return std::string("it has two parameters '") + plugin.params[i].key + "'";
     }
     return {};
 }
 
-std::string check_merit(const char* which, float merit) {
+Problem check_merit(const char* which, float merit) {
     if (std::isfinite(merit) && merit >= 0) return {};
     char text[32];
     std::snprintf(text, sizeof text, "%g", double(merit));
     return std::string("its ") + which + " is " + text + ", expected a finite number, 0 or more (0: not measured)";
 }
 
-std::string check_slots(const rt_accel& accel) {
+Problem check_slots(const rt_accel& accel) {
     if (accel.slot_count == 0 || accel.slot_count > kMaxSlots)
         return "it declares " + std::to_string(accel.slot_count) + " slots, expected 1 to " + std::to_string(kMaxSlots) +
                " (slot 0 holds the nodes)";
@@ -131,7 +131,7 @@ std::string check_slots(const rt_accel& accel) {
     return {};
 }
 
-std::string check_kernels(const rt_accel& accel) {
+Problem check_kernels(const rt_accel& accel) {
     if (accel.kernel_contract != RT_KERNEL_CONTRACT)
         return "its traversal was written for version " + std::to_string(accel.kernel_contract) +
                " of the kernel contract, this host offers " + std::to_string(RT_KERNEL_CONTRACT) +
@@ -139,15 +139,15 @@ std::string check_kernels(const rt_accel& accel) {
                     ? ": update clarity, or write it for the version that this host offers (CONTRACT.md)"
                     : ": write RT_KERNEL_CONTRACT into kernel_contract, and see in CONTRACT.md what that version asks");
     if (accel.types.text && !accel.types.name) return "its types file has a text but no name";
-    if (std::string why = check_text("the name of its types file", accel.types.name, false); !why.empty()) return why;
-    if (std::string why = check_text("the name of its traversal file", accel.traverse.name, true); !why.empty()) return why;
+    if (Problem why = check_text("the name of its types file", accel.types.name, false)) return why;
+    if (Problem why = check_text("the name of its traversal file", accel.traverse.name, true)) return why;
     if (!accel.traverse.text || !*accel.traverse.text)
         return "its traversal has no text: embed <id>.cl (clarity_add_plugin does) and point traverse.text at it";
     return {};
 }
 
 // A structure that builds only a topology, for another plugin's layout.
-std::string check_topology(const rt_accel& accel) {
+Problem check_topology(const rt_accel& accel) {
     const size_t bytes = accel.layout ? strnlen(accel.layout, 64) : 0;
     if (!is_plugin_id(std::string_view(accel.layout ? accel.layout : "", bytes)))
         return "it builds a topology, but `layout` names no structure that traces it: write the id of one, as \"bvh2\"";
@@ -158,23 +158,23 @@ std::string check_topology(const rt_accel& accel) {
     return {};
 }
 
-std::string check_accel(const rt_accel& accel) {
+Problem check_accel(const rt_accel& accel) {
     if (accel.layout || accel.topology) {
-        if (std::string why = check_topology(accel); !why.empty()) return why;
+        if (Problem why = check_topology(accel)) return why;
     } else {
-        if (std::string why = check_slots(accel); !why.empty()) return why;
-        if (std::string why = check_kernels(accel); !why.empty()) return why;
+        if (Problem why = check_slots(accel)) return why;
+        if (Problem why = check_kernels(accel)) return why;
         if (!accel.build) return "build is NULL";
     }
-    if (std::string why = check_merit("merit_cpu", accel.merit_cpu); !why.empty()) return why;
-    if (std::string why = check_merit("merit_gpu", accel.merit_gpu); !why.empty()) return why;
+    if (Problem why = check_merit("merit_cpu", accel.merit_cpu)) return why;
+    if (Problem why = check_merit("merit_gpu", accel.merit_gpu)) return why;
     if (accel.ray_cost != RT_RAY_COST_LOGARITHMIC && accel.ray_cost != RT_RAY_COST_LINEAR)
         return "its ray_cost is " + std::to_string(accel.ray_cost) + ", expected RT_RAY_COST_LOGARITHMIC or RT_RAY_COST_LINEAR";
     return {};
 }
 
-std::string check_device_build(const rt_device_build& build) {
-    if (std::string why = check_text("the name of its kernel file", build.kernels.name, true); !why.empty()) return why;
+Problem check_device_build(const rt_device_build& build) {
+    if (Problem why = check_text("the name of its kernel file", build.kernels.name, true)) return why;
     if (!build.kernels.text || !*build.kernels.text)
         return "its kernel file has no text: embed <id>_build.cl (clarity_add_plugin does) and point kernels.text at it";
     if (!build.topology && !build.pack && !build.refit) return "topology, pack and refit are all NULL: one of them is needed";
@@ -184,29 +184,28 @@ std::string check_device_build(const rt_device_build& build) {
     return {};
 }
 
-std::string check_extensions(const rt_plugin& plugin) {
+Problem check_extensions(const rt_plugin& plugin) {
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e) {
-        if (std::string why = check_text("the name of an extension", e->name, true); !why.empty()) return why;
+        if (Problem why = check_text("the name of an extension", e->name, true)) return why;
         if (e->data_bytes > 0 && !e->data)
             return std::string("extension '") + e->name + "' has data_bytes " + std::to_string(e->data_bytes) +
                    ", but its data is NULL";
         if (std::strcmp(e->name, RT_REFIT) == 0 && e->version == RT_REFIT_VERSION) {
-            if (std::string why = check_bytes<rt_refit>("rt_refit", e->data_bytes, "data_bytes"); !why.empty()) return why;
+            if (Problem why = check_bytes<rt_refit>("rt_refit", e->data_bytes, "data_bytes")) return why;
             if (!plugin.accel) return "extension 'refit' belongs to acceleration structures only";
             if (!static_cast<const rt_refit*>(e->data)->refit) return "extension 'refit': its function refit is NULL";
         }
         if (std::strcmp(e->name, RT_DEVICE_BUILD) == 0 && e->version == RT_DEVICE_BUILD_VERSION) {
-            if (std::string why = check_bytes<rt_device_build>("rt_device_build", e->data_bytes, "data_bytes"); !why.empty())
-                return why;
+            if (Problem why = check_bytes<rt_device_build>("rt_device_build", e->data_bytes, "data_bytes")) return why;
             if (!plugin.accel) return "extension 'device_build' belongs to acceleration structures only";
-            if (std::string why = check_device_build(copied<rt_device_build>(e->data, e->data_bytes)); !why.empty())
-                return "extension 'device_build': " + why;
+            if (const Problem why = check_device_build(copied<rt_device_build>(e->data, e->data_bytes)))
+                return "extension 'device_build': " + why.text();
         }
     }
     return {};
 }
 
-std::string check_importer(const rt_importer& importer) {
+Problem check_importer(const rt_importer& importer) {
     if (!importer.extensions) return "extensions is NULL";
     rt_u32 count = 0;
     for (; count <= kMaxFileExtensions && importer.extensions[count]; ++count) {
@@ -238,14 +237,14 @@ bool is_plugin_id(std::string_view text) {
                        [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
+Problem check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
     const char* rebuild = ": rebuild it against this SDK";
     if (head[0] == 0 && head[1] == 0 && head[2] == 0)
         return "rt_plugin_v1 is zero in the file, so it is filled in by code at start: make all that it is made of constexpr";
     if (head[0] != RT_ABI_VERSION)
         return "ABI version " + std::to_string(head[0]) + ", this host speaks " + std::to_string(RT_ABI_VERSION) +
                (head[0] > RT_ABI_VERSION ? ": update clarity, or rebuild the plugin against this SDK" : rebuild);
-    if (std::string why = check_bytes<rt_plugin>("rt_plugin", head[1]); !why.empty()) return why;
+    if (Problem why = check_bytes<rt_plugin>("rt_plugin", head[1])) return why;
     if (object_bytes < head[1])
         return "rt_plugin_v1 says struct_bytes " + std::to_string(head[1]) + ", but the library exports " +
                std::to_string(object_bytes) + " bytes of it: declare it as `const rt_plugin rt_plugin_v1` and rebuild";
@@ -255,22 +254,22 @@ std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
     return {};
 }
 
-std::string check_plugin(const rt_plugin& plugin) {
+Problem check_plugin(const rt_plugin& plugin) {
     const size_t id_bytes = plugin.id ? strnlen(plugin.id, kMaxText) : 0;
     if (!is_plugin_id(std::string_view(plugin.id ? plugin.id : "", id_bytes)))
         return "its id is " +
-               (check_text("id", plugin.id, true).empty() ? "'" + std::string(plugin.id) + "'" : "missing or unreadable") +
+               (check_text("id", plugin.id, true) ? "missing or unreadable" : "'" + std::string(plugin.id) + "'") +
                ", expected [a-z][a-z0-9_]* of at most 32 letters";
-    if (std::string why = check_text("name", plugin.name, true); !why.empty()) return why;
-    if (std::string why = check_text("version", plugin.version, true); !why.empty()) return why;
-    if (std::string why = check_text("reference", plugin.reference, false); !why.empty()) return why;
+    if (Problem why = check_text("name", plugin.name, true)) return why;
+    if (Problem why = check_text("version", plugin.version, true)) return why;
+    if (Problem why = check_text("reference", plugin.reference, false)) return why;
     const int kinds = (plugin.accel != nullptr) + (plugin.importer != nullptr) + (plugin.primitive != nullptr);
     if (kinds > 1) return "it is more than one of accel, importer and primitive, expected exactly one: make libraries of it";
     if (kinds == 0)
         return "it is neither an accel nor an importer nor a primitive, expected exactly one: set one of them; a plugin of "
                "another kind needs a later clarity";
-    if (std::string why = check_params(plugin); !why.empty()) return why;
-    if (std::string why = check_extensions(plugin); !why.empty()) return why;
+    if (Problem why = check_params(plugin)) return why;
+    if (Problem why = check_extensions(plugin)) return why;
     if (plugin.primitive) return check_primitive(*plugin.primitive);
     return plugin.accel ? check_accel(*plugin.accel) : check_importer(*plugin.importer);
 }

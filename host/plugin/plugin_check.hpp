@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/problem.hpp"
 #include "rt_plugin.h"
 
 namespace clarity {
@@ -19,18 +20,18 @@ bool is_plugin_id(std::string_view text);
 bool is_identifier(const char* text);
 
 // Checks the first four words of rt_plugin, which stay in place in every version of the ABI. `object_bytes`: size of the
-// exported symbol, which struct_bytes must not exceed. Returns an empty text if this host can read the rest, otherwise what was
+// exported symbol, which struct_bytes must not exceed. Returns nothing if this host can read the rest, otherwise what was
 // found, what was expected and what to do.
-std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes);
+Problem check_plugin_head(const uint32_t head[4], uint64_t object_bytes);
 
-// Empty if the text is one line that can be shown, otherwise what is wrong with it. what: what it is, "help".
-std::string check_text(const char* what, const char* text, bool required);
+// Nothing if the text is one line that can be shown, otherwise what is wrong with it. what: what it is, "help".
+Problem check_text(const char* what, const char* text, bool required);
 
 // Checks the description of a shape.
-std::string check_primitive(const rt_primitive& primitive);
+Problem check_primitive(const rt_primitive& primitive);
 
 // Checks everything after the head: names, parameters, tables, required functions. `plugin` has structs of this host's size
-// (copy_plugin). Returns an empty text if it is sound.
-std::string check_plugin(const rt_plugin& plugin);
+// (copy_plugin). Returns nothing if it is sound.
+Problem check_plugin(const rt_plugin& plugin);
 
 }  // namespace clarity

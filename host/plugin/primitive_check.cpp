@@ -4,6 +4,7 @@
 #include <cstring>
 #include <set>
 
+#include "base/problem.hpp"
 #include "plugin/plugin_check.hpp"
 
 namespace clarity {
@@ -13,12 +14,12 @@ bool is_list(const rt_key& key) {
     return key.kind == RT_KEY_NUMBERS || key.kind == RT_KEY_POINTS;
 }
 
-std::string check_key(const rt_key& key, rt_u32 number) {
+Problem check_key(const rt_key& key, rt_u32 number) {
     if (!is_identifier(key.name) || !is_plugin_id(key.name))
         return "key " + std::to_string(number) + " has no name, or one that is not [a-z][a-z0-9_]*";
     const std::string who = "key '" + std::string(key.name) + "'";
     if (std::strcmp(key.name, "material") == 0) return who + " is a key of every statement: take another name";
-    if (std::string why = check_text("help", key.help, true); !why.empty()) return who + ": " + why;
+    if (const Problem why = check_text("help", key.help, true)) return who + ": " + why.text();
     if (key.kind > RT_KEY_POINTS) return who + " has the unknown kind " + std::to_string(key.kind);
     if (!std::isfinite(key.min) || !std::isfinite(key.max) || key.min > key.max)
         return who + ": expected finite min <= max, found " + std::to_string(key.min) + ", " + std::to_string(key.max);
@@ -31,7 +32,7 @@ std::string check_key(const rt_key& key, rt_u32 number) {
 
 }  // namespace
 
-std::string check_primitive(const rt_primitive& primitive) {
+Problem check_primitive(const rt_primitive& primitive) {
     if (primitive.kernel_contract != RT_KERNEL_CONTRACT)
         return "its kernels were written for version " + std::to_string(primitive.kernel_contract) +
                " of the kernel contract, this host offers " + std::to_string(RT_KERNEL_CONTRACT) +
@@ -44,12 +45,12 @@ std::string check_primitive(const rt_primitive& primitive) {
     bool lists = false;
     for (rt_u32 i = 0; i < primitive.key_count; ++i) {
         const rt_key& key = primitive.keys[i];
-        if (std::string why = check_key(key, i); !why.empty()) return why;
+        if (Problem why = check_key(key, i)) return why;
         if (!names.insert(key.name).second) return std::string("it has two keys '") + key.name + "'";
         numbers += key.kind == RT_KEY_POINT || key.kind == RT_KEY_VECTOR ? 3 : 1;
         lists = lists || is_list(key);
     }
-    if (std::string why = check_text("the name of its kernels", primitive.kernels.name, true); !why.empty()) return why;
+    if (Problem why = check_text("the name of its kernels", primitive.kernels.name, true)) return why;
     if (!primitive.kernels.text || !*primitive.kernels.text)
         return "its kernels have no text: embed <id>.cl (clarity_add_plugin does) and point kernels.text at it";
     if (primitive.prepare) return {};

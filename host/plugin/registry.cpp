@@ -35,47 +35,39 @@ std::string dlopen_advice(const std::string& error) {
     return {};
 }
 
-PluginRecord load_checked(const std::string& path) {
-    PluginRecord record;
-    record.path = record.loaded = path;
+// Fills the record of record.path.
+Problem load_checked(PluginRecord& record) {
+    const std::string& path = record.path;
     // Read the version from the file first: dlopen would run the library's constructors before the check.
     ElfSymbol symbol;
-    record.why = read_elf_symbol(path, kSymbol, symbol);
-    if (record.why.empty() && !symbol.found)
-        record.why = std::string("exports no symbol ") + kSymbol +
-                     ", so it is no plugin of clarity; define it (docs/plugins.md) and export it";
-    if (record.why.empty() && !symbol.is_data)
-        record.why =
-            std::string("exports ") + kSymbol + " as a function, expected data: declare it as `const rt_plugin rt_plugin_v1`";
-    if (record.why.empty()) record.why = check_plugin_head(symbol.head, symbol.bytes);
-    if (!record.why.empty()) return record;
-
-    record.why = try_to_load(path);
-    if (!record.why.empty()) return record;
+    if (Problem why = read_elf_symbol(path, kSymbol, symbol)) return why;
+    if (!symbol.found)
+        return std::string("exports no symbol ") + kSymbol +
+               ", so it is no plugin of clarity; define it (docs/plugins.md) and export it";
+    if (!symbol.is_data)
+        return std::string("exports ") + kSymbol +
+               " as a function, expected data: declare it as `const rt_plugin rt_plugin_v1`";
+    if (Problem why = check_plugin_head(symbol.head, symbol.bytes)) return why;
+    if (Problem why = try_to_load(path)) return why;
     const std::string full = fs::absolute(path).string();  // dlopen would look up a bare name in the system's library folders
     void* library = dlopen(full.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         const char* error = dlerror();
-        record.why =
-            std::string("cannot be loaded: ") + (error ? error : "no reason given") + dlopen_advice(error ? error : "");
-        return record;
+        return std::string("cannot be loaded: ") + (error ? error : "no reason given") + dlopen_advice(error ? error : "");
     }
     const auto* plugin = static_cast<const rt_plugin*>(dlsym(library, kSymbol));
-    if (!plugin) {
-        record.why =
-            std::string("exports no symbol ") + kSymbol + " after loading, although its file contains it; build it again";
-        return record;
-    }
+    if (!plugin)
+        return std::string("exports no symbol ") + kSymbol + " after loading, although its file contains it; build it again";
     // Check again what is really mapped: the file may have been replaced in between, and a constructor may have changed the
     // data.
     uint32_t head[4];
     std::memcpy(head, plugin, sizeof head);
-    record.why = check_plugin_head(head, symbol.bytes);
-    if (!record.why.empty()) return record;
-    const rt_plugin* const copy = copy_plugin(*plugin, record.why);
-    if (copy) record.why = check_plugin(*copy);
-    if (record.why.empty()) record.plugin = copy;
-    return record;
+    if (Problem why = check_plugin_head(head, symbol.bytes)) return why;
+    Problem why;
+    const rt_plugin* const copy = copy_plugin(*plugin, why);
+    if (copy) why = check_plugin(*copy);
+    if (!why) record.plugin = copy;
+    return why;
 }
 
 std::string environment(const char* name) {
@@ -176,7 +168,7 @@ std::vector<uint8_t> read_head(const std::string& path) {
     std::vector<uint8_t> head(4096);
     if (is_packed(path)) {
         std::string content;
-        unpack_head(path, head.size(), content);  // damage is reported when the file is read
+        (void)unpack_head(path, head.size(), content);  // damage is reported when the file is read
         return {content.begin(), content.end()};
     }
     size_t bytes = 0;
@@ -214,14 +206,14 @@ int certainty(const rt_importer& importer, const std::string& extension, const s
 }  // namespace
 
 PluginRecord load_plugin(const std::string& path) {
+    PluginRecord record;
+    record.path = record.loaded = path;
     try {
-        return load_checked(path);
+        record.why = load_checked(record).text();
     } catch (const std::exception& e) {
-        PluginRecord record;
-        record.path = path;
         record.why = std::string("could not be examined: ") + e.what();
-        return record;
     }
+    return record;
 }
 
 bool is_own_library(const std::string& path) {
@@ -323,7 +315,7 @@ PluginRegistry PluginRegistry::of(const std::vector<std::string>& plugin_files) 
     return registry;
 }
 
-std::string PluginRegistry::replace(const PluginRecord& rebuilt) {
+Problem PluginRegistry::replace(const PluginRecord& rebuilt) {
     const std::lock_guard<std::mutex> lock(list_->mutex);
     std::vector<PluginRecord> next = list_->records;
     const auto place =

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "rt_plugin.h"
 
 namespace clarity {
@@ -49,7 +50,7 @@ class PluginRegistry {
 
     // Puts a rebuilt library into force in the place of the one of the same path; `rebuilt` must be loaded. Returns an empty
     // text, or why it cannot take that place; the list then stays as it is.
-    std::string replace(const PluginRecord& rebuilt);
+    Problem replace(const PluginRecord& rebuilt);
 
  private:
     struct List {

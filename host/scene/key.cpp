@@ -67,7 +67,7 @@ void set_value(const Key& key, void* values, const std::array<float, 3>& value) 
     for (size_t k = 0; k < count_of(key); ++k) numbers[k] = key.inverted ? -value[k] : value[k];
 }
 
-std::string range_fault(const Key& key, const std::array<float, 3>& value) {
+Problem range_fault(const Key& key, const std::array<float, 3>& value) {
     const size_t count = count_of(key);
     const auto is_outside = [&](float x) { return !(x >= key.min && x <= key.max); };
     if (std::any_of(value.begin(), value.begin() + count, is_outside)) return range_text(key);
@@ -75,12 +75,13 @@ std::string range_fault(const Key& key, const std::array<float, 3>& value) {
     return {};
 }
 
-std::string fault_of(const std::vector<Key>& keys, const void* values) {
+Problem fault_of(const std::vector<Key>& keys, const void* values) {
     for (const Key& key : keys) {
         const std::array<float, 3> value = value_of(key, values);
-        const std::string fault = range_fault(key, value), name = "`" + std::string(key.name) + "`";
+        const std::string name = "`" + std::string(key.name) + "`";
         if (!are_finite(value)) return "not a finite number in " + name;
-        if (!fault.empty()) return name + " is " + value_text(key, value, " ") + ", expected " + fault;
+        if (const Problem fault = range_fault(key, value))
+            return name + " is " + value_text(key, value, " ") + ", expected " + fault.text();
     }
     return {};
 }
@@ -93,7 +94,7 @@ std::array<float, 3> nearest_value(const Key& key, const std::array<float, 3>& v
         const bool is_missing = !std::isfinite(value[k]) || (least > 0 && value[k] < least);
         nearest[k] = is_missing ? key.def[k] : std::clamp(value[k], least, most);
     }
-    return range_fault(key, nearest).empty() ? nearest : key.def;
+    return range_fault(key, nearest) ? key.def : nearest;
 }
 
 std::string value_text(const Key& key, const std::array<float, 3>& value, const char* between) {
@@ -120,7 +121,7 @@ bool read_value(const Key& key, const std::string& text, std::array<float, 3>& v
     const std::vector<float> numbers = read_numbers<float>(text);
     if (numbers.size() != count) return false;
     std::copy(numbers.begin(), numbers.end(), value.begin());
-    expected = range_fault(key, value);
+    expected = range_fault(key, value).text();
     return expected.empty();
 }
 

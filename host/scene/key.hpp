@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "rt_plugin.h"
 
 namespace clarity {
@@ -41,10 +42,10 @@ size_t count_of(const Key& key);
 // Reads and writes the value in a struct.
 std::array<float, 3> value_of(const Key& key, const void* values);
 void set_value(const Key& key, void* values, const std::array<float, 3>& value);
-// Why the value is not allowed: "from 0 to 1", or an empty text.
-std::string range_fault(const Key& key, const std::array<float, 3>& value);
-// "`reflect` is 2, expected from 0 to 1" for the first key that is not in its range, or an empty text.
-std::string fault_of(const std::vector<Key>& keys, const void* values);
+// Why the value is not allowed: "from 0 to 1", or nothing.
+Problem range_fault(const Key& key, const std::array<float, 3>& value);
+// "`reflect` is 2, expected from 0 to 1" for the first key that is not in its range, or nothing.
+Problem fault_of(const std::vector<Key>& keys, const void* values);
 // The nearest value that is allowed. The default in place of what is not finite, or below a range that begins above 0.
 std::array<float, 3> nearest_value(const Key& key, const std::array<float, 3>& value);
 // A value as a text that reads back to the same value. between: what stands between its numbers.

@@ -254,7 +254,7 @@ bool make_sound(rt_light& light, bool keep_units) {
     const LightKind& row = light_kind_of(light);
     for (const Key& key : row.keys) {
         const std::array<float, 3> value = value_of(key, &light);
-        if (!are_usable(value) || (key.moves == Moves::length && !range_fault(key, value).empty())) return false;
+        if (!are_usable(value) || (key.moves == Moves::length && range_fault(key, value))) return false;
         if (key.kind == RT_KEY_COLOR) set_value(key, &light, nearest_value(key, value));
         if (key.kind != RT_KEY_VECTOR) continue;
         const double size = length(to_vec(value));
@@ -290,7 +290,7 @@ void set_edit_value(const Key& key, rt_light& light, std::array<float, 3> value)
     set_value(key, &light, value);
 }
 
-std::string light_fault(const rt_light& light) {
+Problem light_fault(const rt_light& light) {
     if (light.kind >= light_kinds().size()) return "unknown kind " + std::to_string(light.kind);
     return fault_of(light_kind_of(light).keys, &light);
 }

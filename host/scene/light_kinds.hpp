@@ -1,6 +1,7 @@
 // light_kinds.hpp -- the table of the kinds of lights: their keys, and all that differs between them. A new kind is a number in
 // rt_shared.h, a row here, and kernels that light with it.
 #pragma once
+#include "base/problem.hpp"
 #include "scene/key.hpp"
 #include "scene/motion/matrix.hpp"
 #include "scene/scene.hpp"
@@ -40,7 +41,7 @@ bool move_light(rt_light& light, const Matrix& world_from_local);
 // The value of a key as edits have it: see Key::reversed_in_edits.
 std::array<float, 3> edit_value(const Key& key, const rt_light& light);
 void set_edit_value(const Key& key, rt_light& light, std::array<float, 3> value);
-// "`angle` is 200, expected from 0 to 180", or an empty text.
-std::string light_fault(const rt_light& light);
+// "`angle` is 200, expected from 0 to 180", or nothing.
+Problem light_fault(const rt_light& light);
 
 }  // namespace clarity

@@ -134,7 +134,7 @@ rt_material material_of(const rt_material_desc& d, std::string& problem) {
     return m;
 }
 
-std::string material_fault(const rt_material& material) {
+Problem material_fault(const rt_material& material) {
     return fault_of(material_keys(), &material);
 }
 

@@ -1,6 +1,7 @@
 // material_keys.hpp -- the table of what a material is made of. A new key is a row here, a member of rt_material, and kernels
 // that read it.
 #pragma once
+#include "base/problem.hpp"
 #include "scene/key.hpp"
 #include "scene/scene.hpp"
 
@@ -20,7 +21,7 @@ void set_material_value(rt_material& material, const Key& key, const std::array<
 // numbers that are not finite are replaced by defaults, others are brought into range without a word, and unknown keys are left
 // out.
 rt_material material_of(const rt_material_desc& desc, std::string& problem);
-// "`reflect` is 2, expected from 0 to 1", or an empty text.
-std::string material_fault(const rt_material& material);
+// "`reflect` is 2, expected from 0 to 1", or nothing.
+Problem material_fault(const rt_material& material);
 
 }  // namespace clarity

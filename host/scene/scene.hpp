@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "rt_plugin.h"
 #include "rt_types.h"
 #include "scene/motion/motion.hpp"
@@ -185,10 +186,10 @@ rt_material default_material();  // in material_keys.cpp
 // A light without falloff. kind: RT_LIGHT_POINT at a position, or RT_LIGHT_DIRECTIONAL from a unit vector towards it.
 rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color);
 
-// Returns an empty text if the scene is sound, otherwise what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's
+// Returns nothing if the scene is sound, otherwise what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's
 // size.
-std::string validate(const Scene& scene);
-std::string validate_motion(const Scene& scene);  // of its motion alone; validate() calls it
+Problem validate(const Scene& scene);
+Problem validate_motion(const Scene& scene);  // of its motion alone; validate() calls it
 
 // ---- transforms
 std::array<float, 3> transform_point(const Affine& m, const float* p);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/angle.hpp"
+#include "base/problem.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
 
@@ -33,7 +34,7 @@ std::string of(uint64_t index, uint64_t count) {
     return std::to_string(index) + " of " + std::to_string(count);
 }
 
-std::string check_arrays(const Scene& s) {
+Problem check_arrays(const Scene& s) {
     const size_t vertices = s.positions.size() / 3;
     if (s.positions.size() % 3 != 0) return "positions: " + std::to_string(s.positions.size()) + " numbers, not 3 per vertex";
     if (vertices >= RT_NONE) return "positions: " + std::to_string(vertices) + " vertices are more than an index can name";
@@ -49,18 +50,18 @@ std::string check_arrays(const Scene& s) {
         if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
     }
     const auto check = [](const char* what, const auto& values, uint64_t per_element) {
-        if (all_finite(values)) return std::string();
+        if (all_finite(values)) return Problem();
         const auto bad = std::find_if(values.begin(), values.end(), [](float x) { return !std::isfinite(x); });
-        return text(what, static_cast<uint64_t>(bad - values.begin()) / per_element, "not a finite number");
+        return Problem(text(what, static_cast<uint64_t>(bad - values.begin()) / per_element, "not a finite number"));
     };
-    std::string why = check("position", s.positions, 3);
-    if (why.empty()) why = check("normal", s.normals, 3);
-    if (why.empty()) why = check("uv", s.uvs, 2);
-    if (why.empty()) why = check("color", s.colors, 4);
-    return why.empty() ? check("polygon corner", s.polygon_corners, 3) : why;
+    if (Problem why = check("position", s.positions, 3)) return why;
+    if (Problem why = check("normal", s.normals, 3)) return why;
+    if (Problem why = check("uv", s.uvs, 2)) return why;
+    if (Problem why = check("color", s.colors, 4)) return why;
+    return check("polygon corner", s.polygon_corners, 3);
 }
 
-std::string check_meshes(const Scene& s) {
+Problem check_meshes(const Scene& s) {
     const uint64_t vertices = s.positions.size() / 3, triangles = s.triangles.size() / 3;
     for (size_t i = 0; i < s.meshes.size(); ++i) {
         const Mesh& m = s.meshes[i];
@@ -100,7 +101,7 @@ std::string check_meshes(const Scene& s) {
     return {};
 }
 
-std::string check_analytic(const Scene& s) {
+Problem check_analytic(const Scene& s) {
     const auto bad_material = [&](rt_u32 m) { return m >= s.materials.size(); };
     for (size_t i = 0; i < s.spheres.size(); ++i) {
         const Sphere& sphere = s.spheres[i];
@@ -127,7 +128,7 @@ std::string check_analytic(const Scene& s) {
     return {};
 }
 
-std::string check_shapes(const Scene& s) {
+Problem check_shapes(const Scene& s) {
     for (size_t i = 0; i < s.shape_parts.size(); ++i) {
         const ShapePart& part = s.shape_parts[i];
         if (!all_finite(part.min) || !all_finite(part.max) || !all_finite(part.numbers))
@@ -152,11 +153,11 @@ std::string check_shapes(const Scene& s) {
     return {};
 }
 
-std::string check_looks(const Scene& s) {
+Problem check_looks(const Scene& s) {
     if (s.materials.empty()) return "materials: the default material is missing";
     for (size_t i = 0; i < s.materials.size(); ++i) {
         const rt_material& m = s.materials[i].values;
-        if (const std::string fault = material_fault(m); !fault.empty()) return text("material", i, fault);
+        if (const Problem fault = material_fault(m)) return text("material", i, fault.text());
         if (m.texture != RT_NONE && m.texture >= s.textures.size()) {
             return text("material", i, "texture " + of(m.texture, s.textures.size()));
         }
@@ -173,7 +174,7 @@ std::string check_looks(const Scene& s) {
     return {};
 }
 
-std::string check_sky(const Scene& s) {
+Problem check_sky(const Scene& s) {
     const SkyValues& sky = s.sky.values;
     if (sky.kind != RT_NONE && sky.kind >= RT_SKY_KINDS) return "sky: unknown kind";
     const bool picture = sky.kind == RT_SKY_PICTURE;
@@ -187,9 +188,9 @@ std::string check_sky(const Scene& s) {
     return {};
 }
 
-std::string check_view(const Scene& s) {
+Problem check_view(const Scene& s) {
     for (size_t i = 0; i < s.lights.size(); ++i) {
-        if (const std::string fault = light_fault(s.lights[i].values); !fault.empty()) return text("light", i, fault);
+        if (const Problem fault = light_fault(s.lights[i].values)) return text("light", i, fault.text());
     }
     for (size_t i = 0; i < s.cameras.size(); ++i) {
         const Camera& camera = s.cameras[i];
@@ -210,11 +211,10 @@ std::string check_view(const Scene& s) {
 
 }  // namespace
 
-std::string validate(const Scene& scene) {
+Problem validate(const Scene& scene) {
     for (const auto check :
          {check_arrays, check_meshes, check_analytic, check_shapes, check_looks, check_sky, check_view, validate_motion}) {
-        std::string why = check(scene);
-        if (!why.empty()) return why;
+        if (Problem why = check(scene)) return why;
     }
     return {};
 }

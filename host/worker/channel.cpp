@@ -1,4 +1,4 @@
-// A packet is a PacketHead followed by the text. It is sent with plain read and write, because the worker's sandbox forbids
+// A message is a MessageHead followed by the text. It is sent with plain read and write, because the worker's sandbox forbids
 // socket calls.
 #include "worker/channel.hpp"
 
@@ -16,17 +16,17 @@ namespace clarity::worker {
 namespace {
 
 constexpr size_t kMaxText = 8000;
-struct PacketHead {
+struct MessageHead {
     uint32_t kind;
     int32_t level;
     float fraction;
     uint32_t text_bytes;
 };
-using Packet = std::array<char, sizeof(PacketHead) + kMaxText>;
+using MessageBytes = std::array<char, sizeof(MessageHead) + kMaxText>;
 
-bool write_packet(int fd, const char* packet, size_t bytes) {
+bool write_message(int fd, const char* buffer, size_t bytes) {
     for (;;) {
-        const ssize_t written = write(fd, packet, bytes);
+        const ssize_t written = write(fd, buffer, bytes);
         if (written >= 0) return true;
         if (errno != EINTR) return false;
     }
@@ -45,43 +45,43 @@ std::string greeting_of(const char* kind) {
 
 bool send_message(int fd, const Message& message) {
     const size_t text_bytes = std::min(message.text.size(), kMaxText);
-    const PacketHead head = {static_cast<uint32_t>(message.kind), message.level, message.fraction,
-                             static_cast<uint32_t>(text_bytes)};
-    Packet packet;
-    std::memcpy(packet.data(), &head, sizeof head);
-    std::memcpy(packet.data() + sizeof head, message.text.data(), text_bytes);
-    return write_packet(fd, packet.data(), sizeof head + text_bytes);
+    const MessageHead head = {static_cast<uint32_t>(message.kind), message.level, message.fraction,
+                              static_cast<uint32_t>(text_bytes)};
+    MessageBytes buffer;
+    std::memcpy(buffer.data(), &head, sizeof head);
+    std::memcpy(buffer.data() + sizeof head, message.text.data(), text_bytes);
+    return write_message(fd, buffer.data(), sizeof head + text_bytes);
 }
 
 void send_short(int fd, MessageKind kind, const char* text) {
     const int saved_errno = errno;
-    char packet[sizeof(PacketHead) + 256];
+    char buffer[sizeof(MessageHead) + 256];
     const size_t text_bytes = std::min<size_t>(std::strlen(text), 256);
-    const PacketHead head = {static_cast<uint32_t>(kind), 0, 0, static_cast<uint32_t>(text_bytes)};
-    std::memcpy(packet, &head, sizeof head);
-    std::memcpy(packet + sizeof head, text, text_bytes);
-    write_packet(fd, packet, sizeof head + text_bytes);
+    const MessageHead head = {static_cast<uint32_t>(kind), 0, 0, static_cast<uint32_t>(text_bytes)};
+    std::memcpy(buffer, &head, sizeof head);
+    std::memcpy(buffer + sizeof head, text, text_bytes);
+    write_message(fd, buffer, sizeof head + text_bytes);
     errno = saved_errno;
 }
 
 Received receive_message(int fd, Message& message) {
-    Packet packet;
+    MessageBytes buffer;
     ssize_t bytes = -1;
     do {
         pollfd ready = {fd, POLLIN, 0};
         const int count = poll(&ready, 1, 0);
         if (count == 0 || (count < 0 && errno == EINTR)) return Received::nothing;
         if (count < 0) return Received::closed;
-        bytes = read(fd, packet.data(), packet.size());
+        bytes = read(fd, buffer.data(), buffer.size());
     } while (bytes < 0 && errno == EINTR);
-    PacketHead head;
+    MessageHead head;
     if (bytes < static_cast<ssize_t>(sizeof head)) return Received::closed;
-    std::memcpy(&head, packet.data(), sizeof head);
+    std::memcpy(&head, buffer.data(), sizeof head);
     if (head.text_bytes != static_cast<size_t>(bytes) - sizeof head) return Received::closed;
     message.kind = static_cast<MessageKind>(head.kind);
     message.level = head.level;
     message.fraction = head.fraction;
-    message.text.assign(packet.data() + sizeof head, head.text_bytes);
+    message.text.assign(buffer.data() + sizeof head, head.text_bytes);
     return Received::message;
 }
 

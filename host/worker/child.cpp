@@ -210,7 +210,7 @@ int worker_main(const JobKind& kind, int argc, char** argv) {
     Message last{MessageKind::done, 0, 0, {}};
     try {
         const MemoryFile file = MemoryFile::of(kArgumentsFd);
-        PacketReader arguments(file, PacketReader::How::mapped);
+        ParcelReader arguments(file, ParcelReader::How::mapped);
         kind.main(arguments);
     } catch (const Cancelled&) {
         last.kind = MessageKind::cancelled;

@@ -19,21 +19,21 @@ const JobKind* kind_of_worker(int argc, char** argv, const std::vector<const Job
 // Returns only if it was not started as a worker, after a line on stderr.
 int worker_main(const JobKind& kind, int argc, char** argv);
 
-// What JobKind::main needs: the arguments, which may refer to the packet's memory, and the result, written once at its end.
+// What JobKind::main needs: the arguments, which may refer to the parcel's memory, and the result, written once at its end.
 template <class Arguments>
-Arguments arguments_in(PacketReader& packet) {
+Arguments arguments_in(ParcelReader& parcel) {
     Arguments arguments;
-    packet(arguments);
-    packet.end();
+    parcel(arguments);
+    parcel.end();
     return arguments;
 }
 template <class Result>
 void answer(Result&& result) {
     allow_writing_result();
     MemoryFile file = MemoryFile::of(kResultFd);
-    PacketWriter packet(file);
-    packet(result);
-    packet.finish();
+    ParcelWriter parcel(file);
+    parcel(result);
+    parcel.finish();
 }
 
 // Tells that a step of the work begins, before it does. limit_s: seconds that it may take; 0: as long as the one before.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 #include "base/log.hpp"
 #include "base/progress.hpp"
 #include "worker/channel.hpp"
@@ -33,7 +33,7 @@ struct JobKind {
     // "exit code 3"; no_progress, processor_time and memory: the limit, "7 s", "1 GiB". {who}, {what}, {step} and {advice} are
     // members of Job.
     std::array<const char*, 6> deaths;
-    void (*main)(PacketReader& arguments);  // the work, in the worker: see child.hpp
+    void (*main)(ParcelReader& arguments);  // the work, in the worker: see child.hpp
 };
 
 struct JobDied : Error {
@@ -59,9 +59,9 @@ class Job {
     template <class Arguments>
     void run(const Arguments& arguments, Progress& progress) {
         MemoryFile file;
-        PacketWriter packet(file);
-        packet(arguments);
-        packet.finish();
+        ParcelWriter parcel(file);
+        parcel(arguments);
+        parcel.finish();
         file.seal();
         follow(file, progress);
     }
@@ -70,9 +70,9 @@ class Job {
     void run(const Arguments& arguments, Result& result, Progress& progress) {
         run(arguments, progress);
         try {
-            PacketReader packet(process_->result(), PacketReader::How::emptied);
-            packet(result);
-            packet.end();
+            ParcelReader parcel(process_->result(), ParcelReader::How::emptied);
+            parcel(result);
+            parcel.end();
         } catch (const Error& e) {
             unusable_result(e.what());
         }

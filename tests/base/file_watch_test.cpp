@@ -22,12 +22,13 @@ class Watch : public ::testing::Test {
         b_ = scratch_.write("cl/sub/b.h", "two");
         missing_ = scratch_.path("cl/sub/missing.h");
     }
-    void open() {
-        watch_ = std::make_unique<FileWatch>(std::vector<std::string>{a_, b_, missing_}, [this] {
+    void open(FileWatch::Rule rule = FileWatch::Rule::content) {
+        const auto changed = [this] {
             const std::lock_guard<std::mutex> lock(mutex_);
             ++calls_;
             called_.notify_all();
-        });
+        };
+        watch_ = std::make_unique<FileWatch>(std::vector<std::string>{a_, b_, missing_}, changed, rule);
     }
     int calls() {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -120,6 +121,30 @@ TEST_F(Watch, SameContentAndOtherFilesAreNoChange) {
     wait_long();
     EXPECT_EQ(calls(), 0);
     EXPECT_EQ(watch_->revision(), 0u);
+}
+
+TEST_F(Watch, ByTimesItWaitsUntilAFileIsWritten) {
+    open(FileWatch::Rule::times);
+    for (int i = 0; i < 40; ++i) {  // twice as long as a burst of small files may be
+        scratch_.write("cl/a.cl", std::string(1 + i, 'a'));
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    ASSERT_TRUE(called(1));
+    EXPECT_EQ(watch_->last_changed(), std::vector<std::string>{a_});
+    wait_long();
+    // The machine may have stopped between two writes for longer than a file rests.
+    EXPECT_LE(watch_->revision(), 2u);
+    EXPECT_EQ(scratch_.read("cl/a.cl").size(), 40u);
+}
+
+TEST_F(Watch, ByTimesAFileThatIsMissingIsNoChangeUntilItIsBack) {
+    open(FileWatch::Rule::times);
+    fs::remove(b_);
+    wait_long();
+    EXPECT_EQ(watch_->revision(), 0u);
+    scratch_.write("cl/sub/b.h", "two");  // the same content
+    ASSERT_TRUE(called(1));
+    EXPECT_EQ(watch_->last_changed(), std::vector<std::string>{b_});
 }
 
 TEST_F(Watch, EndsAtOnceAndIdlesWithoutCpuTime) {

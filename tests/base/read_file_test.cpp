@@ -12,7 +12,7 @@ namespace {
 
 std::string why_not(const std::string& path, uint64_t limit = 100) {
     std::string content;
-    return clarity::try_read_file(path, limit, content);
+    return clarity::try_read_file(path, limit, content).text();
 }
 
 bool contains(const std::string& text, const std::string& part) {

@@ -119,9 +119,9 @@ TEST(ProgramKey, NamesAllThatABinaryDependsOn) {
 template <class Value>
 std::vector<char> packed(const Value& value) {
     MemoryFile file;
-    PacketWriter packet(file);
-    packet(value);
-    packet.finish();
+    ParcelWriter parcel(file);
+    parcel(value);
+    parcel.finish();
     std::vector<char> bytes(file.bytes());
     file.read_at(0, bytes.data(), bytes.size());
     return bytes;
@@ -131,10 +131,10 @@ Value unpacked(const char* bytes, size_t count) {
     MemoryFile file;
     file.write_at(0, bytes, count);
     file.seal_size();
-    PacketReader packet(file, PacketReader::How::emptied);
+    ParcelReader parcel(file, ParcelReader::How::emptied);
     Value value;
-    packet(value);
-    packet.end();
+    parcel(value);
+    parcel.end();
     return value;
 }
 
@@ -152,7 +152,7 @@ TEST(CompileJob, ArrivesWholeOrNotAtAll) {
     EXPECT_EQ(back.log, "log");
     EXPECT_EQ(back.binary, outcome.binary);
     for (size_t bytes = 0; bytes < sent.size(); ++bytes)
-        EXPECT_THROW(unpacked<CompileOutcome>(sent.data(), bytes), PacketDamaged) << bytes;
+        EXPECT_THROW(unpacked<CompileOutcome>(sent.data(), bytes), ParcelDamaged) << bytes;
 }
 
 }  // namespace

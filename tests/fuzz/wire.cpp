@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     file.write_at(0, bytes.data(), bytes.size());
     file.seal_size();
     try {
-        clarity::validate(clarity::import::read_scene(file));
+        (void)clarity::validate(clarity::import::read_scene(file));
     } catch (const clarity::Error&) {
     }
     return 0;

@@ -138,7 +138,7 @@ TEST(Scene, validate_names_every_damage) {
     for (const auto& [expected, damage] : damages) {
         Scene s = sample();
         damage(s);
-        EXPECT_NE(validate(s).find(expected), std::string::npos)
+        EXPECT_NE(validate(s).text().find(expected), std::string::npos)
             << "expected \"" << expected << "\", got \"" << validate(s) << "\"";
     }
     EXPECT_NE(validate(Scene{}), "") << "not even a default material";

@@ -170,7 +170,7 @@ TEST(Wire, writing_meanwhile_does_no_harm) {
         });
         Scene got;
         const std::string why = refusal([&] { got = read_scene(file); });
-        const std::string unsound = why.empty() ? validate(got) : why;
+        const std::string unsound = why.empty() ? validate(got).text() : why;
         const std::vector<uint32_t> texels = got.texels.copy();
         if (run % 5 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         EXPECT_TRUE(std::equal(texels.begin(), texels.end(), got.texels.begin(), got.texels.end()))
@@ -214,8 +214,8 @@ TEST(Wire, no_damage_does_harm) {
     for (int run = 0; run < 20000; ++run) {
         std::vector<char> damaged = whole;
         // Damage to the sizes of arrays matters most, so three of four changes are made there: at multiples of
-        // kPacketAlignment, but of the first, which stands behind the number that tells a scene.
-        const size_t line = random() % (damaged.size() / kPacketAlignment), size_at = line == 0 ? 8 : line * kPacketAlignment;
+        // kParcelAlignment, but of the first, which stands behind the number that tells a scene.
+        const size_t line = random() % (damaged.size() / kParcelAlignment), size_at = line == 0 ? 8 : line * kParcelAlignment;
         const bool of_size = run % 4 != 0;
         if (run % 2 != 0) {
             const uint64_t values[] = {0, 1, 63, 64, damaged.size(), ~uint64_t{0}, uint64_t{1} << 32, uint64_t{1} << 63};
@@ -229,7 +229,7 @@ TEST(Wire, no_damage_does_harm) {
         Scene got;
         if (!refusal([&] { got = read_scene(file); }).empty()) {
             ++refused;
-        } else if (!validate(got).empty()) {
+        } else if (validate(got)) {
             ++unsound;
         } else {
             got.bounds();

@@ -70,7 +70,7 @@ TEST(Keys, RefuseWhatIsOutsideOfTheirRange) {
     EXPECT_EQ(material_fault(m), "`roughness` is 1.5, expected from 0 to 1");
     rt_light light = default_light(RT_LIGHT_DISC);
     light.radius = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_NE(light_fault(light).find("radius"), std::string::npos);
+    EXPECT_NE(light_fault(light).text().find("radius"), std::string::npos);
     EXPECT_EQ(nearest_value(material_key("ior"), {0, 0, 0})[0], 1.5f) << "files write 0 for what they do not say";
     EXPECT_EQ(nearest_value(material_key("reflect"), {7, 0, 0})[0], 1);
 }

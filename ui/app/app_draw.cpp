@@ -36,7 +36,7 @@ void App::draw() {
 void App::upload_picture() {
     const auto picture = session_->picture();
     if (!picture || picture == uploaded_) return;
-    if (const std::string why = pane_->upload(picture); !why.empty()) session_->messages().report(why);
+    if (const Problem why = pane_->upload(picture)) session_->messages().report(why.text());
     uploaded_ = picture;
     std::string title = "Clarity";
     if (const auto files = session_->files(); !files.empty())

@@ -66,8 +66,9 @@ Preferences load_preferences(const std::string& folder, std::string* notice) {
     std::error_code error;
     if (!fs::exists(path, error)) return p;
     bool some = false;  // whether any entry could be read
-    std::string content, why = try_read_file(path.string(), kMaxTextFileBytes, content);
-    if (why.empty()) try {
+    std::string content;
+    Problem why = try_read_file(path.string(), kMaxTextFileBytes, content);
+    if (!why) try {
             std::vector<std::string> problems;
             p = preferences_from(nlohmann::json::parse(content), &problems);
             if (problems.empty()) return p;
@@ -77,8 +78,8 @@ Preferences load_preferences(const std::string& folder, std::string* notice) {
         } catch (const nlohmann::json::exception& failure) {
             why = std::string("cannot be read as preferences: ") + failure.what();
         }
-    const std::string text =
-        path.string() + ": " + why + (some ? "; the rest is used, " : "; the defaults are used, ") + "and " + keep_aside(path);
+    const std::string text = path.string() + ": " + why.text() + (some ? "; the rest is used, " : "; the defaults are used, ") +
+                             "and " + keep_aside(path);
     // Save at once, so that the readable entries survive even if this window crashes.
     if (some) save_preferences(folder, p);
     if (notice)

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/times_watch.hpp"
+#include "base/files/file_watch.hpp"
 #include "device/kernel_watch.hpp"
 #include "plugin/library_watch.hpp"
 #include "render/edit/preset.hpp"
@@ -184,7 +184,7 @@ class Session {
     const std::function<void()> wake_;
     std::unique_ptr<KernelWatch> kernels_;
     LibraryWatch libraries_;
-    std::unique_ptr<TimesWatch> scene_files_;  // of the scene on the screen, with all that it loads
+    std::unique_ptr<FileWatch> scene_files_;  // of the scene on the screen, with all that it loads
     uint64_t seen_scene_files_ = 0;
     uint64_t seen_kernels_ = 0, sources_revision_ = 0;
     FrameThread frames_;

@@ -52,14 +52,14 @@ void Session::reopen() {
 void Session::take_scene_files() {
     if (!scene_files_ || scene_files_->revision() == seen_scene_files_) return;
     seen_scene_files_ = scene_files_->revision();
-    log(LogLevel::info, "changed: " + scene_files_->last_changed());
+    log(LogLevel::info, "changed: " + scene_files_->last_changed().front());
     if (files_revision_ == viewed_files_revision_ || files_revision_ == reread_files_revision_) reopen();
 }
 
 void Session::watch_scene_files() {
     std::vector<std::string> files = ready_->loaded->scene->sources;
     files.insert(files.end(), ready_->loaded->files.begin(), ready_->loaded->files.end());
-    scene_files_ = std::make_unique<TimesWatch>(std::move(files), wake_);
+    scene_files_ = std::make_unique<FileWatch>(std::move(files), wake_, FileWatch::Rule::times);
     seen_scene_files_ = 0;
 }
 

@@ -55,12 +55,12 @@ void blend_premultiplied(const ImDrawList*, const ImDrawCmd*) {
 
 }  // namespace
 
-std::string PicturePane::upload(const std::shared_ptr<const Picture>& picture) {
+Problem PicturePane::upload(const std::shared_ptr<const Picture>& picture) {
     picture_ = picture;
-    std::string why = textures_[0].upload(picture->main.image);
-    if (picture->other && why.empty()) why = textures_[1].upload(picture->other->image);
-    if (picture->difference && why.empty()) why = difference_.upload(picture->difference->image);
-    if (!why.empty()) picture_.reset();
+    Problem why = textures_[0].upload(picture->main.image);
+    if (picture->other && !why) why = textures_[1].upload(picture->other->image);
+    if (picture->difference && !why) why = difference_.upload(picture->difference->image);
+    if (why) picture_.reset();
     return why;
 }
 
@@ -201,7 +201,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     lines.any = !lines.volumes.empty() || !marks_.empty();
     if (!lines.any) return;
     const bool known = distance && !distance->pixels.empty();
-    if (known && distances_of_[side] != distance && distances_[side].upload(*distance).empty()) distances_of_[side] = distance;
+    if (known && distances_of_[side] != distance && !distances_[side].upload(*distance)) distances_of_[side] = distance;
     LinesBehind behind;
     if (known) behind = {distances_[side].name(), distance.get(), overlay.hides_behind() ? 0.0f : kBehind};
     lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, behind);

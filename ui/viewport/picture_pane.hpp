@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "ui/hud/picture_hud.hpp"
 #include "ui/overlay/gl_lines.hpp"
 #include "ui/overlay/overlay.hpp"
@@ -22,8 +23,8 @@ namespace clarity::ui {
 // Draws the pictures. Its GL context must be current during its whole life.
 class PicturePane {
  public:
-    // Sets the picture to draw. Returns why it cannot be shown, or an empty text.
-    std::string upload(const std::shared_ptr<const Picture>& picture);
+    // Sets the picture to draw. Returns why it cannot be shown, or nothing.
+    Problem upload(const std::shared_ptr<const Picture>& picture);
     void draw(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state);
 
     // For tests. area() is that of the main picture, letter-boxed; with a wipe, the other picture has the same area.

@@ -12,17 +12,16 @@ PictureTexture::~PictureTexture() {
     if (buffer_) glDeleteBuffers(1, &buffer_);
 }
 
-std::string PictureTexture::upload(const ByteImage& image) {
+Problem PictureTexture::upload(const ByteImage& image) {
     return stream(image.pixels.data(), image.width, image.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
 }
 
-std::string PictureTexture::upload(const FloatImage& image) {
+Problem PictureTexture::upload(const FloatImage& image) {
     return stream(image.pixels.data(), image.width, image.height, GL_R32F, GL_RED, GL_FLOAT);
 }
 
 // Uploads texels of four bytes, which both formats have.
-std::string PictureTexture::stream(const void* pixels, unsigned width, unsigned height, int store, unsigned format,
-                                   unsigned type) {
+Problem PictureTexture::stream(const void* pixels, unsigned width, unsigned height, int store, unsigned format, unsigned type) {
     if (width == 0 || height == 0) return {};
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "base/problem.hpp"
 #include "render/film/image_io.hpp"
 
 namespace clarity::ui {
@@ -14,10 +15,10 @@ class PictureTexture {
     PictureTexture(const PictureTexture&) = delete;
     PictureTexture& operator=(const PictureTexture&) = delete;
 
-    // Uploads a picture. Returns an empty text, or why it cannot be shown: it is larger than this OpenGL's textures can be.
-    std::string upload(const ByteImage& image);
+    // Uploads a picture. Returns nothing, or why it cannot be shown: it is larger than this OpenGL's textures can be.
+    Problem upload(const ByteImage& image);
     // Uploads one channel as R32F.
-    std::string upload(const FloatImage& image);
+    Problem upload(const FloatImage& image);
     // true: show the nearest texel, so that the pixels of an enlarged picture can be told apart.
     void set_magnified(bool magnified);
     unsigned name() const { return texture_; }
@@ -25,7 +26,7 @@ class PictureTexture {
     unsigned height() const { return height_; }
 
  private:
-    std::string stream(const void* pixels, unsigned width, unsigned height, int store, unsigned format, unsigned type);
+    Problem stream(const void* pixels, unsigned width, unsigned height, int store, unsigned format, unsigned type);
     unsigned texture_ = 0, buffer_ = 0, width_ = 0, height_ = 0;
     bool magnified_ = false;
 };

@@ -13,11 +13,14 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/hash.hpp"
+
 namespace clarity {
 namespace {
 
-constexpr int kLookEvery_ms = 500;  // looking at 40 files takes 40 calls of stat, about 50 us
-constexpr int kQuiet_ms = 50;       // a burst of events is over after this time without an event
+constexpr int kLookEvery_ms = 500;     // looking at 40 files takes 40 calls of stat, about 50 us
+constexpr int kQuiet_ms = 50;          // a burst of events is over after this time without an event
+constexpr int kQuietOfLarge_ms = 100;  // a program that writes a large file computes in between
 constexpr int kLongestBurst_ms = 1000;
 constexpr uint64_t kLarge_bytes = 1 << 20;
 
@@ -25,16 +28,16 @@ constexpr uint64_t kLarge_bytes = 1 << 20;
 constexpr uint32_t kEvents =
     IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 
-// Hash of a file's content (FNV-1a, 64 bits); 0 if it cannot be read. It only has to tell one save from the next, not to resist
+// Hash of a file's content; 0 if it cannot be read. It only has to tell one save from the next, not to resist
 // an attacker.
 uint64_t hash_of(const std::string& path) {
-    uint64_t hash = 14695981039346656037u;
+    uint64_t hash = hash_bytes(nullptr, 0);
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return 0;
     char buffer[1 << 16];
     ssize_t got;
     while ((got = read(file, buffer, sizeof buffer)) > 0 || (got < 0 && errno == EINTR))
-        for (ssize_t i = 0; i < got; ++i) hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 1099511628211u;
+        if (got > 0) hash = hash_bytes(buffer, static_cast<size_t>(got), hash);
     close(file);
     return hash;
 }
@@ -64,13 +67,13 @@ FileWatch::State FileWatch::look(const std::string& path) {
     return state;
 }
 
-FileWatch::FileWatch(std::vector<std::string> files, std::function<void()> changed)
-    : paths_(absolute(std::move(files))), changed_(std::move(changed)) {
+FileWatch::FileWatch(std::vector<std::string> files, std::function<void()> changed, Rule rule)
+    : paths_(absolute(std::move(files))), changed_(std::move(changed)), rule_(rule) {
     for (const std::string& path : paths_) {
         std::string folder = std::filesystem::path(path).parent_path().string();
         if (std::find(folders_.begin(), folders_.end(), folder) == folders_.end()) folders_.push_back(std::move(folder));
         State state = look(path);
-        if (state.inode) state.hash = hash_of(path);
+        if (state.inode && rule_ == Rule::content) state.hash = hash_of(path);
         states_.push_back(state);
     }
     watches_.assign(folders_.size(), -1);
@@ -126,7 +129,15 @@ bool FileWatch::times_differ() const {
     return false;
 }
 
-// Waits for the end of a burst: an editor may save several files at once, or remove, write and rename one.
+// Whether a file is missing that was there.
+bool FileWatch::lacks_one() const {
+    for (size_t i = 0; i < paths_.size(); ++i)
+        if (states_[i].inode && !look(paths_[i]).inode) return true;
+    return false;
+}
+
+// Waits for the end of a burst: an editor may save several files at once, or remove, write and rename one. A large file may be
+// written for minutes.
 void FileWatch::settle() {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kLongestBurst_ms);
     const auto look_at_all = [this] {
@@ -135,13 +146,13 @@ void FileWatch::settle() {
         return all;
     };
     pollfd waits[2] = {{stop_, POLLIN, 0}, {inotify_, POLLIN, 0}};
-    for (std::vector<State> before = look_at_all(); std::chrono::steady_clock::now() < end;) {
-        const int ready = poll(waits, 2, kQuiet_ms);
+    for (std::vector<State> before = look_at_all(); rule_ == Rule::times || std::chrono::steady_clock::now() < end;) {
+        const int ready = poll(waits, 2, rule_ == Rule::times ? kQuietOfLarge_ms : kQuiet_ms);
         if (waits[0].revents) return;
         std::vector<State> now = look_at_all();
         const bool same =
             std::equal(now.begin(), now.end(), before.begin(), [](const State& a, const State& b) { return a.same_file(b); });
-        if (ready == 0 && same) return;
+        if (ready == 0 && same && (rule_ == Rule::content || !lacks_one())) return;
         before = std::move(now);
         drain();
     }
@@ -151,10 +162,11 @@ void FileWatch::compare() {
     std::vector<std::string> differ;
     for (size_t i = 0; i < paths_.size(); ++i) {
         State now = look(paths_[i]);
-        // Times are not enough: two saves within one tick of the file system's clock look alike. A large
+        if (rule_ == Rule::times && now.inode && !now.same_file(states_[i])) differ.push_back(paths_[i]);
+        // Times are not enough for small files: two saves within one tick of the file system's clock look alike. A large
         // file takes longer than a tick to write, so it is read again only if its times have changed.
         const bool known = now.same_file(states_[i]) && now.bytes > kLarge_bytes;
-        now.hash = known ? states_[i].hash : now.inode ? hash_of(paths_[i]) : 0;
+        if (rule_ == Rule::content) now.hash = known ? states_[i].hash : now.inode ? hash_of(paths_[i]) : 0;
         if (now.hash != states_[i].hash) differ.push_back(paths_[i]);
         states_[i] = now;
     }

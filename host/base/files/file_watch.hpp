@@ -17,9 +17,12 @@ namespace clarity {
 
 class FileWatch {
  public:
+    // What counts as a change. content: another content, or none. times: for files that may be too large to be read for it:
+    // another time, size or file, once nothing is written any more and no file is missing that was there.
+    enum class Rule { content, times };
     // files: paths, which need not exist yet; later states are compared with the present one. changed: called on the watch's
     // own thread after each change; it must not destroy the watch.
-    FileWatch(std::vector<std::string> files, std::function<void()> changed);
+    FileWatch(std::vector<std::string> files, std::function<void()> changed, Rule rule = Rule::content);
     ~FileWatch();
     FileWatch(const FileWatch&) = delete;
     FileWatch& operator=(const FileWatch&) = delete;
@@ -44,11 +47,13 @@ class FileWatch {
     void add_folders();
     bool drain();
     bool times_differ() const;
+    bool lacks_one() const;
     void settle();
     void compare();
 
     const std::vector<std::string> paths_;
     const std::function<void()> changed_;
+    const Rule rule_;
     std::vector<std::string> folders_;
     std::vector<int> watches_;  // inotify watch of each folder in folders_; -1: none
     std::vector<State> states_;

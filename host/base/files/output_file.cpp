@@ -18,6 +18,7 @@
 
 #include "base/error.hpp"
 #include "base/host_name.hpp"
+#include "base/problem.hpp"
 
 namespace clarity {
 namespace {
@@ -120,8 +121,8 @@ int create_temporary(const std::string& folder, std::string& name) {
     }
 }
 
-// Finds what rename() would refuse before any work is done. Returns an empty text if nothing is wrong.
-std::string why_not_writable(const std::string& path) {
+// Finds what rename() would refuse before any work is done. Returns nothing if nothing is wrong.
+Problem why_not_writable(const std::string& path) {
     if (path.empty()) return "the name is empty";
     struct stat status {};
     if (stat(path.c_str(), &status) == 0) {
@@ -228,8 +229,7 @@ void write_text_file(const std::string& path, const std::string& text) {
 }
 
 void check_writable(const std::string& path) {
-    const std::string why = why_not_writable(path);
-    if (!why.empty()) throw Error(Exit::usage, "`" + path + "` cannot be written: " + why);
+    if (const Problem why = why_not_writable(path)) throw Error(Exit::usage, "`" + path + "` cannot be written: " + why.text());
 }
 
 }  // namespace clarity

@@ -65,7 +65,7 @@ struct Stream : z_stream {
 const std::string kAgain = "; copy it again, or pack it again";
 
 // Appends the plain bytes to `content` until there are `most`, or more than that if the file has them.
-std::string unpack(const Packed& file, uint64_t most, const std::function<void(float)>& progress, std::string& content) {
+Problem unpack(const Packed& file, uint64_t most, const std::function<void(float)>& progress, std::string& content) {
     constexpr size_t kPiece = 1 << 18;
     std::vector<unsigned char> packed(kPiece), plain(kPiece);
     Stream stream;
@@ -124,14 +124,14 @@ uint64_t stated_content_bytes(const std::string& path) {
     return std::min(std::max(stated, file.bytes()), most_unpacked_bytes(file.bytes()));
 }
 
-std::string unpack_head(const std::string& path, uint64_t most, std::string& content) {
+Problem unpack_head(const std::string& path, uint64_t most, std::string& content) {
     content.clear();
-    const std::string why = unpack(Packed(path), most, {}, content);
+    Problem why = unpack(Packed(path), most, {}, content);
     if (content.size() > most) content.resize(most);
     return why;
 }
 
-std::string unpack_file(const std::string& path, const std::function<void(float)>& progress, std::string& content) {
+Problem unpack_file(const std::string& path, const std::function<void(float)>& progress, std::string& content) {
     content.clear();
     const Packed file(path);
     const uint64_t most = most_unpacked_bytes(file.bytes());
@@ -141,8 +141,8 @@ std::string unpack_file(const std::string& path, const std::function<void(float)
     } catch (const std::length_error&) {
     }
     try {
-        const std::string why = unpack(file, most, progress, content);
-        if (why.empty() && content.size() > most)
+        Problem why = unpack(file, most, progress, content);
+        if (!why && content.size() > most)
             return "is packed with gzip, and unpacks to more than " + memory_limit_text(most) +
                    ", as no model does: it is not read; if it is sound, unpack it first (gunzip -k)";
         return why;

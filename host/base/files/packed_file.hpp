@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include "base/problem.hpp"
 
 namespace clarity {
 
@@ -18,11 +19,11 @@ uint64_t most_unpacked_bytes(uint64_t packed_bytes);
 // and is at most most_unpacked_bytes().
 uint64_t stated_content_bytes(const std::string& path);
 
-// Unpacks at most the first `most` bytes into `content`. progress: takes 0..1; may be empty. Returns an empty text on success,
+// Unpacks at most the first `most` bytes into `content`. progress: takes 0..1; may be empty. Returns nothing on success,
 // otherwise what is wrong and what to do, without the file's name. Content that goes on behind `most` is no failure. For any
 // thread.
-std::string unpack_head(const std::string& path, uint64_t most, std::string& content);
+Problem unpack_head(const std::string& path, uint64_t most, std::string& content);
 // Unpacks the whole file, within most_unpacked_bytes() and the memory that this process may have. Likewise.
-std::string unpack_file(const std::string& path, const std::function<void(float)>& progress, std::string& content);
+Problem unpack_file(const std::string& path, const std::function<void(float)>& progress, std::string& content);
 
 }  // namespace clarity

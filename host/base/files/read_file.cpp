@@ -34,7 +34,7 @@ class Descriptor {
 
 }  // namespace
 
-std::string try_read_file(const std::string& path, uint64_t limit_bytes, std::string& content) {
+Problem try_read_file(const std::string& path, uint64_t limit_bytes, std::string& content) {
     const Descriptor file(path);
     struct stat status {};
     if (file.get() < 0 || fstat(file.get(), &status) != 0) return cannot_be_read(errno);
@@ -63,8 +63,7 @@ std::string try_read_file(const std::string& path, uint64_t limit_bytes, std::st
 
 std::string read_file(const std::string& path, uint64_t limit_bytes, Exit code) {
     std::string content;
-    const std::string why = try_read_file(path, limit_bytes, content);
-    if (!why.empty()) throw Error(code, path + ": " + why);
+    if (const Problem why = try_read_file(path, limit_bytes, content)) throw Error(code, path + ": " + why.text());
     return content;
 }
 

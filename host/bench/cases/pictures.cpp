@@ -1,5 +1,3 @@
-#include "bench/cases/pictures.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -9,6 +7,7 @@
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/baselines/whitted.hpp"
+#include "bench/cases/case_run.hpp"
 #include "bench/cases/entry.hpp"
 #include "bench/output/row.hpp"
 #include "bench/run/bench.hpp"
@@ -83,15 +82,17 @@ void check_picture(Team& team, const FloatImage& truth, const FloatImage& pictur
 
 }  // namespace
 
-std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
-                                          const BenchCase& c, const MeasureRules& rules, Progress& progress) {
+std::vector<BenchRecord> measure_pictures(const CaseRun& run) {
+    Fixture& fixture = run.fixture;
+    const PluginRegistry& plugins = run.plugins;
+    Progress& progress = run.progress;
     std::vector<BenchRecord> rows;
     std::vector<DeviceInfo> infos;
     for (size_t i = 0; i < fixture.device_count(); ++i) infos.push_back(fixture.device(i));
-    for (const Variant& variant : c.variants) {
-        Settings settings = variant_settings(plugins, request, variant);
+    for (const Variant& variant : run.definition.variants) {
+        Settings settings = variant_settings(plugins, run.request, variant);
         if (variant.accel.empty()) choose_accel(plugins, default_accel(plugins, device_list_text(infos)), settings);
-        BenchRecord row = make_row(c);
+        BenchRecord row = make_row(run.definition);
         row.accel = settings.accel;
         describe(row, *fixture.scene());
         describe(row, settings);
@@ -116,7 +117,7 @@ std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry
                                           return Sample{stats.device_ms, wall_ms};
                                       }});
             }
-            const std::vector<Measured> measured = measure_interleaved(contenders, rules, progress);
+            const std::vector<Measured> measured = measure_interleaved(contenders, run.rules, progress);
             FloatImage truth;
             for (size_t i = 0; i < teams.size(); ++i) {
                 Team& team = *teams[i];

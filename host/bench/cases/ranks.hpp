@@ -1,17 +1,10 @@
-// ranks.hpp -- measures one picture by one process, by two, and so on, which mpirun starts and which share it.
+// ranks.hpp -- starts the program anew: one picture by one process, by two, and so on, which mpirun starts and which share it;
+// first pictures.
 #pragma once
-#include <nlohmann/json.hpp>
-
 #include "bench/run/bench.hpp"
 #include "bench/run/measure.hpp"
 
 namespace clarity::bench {
-
-// The words of `clarity render` for a scene and a variant, without device and output.
-std::vector<std::string> render_words(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
-                                      const Variant& variant, const import::ImportOptions& import);
-// Takes settings, structure and rays from what `clarity render --stats` wrote.
-void describe(BenchRecord& row, const nlohmann::json& stats);
 
 // Returns a row for each variant and number of request.ranks. N ranks get the first N of options.devices; where those are
 // fewer, several ranks use the same. A row is refused if the picture's file has other bytes than that of the first row and all
@@ -19,5 +12,11 @@ void describe(BenchRecord& row, const nlohmann::json& stats);
 std::vector<BenchRecord> measure_ranks(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
                                        const BenchCase& c, const BenchOptions& options, const MeasureRules& rules,
                                        Progress& progress);
+
+// How long a first picture takes: the program is started anew for each variant, in their order. One whose label has "cold"
+// starts with empty folders for what is kept (ours, PoCL's, CUDA's), any other one with those of the variant before it. time_ms
+// is the part that compiles. Throws Cancelled.
+std::vector<BenchRecord> measure_start(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
+                                       const BenchCase& c, const BenchOptions& options, Progress& progress);
 
 }  // namespace clarity::bench

@@ -1,5 +1,3 @@
-#include "bench/motion/motion.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include "base/parallel_for.hpp"
 #include "bench/baselines/moving_baseline.hpp"
 #include "bench/baselines/speedup.hpp"
+#include "bench/cases/case_run.hpp"
 #include "bench/cases/case_state.hpp"
 #include "bench/cases/own_entries.hpp"
 #include "bench/motion/motions.hpp"
@@ -34,39 +33,33 @@ void copy_positions(const float* from, size_t count, float* to) {
     });
 }
 
-class MotionCase {
+class MotionCase : CaseRun {
  public:
-    MotionCase(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
-               const MeasureRules& rules, Progress& progress)
-        : fixture_(fixture),
-          plugins_(plugins),
-          request_(request),
-          case_(c),
-          rules_(rules),
-          progress_(progress),
-          state_(fixture, c, progress) {}
+    explicit MotionCase(const CaseRun& run) : CaseRun(run), state_(fixture, definition, progress) {}
 
     std::vector<BenchRecord> run() {
-        const Scene& scene = *fixture_.scene();
+        const Scene& scene = *fixture.scene();
         for (const double phase : kPhases) {
             if (plays()) break;
-            poses_.push_back(moved_pose(scene, case_.motion, phase));
-            if (case_.measure != "refit") moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
+            poses_.push_back(moved_pose(scene, definition.motion, phase));
+            if (definition.measure != "refit") moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
         }
-        for (const Variant& variant : case_.variants) {
+        for (const Variant& variant : definition.variants) {
             if (variant.on_device && !moves_on_device(variant)) continue;
             Entry& entry = state_.add_entry();
             run_or_mark_failed(entry, [&](BenchRecord&) { add(variant, entry); });
         }
-        for (const std::string& quality : case_.baseline_qualities) add_baseline(quality);
-        std::vector<BenchRecord> rows = measured_rows(state_.entries, true, rules_, progress_);
+        for (const std::string& quality : definition.baseline_qualities) add_baseline(quality);
+        std::vector<BenchRecord> rows = measured_rows(state_.entries, true, rules, progress);
         compare_with_baselines(rows);
         return rows;
     }
 
  private:
     // Whether whole frames are shown one after the other, each of which makes its own pose.
-    bool plays() const { return case_.measure == "frame" || case_.measure == "object" || case_.measure == "clip"; }
+    bool plays() const {
+        return definition.measure == "frame" || definition.measure == "object" || definition.measure == "clip";
+    }
     struct Mover {
         std::shared_ptr<const AccelData> built, now;
         std::unique_ptr<HostMover> accel;
@@ -75,31 +68,31 @@ class MotionCase {
     };
 
     void add(const Variant& variant, Entry& entry) {
-        const Settings settings = variant_settings(plugins_, request_, variant);
-        const rt_plugin& plugin = *plugins_.accel(settings.accel);
+        const Settings settings = variant_settings(plugins, request, variant);
+        const rt_plugin& plugin = *plugins.accel(settings.accel);
         BenchRecord& row = entry.row;
         row.variant = variant.label;
         row.accel = settings.accel;
         row.accel_params = parameters_text(plugin, settings.accel_params);
-        if (!variant.on_device && (case_.measure == "refit" || case_.measure == "rebuild"))
+        if (!variant.on_device && (definition.measure == "refit" || definition.measure == "rebuild"))
             describe_host(row, std::thread::hardware_concurrency());
         else
-            describe(row, fixture_.device(0));
-        if (case_.measure == "frame")
+            describe(row, fixture.device(0));
+        if (definition.measure == "frame")
             add_frames(settings, entry,
                        variant.refitted ? MovingFrames::Motion::wave_refitted : MovingFrames::Motion::wave_built);
-        else if (case_.measure == "object")
+        else if (definition.measure == "object")
             add_frames(settings, entry, variant.refitted ? MovingFrames::Motion::object : MovingFrames::Motion::nothing);
-        else if (case_.measure == "clip")
+        else if (definition.measure == "clip")
             add_frames(settings, entry,
                        variant.sends_vertices ? MovingFrames::Motion::clip_sent
                        : variant.refitted     ? MovingFrames::Motion::clip_refitted
                                               : MovingFrames::Motion::clip_built);
         else if (variant.on_device)
             add_device_refit(settings, entry);
-        else if (case_.measure == "refit")
+        else if (definition.measure == "refit")
             add_refit(plugin, settings, entry);
-        else if (case_.measure == "rebuild")
+        else if (definition.measure == "rebuild")
             add_rebuild(plugin, settings, entry);
         else
             add_rays(plugin, settings, entry, variant.refitted);
@@ -108,14 +101,14 @@ class MotionCase {
     std::shared_ptr<Mover> make_mover(const rt_plugin& plugin, const Settings& settings) {
         auto mover = std::make_shared<Mover>();
         mover->built = std::make_shared<const AccelData>(
-            build_accel(*fixture_.scene(), plugin, settings.accel_params, progress_, fixture_.target_of(plugin)));
-        mover->accel = std::make_unique<HostMover>(fixture_.scene(), mover->built);
+            build_accel(*fixture.scene(), plugin, settings.accel_params, progress, fixture.target_of(plugin)));
+        mover->accel = std::make_unique<HostMover>(fixture.scene(), mover->built);
         if (!mover->accel->cannot().empty()) throw Error(Exit::usage, mover->accel->cannot());
         for (const Pose& pose : poses_) move(*mover, pose);
         return mover;
     }
     void move(Mover& mover, const Pose& pose) {
-        mover.moved = mover.accel->move(pose, progress_);
+        mover.moved = mover.accel->move(pose, progress);
         if (!mover.moved.accel) throw Error(Exit::failed, "the structure cannot follow: " + mover.moved.why);
         mover.now = mover.moved.accel;
         mover.moved.accel.reset();
@@ -135,7 +128,7 @@ class MotionCase {
                     copy_positions(mesh.positions.data(), mesh.positions.size(), mover->accel->vertices(mesh.mesh));
                     mover->accel->touch(mesh.mesh);
                 }
-                mover->moved = mover->accel->refit(progress_);
+                mover->moved = mover->accel->refit(progress);
                 mover->now = std::move(mover->moved.accel);
             } else {
                 move(*mover, pose);
@@ -151,9 +144,9 @@ class MotionCase {
     }
 
     bool moves_on_device(const Variant& variant) const {
-        const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
-        return !fixture_.device(0).cpu && plugin && device_build_of(plugins_.layout_of(*plugin)).refit &&
-               (case_.measure != "frame" || variant.refitted || device_build_of(*plugin).topology);
+        const rt_plugin* plugin = plugins.accel(variant.accel.substr(0, variant.accel.find(',')));
+        return !fixture.device(0).cpu && plugin && device_build_of(plugins.layout_of(*plugin)).refit &&
+               (definition.measure != "frame" || variant.refitted || device_build_of(*plugin).topology);
     }
 
     // time_ms: from the start of the first kernel to the end of the last one, by the device's clock. Vertices are in place.
@@ -166,10 +159,10 @@ class MotionCase {
             size_t next = 0;
         };
         const auto state = std::make_shared<State>();
-        const std::shared_ptr<Device> device = fixture_.opened(0);
-        auto apart = std::make_shared<Scene>(*fixture_.scene());
+        const std::shared_ptr<Device> device = fixture.opened(0);
+        auto apart = std::make_shared<Scene>(*fixture.scene());
         for (Instance& instance : apart->instances) instance.apart = true;
-        state->prepared = Preparer(plugins_, device).prepare(apart, settings, progress_);
+        state->prepared = Preparer(plugins, device).prepare(apart, settings, progress);
         state->motion = std::make_unique<DeviceMover>(device, apart, state->prepared->accel, state->prepared->on_device);
         if (!state->motion->cannot().empty()) throw Error(Exit::usage, state->motion->cannot());
         for (const Pose& pose : poses_) {
@@ -196,18 +189,18 @@ class MotionCase {
 
     // time_ms: of all kernels of a frame. wall_ms: from one frame to the next.
     void add_frames(const Settings& settings, Entry& entry, MovingFrames::Motion motion) {
-        const auto frames = std::make_shared<MovingFrames>(plugins_, fixture_.opened(0), *fixture_.scene(), settings,
-                                                           fixture_.view(), motion, progress_);
+        const auto frames = std::make_shared<MovingFrames>(plugins, fixture.opened(0), *fixture.scene(), settings,
+                                                           fixture.view(), motion, progress);
         describe(entry.row, frames->prepared());
-        entry.once = [=] { return frames->play(progress_); };
+        entry.once = [=] { return frames->play(progress); };
         entry.finish = [=](BenchRecord& row) { row.kernels_ms = frames->parts(); };
     }
 
     void add_rebuild(const rt_plugin& plugin, const Settings& settings, Entry& entry) {
         const auto next = std::make_shared<size_t>(0);
         add_build(entry, [=, &plugin] {
-            return build_accel(*moved_[(*next)++ % moved_.size()], plugin, settings.accel_params, progress_,
-                               fixture_.target_of(plugin));
+            return build_accel(*moved_[(*next)++ % moved_.size()], plugin, settings.accel_params, progress,
+                               fixture.target_of(plugin));
         });
     }
 
@@ -219,10 +212,10 @@ class MotionCase {
             accel = make_mover(plugin, settings)->now;
         else
             accel = std::make_shared<const AccelData>(
-                build_accel(*scene, plugin, settings.accel_params, progress_, fixture_.target_of(plugin)));
+                build_accel(*scene, plugin, settings.accel_params, progress, fixture.target_of(plugin)));
         Fixture::Held held;
-        held.prepared = Preparer(plugins_, fixture_.opened(0)).prepare(scene, settings, progress_, accel);
-        held.queries = std::make_shared<RayQueries>(fixture_.opened(0));
+        held.prepared = Preparer(plugins, fixture.opened(0)).prepare(scene, settings, progress, accel);
+        held.queries = std::make_shared<RayQueries>(fixture.opened(0));
         describe(entry.row, *held.prepared);
         if (rays_.rays.empty()) make_rays(held);
         time_rays(state_, entry, held, rays_);
@@ -233,30 +226,30 @@ class MotionCase {
         };
     }
     void make_rays(const Fixture::Held& held) {
-        const Settings settings = variant_settings(plugins_, request_, {});
-        const View& view = fixture_.view();
+        const Settings settings = variant_settings(plugins, request, {});
+        const View& view = fixture.view();
         rays_ = camera_rays(view.camera, settings.width, settings.height);
-        if (case_.measure == rays_.kind) return;
+        if (definition.measure == rays_.kind) return;
         const std::vector<rt_hit> hits = held.queries->trace(*held.prepared, rays_.rays);
         const RaySet primary = std::move(rays_);
         rays_ = {};
-        if (view.lights.empty()) throw Error(Exit::usage, "no " + case_.measure + " rays: the scene has no light");
+        if (view.lights.empty()) throw Error(Exit::usage, "no " + definition.measure + " rays: the scene has no light");
         for (RaySet& set : secondary_rays(*moved_.back(), view.lights[0], primary, hits, settings.width, settings.height))
-            if (set.kind == case_.measure) rays_ = std::move(set);
+            if (set.kind == definition.measure) rays_ = std::move(set);
     }
 
     void add_baseline(const std::string& quality) {
-        if (fixture_.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || !baselines_cannot(*fixture_.scene()).empty())
+        if (fixture.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || !baselines_cannot(*fixture.scene()).empty())
             return;
         Entry& entry = state_.add_entry();
         entry.row.baseline = entry.row.variant = "embree " + quality;
-        describe_host(entry.row, fixture_.baseline_threads());
+        describe_host(entry.row, fixture.baseline_threads());
         run_or_mark_failed(entry, [&](BenchRecord&) {
             const std::shared_ptr<MovingBaseline> baseline =
-                make_moving_baseline(fixture_.baseline_mesh(), quality, fixture_.baseline_threads());
+                make_moving_baseline(fixture.baseline_mesh(), quality, fixture.baseline_threads());
             if (!baseline) throw Error(Exit::usage, "this program was built without Embree (libembree-dev): no peers");
             const auto moved = std::make_shared<std::vector<BaselineMesh>>();
-            for (const Pose& pose : poses_) moved->push_back(make_baseline_mesh(posed(*fixture_.scene(), pose)));
+            for (const Pose& pose : poses_) moved->push_back(make_baseline_mesh(posed(*fixture.scene(), pose)));
             const auto next = std::make_shared<size_t>(0);
             entry.once = [=] {
                 const BaselineMesh& mesh = (*moved)[(*next)++ % moved->size()];
@@ -272,12 +265,6 @@ class MotionCase {
         });
     }
 
-    Fixture& fixture_;
-    const PluginRegistry& plugins_;
-    const BenchRequest& request_;
-    const BenchCase& case_;
-    const MeasureRules& rules_;
-    Progress& progress_;
     CaseState state_;
     std::vector<Pose> poses_;
     std::vector<std::shared_ptr<const Scene>> moved_;
@@ -286,9 +273,8 @@ class MotionCase {
 
 }  // namespace
 
-std::vector<BenchRecord> measure_motion(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
-                                        const BenchCase& c, const MeasureRules& rules, Progress& progress) {
-    return MotionCase(fixture, plugins, request, c, rules, progress).run();
+std::vector<BenchRecord> measure_motion(const CaseRun& run) {
+    return MotionCase(run).run();
 }
 
 }  // namespace clarity::bench

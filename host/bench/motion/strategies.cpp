@@ -1,11 +1,10 @@
-#include "bench/motion/strategies.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "bench/cases/case_run.hpp"
 #include "bench/cases/entry.hpp"
 #include "bench/motion/animations.hpp"
 #include "bench/output/row.hpp"
@@ -30,20 +29,17 @@ struct Strategy {
     double worst_cost_ratio = 1;
 };
 
-class StrategiesCase {
+class StrategiesCase : CaseRun {
  public:
-    StrategiesCase(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
-                   Progress& progress)
-        : fixture_(fixture),
-          case_(c),
-          progress_(progress),
-          settings_(variant_settings(plugins, request, c.variants.front())),
+    explicit StrategiesCase(const CaseRun& run)
+        : CaseRun(run),
+          settings_(variant_settings(plugins, request, definition.variants.front())),
           plugin_(*plugins.accel(settings_.accel)),
           preparer_(plugins, fixture.opened(0)),
           frames_(fixture.opened(0)) {}
 
     std::vector<BenchRecord> run() {
-        rest_ = std::make_shared<const Scene>(staged(*fixture_.scene(), case_.motion));
+        rest_ = std::make_shared<const Scene>(staged(*fixture.scene(), definition.motion));
         strategies_.resize(8);
         const unsigned every[] = {0, 50, 20, 10, 5, 2, 1};
         for (size_t i = 0; i < 7; ++i) {
@@ -55,8 +51,8 @@ class StrategiesCase {
         strategies_[7].name = "policy";
         strategies_[7].is_policy = true;
         for (unsigned frame = 0; frame <= kAnimationFrames; ++frame) {
-            if (!progress_.report(float(frame) / kAnimationFrames)) throw Cancelled();
-            const Pose pose = animated_pose(*rest_, case_.motion, frame);
+            if (!progress.report(float(frame) / kAnimationFrames)) throw Cancelled();
+            const Pose pose = animated_pose(*rest_, definition.motion, frame);
             auto scene = std::make_shared<const Scene>(posed_apart(pose));
             // Frame 0 is built by all of them and does not count. The turns change, because the first to trace a pose finds it
             // colder.
@@ -76,19 +72,19 @@ class StrategiesCase {
 
     void play(Strategy& s, const std::shared_ptr<const Scene>& scene, const Pose& pose, unsigned frame) {
         using Way = PoseFollower::Way;
-        const PosedFrom from = {rest_, case_.motion};
+        const PosedFrom from = {rest_, definition.motion};
         const Way way = s.is_policy ? Way::automatic : s.every > 0 && frame % s.every == 0 ? Way::build : Way::refit;
         const auto begin = std::chrono::steady_clock::now();
         s.accel.reset();
-        s.accel = s.follower.refit(from, scene, pose, way, s.last_trace_ms, progress_).accel;
+        s.accel = s.follower.refit(from, scene, pose, way, s.last_trace_ms, progress).accel;
         const bool builds = !s.accel;
         if (builds) {
             s.accel = std::make_shared<const AccelData>(
-                build_accel(*scene, plugin_, settings_.accel_params, progress_, fixture_.target_of(plugin_)));
+                build_accel(*scene, plugin_, settings_.accel_params, progress, fixture.target_of(plugin_)));
             s.follower.built(from, scene, pose, s.accel, std::make_unique<HostMover>(scene, s.accel));
         }
         const double update_ms = ms_since(begin);
-        const auto prepared = preparer_.prepare(scene, settings_, progress_, s.accel);
+        const auto prepared = preparer_.prepare(scene, settings_, progress, s.accel);
         s.last_trace_ms = trace_ms(*prepared);
         if (frame == 0) return;
         s.update_ms += update_ms;
@@ -104,8 +100,7 @@ class StrategiesCase {
         constexpr double kShortMs = 20;
         double least = std::numeric_limits<double>::infinity();
         for (unsigned i = 0; i < 3 && (i == 0 || least < kShortMs); ++i)
-            least =
-                std::min(least, frames_.trace(prepared, settings_, fixture_.view(), Samples{0}, false, progress_).device_ms);
+            least = std::min(least, frames_.trace(prepared, settings_, fixture.view(), Samples{0}, false, progress).device_ms);
         return least;
     }
 
@@ -115,9 +110,9 @@ class StrategiesCase {
             if (!s.is_policy) best = std::min(best, s.update_ms + s.trace_ms);
         std::vector<BenchRecord> all;
         for (const Strategy& s : strategies_) {
-            BenchRecord row = make_row(case_);
+            BenchRecord row = make_row(definition);
             describe(row, *rest_);
-            describe(row, fixture_.device(0));
+            describe(row, fixture.device(0));
             describe(row, settings_);
             describe(row, *s.accel);
             row.variant = s.name;
@@ -131,9 +126,6 @@ class StrategiesCase {
         return all;
     }
 
-    Fixture& fixture_;
-    const BenchCase& case_;
-    Progress& progress_;
     const Settings settings_;
     const rt_plugin& plugin_;
     Preparer preparer_;
@@ -144,9 +136,8 @@ class StrategiesCase {
 
 }  // namespace
 
-std::vector<BenchRecord> measure_strategies(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
-                                            const BenchCase& c, Progress& progress) {
-    return StrategiesCase(fixture, plugins, request, c, progress).run();
+std::vector<BenchRecord> measure_strategies(const CaseRun& run) {
+    return StrategiesCase(run).run();
 }
 
 }  // namespace clarity::bench

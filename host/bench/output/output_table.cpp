@@ -2,15 +2,32 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "bench/baselines/speedup.hpp"
 #include "bench/output/output.hpp"
+#include "bench/output/record.hpp"
 #include "bench/output/record_fields.hpp"
-#include "bench/output/record_groups.hpp"
 #include "bench/output/text_table.hpp"
 
 namespace clarity::bench {
 namespace {
+
+// Records grouped by a key, in the order of their keys' first records. The records must outlive the groups.
+class RecordGroups {
+ public:
+    void add(const std::string& key, const BenchRecord& record) {
+        const auto [place, fresh] = index_.try_emplace(key, groups_.size());
+        if (fresh) groups_.emplace_back();
+        groups_[place->second].push_back(&record);
+    }
+    const std::vector<std::vector<const BenchRecord*>>& all() const { return groups_; }
+
+ private:
+    std::map<std::string, size_t> index_;
+    std::vector<std::vector<const BenchRecord*>> groups_;
+};
 
 bool shown(const BenchRecord& r) {
     return r.status == RowStatus::ok && r.time_ms.n > 0;

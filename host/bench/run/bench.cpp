@@ -10,10 +10,9 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "bench/baselines/speedup.hpp"
-#include "bench/cases/case_runner.hpp"
+#include "bench/cases/case_run.hpp"
 #include "bench/cases/entry.hpp"
 #include "bench/cases/ranks.hpp"
-#include "bench/cases/start.hpp"
 #include "bench/run/failure.hpp"
 #include "bench/run/fixture.hpp"
 #include "bench/run/machine.hpp"
@@ -121,7 +120,7 @@ class Session {
                 return measure_start(suite_.scenes[c.scene].source, plugins_, request_, c, options_, progress_);
             if (c.measure == "ranks")
                 return measure_ranks(suite_.scenes[c.scene].source, plugins_, request_, c, options_, rules, progress_);
-            return run_case(fixture_, plugins_, request_, c, rules, progress_);
+            return run_case({fixture_, plugins_, request_, c, rules, progress_});
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& e) {

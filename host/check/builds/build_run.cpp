@@ -134,10 +134,10 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
     run.reports = progress.reports();
     run.result = std::move(output.result());
     if (run.why.empty() && !run.cancelled) {
-        run.why = run.result.breach(plugin);
+        run.why = run.result.breach(plugin).text();
         const std::string overrun = overrun_of(run.result);
         if (run.why.empty() && !overrun.empty()) run.why = "wrote beyond the end of " + overrun;
-        if (run.why.empty() && plugin.accel->topology) run.why = topology_fault(topology_of(run.result), build_);
+        if (run.why.empty() && plugin.accel->topology) run.why = topology_fault(topology_of(run.result), build_).text();
         if (!run.why.empty()) run.why = "the builder " + run.why;
     }
     return run;

@@ -120,7 +120,7 @@ std::string fault_of(const ImportInputs& inputs, const std::string& path, const 
     if (result.importer != inputs.plugin->id)
         return "is read by the importer " + result.importer + ": " + inputs.plugin->id +
                " has not its extension, or its `probe` is less sure";
-    if (const std::string why = validate(result.scene); !why.empty()) return why;
+    if (const Problem why = validate(result.scene)) return why.text();
     const auto truth = inputs.truths.find(path);
     return fault_of_placing(result, truth == inputs.truths.end() ? nullptr : &truth->second);
 }
@@ -247,8 +247,8 @@ Outcome hostile(const ImportInputs& inputs, const Step& step) {
             return Outcome::failed(of + "asks for more memory than a worker has, for a file of " +
                                    memory_text(fs::file_size(file.path)) + ": it trusts a count of the file");
         if (result.why.empty()) {
-            if (const std::string why = validate(result.scene); !why.empty())
-                return Outcome::failed(of + "gives a scene that is not sound: " + why);
+            if (const Problem why = validate(result.scene))
+                return Outcome::failed(of + "gives a scene that is not sound: " + why.text());
             ++read;
         } else {
             ++refused;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint64_t kMaxVertices = RT_NONE - 1;
 
-std::string check_description(const rt_mesh& m) {
+Problem check_description(const rt_mesh& m) {
     const auto bad_stride = [](rt_u32 stride, rt_u32 least) { return stride < least || stride % 4 != 0; };
     if (m.vertex_count > 0) {
         if (!m.positions) return "it has vertices but no positions";
@@ -84,7 +84,7 @@ void limit_colors(rt_u32 first_vertex, SharedArray<float>& colors) {
 class FaceMaterials {
  public:
     FaceMaterials(const rt_mesh& mesh, const std::vector<rt_u32>& known) : mesh_(mesh), known_(known) {}
-    std::string check() const {
+    Problem check() const {
         if (!valid(mesh_.material)) return unknown(mesh_.material);
         for (uint64_t i = 0; mesh_.face_materials && i < mesh_.face_count; ++i) {
             if (!valid(mesh_.face_materials[i])) return "face " + std::to_string(i) + ": " + unknown(mesh_.face_materials[i]);
@@ -127,8 +127,8 @@ bool copy_all_triangles(const rt_mesh& m, rt_u32 first_vertex, const FaceMateria
     return true;
 }
 
-std::string copy_faces(const rt_mesh& m, rt_u32 first_vertex, const std::vector<bool>& unusable, const FaceMaterials& materials,
-                       Scene& scene, Triangulator& triangulator, FaceCount& faces) {
+Problem copy_faces(const rt_mesh& m, rt_u32 first_vertex, const std::vector<bool>& unusable, const FaceMaterials& materials,
+                   Scene& scene, Triangulator& triangulator, FaceCount& faces) {
     const float* positions = scene.positions.data() + 3 * size_t(first_vertex);
     std::vector<rt_u32>&out = scene.triangles.own(), &triangle_materials = scene.triangle_materials.own();
     const rt_u32* corners = m.indices;
@@ -158,13 +158,11 @@ std::string copy_faces(const rt_mesh& m, rt_u32 first_vertex, const std::vector<
 
 }  // namespace
 
-std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene& scene, Triangulator& triangulator,
-                      FaceCount& faces) {
-    std::string why = check_description(m);
-    if (!why.empty()) return why;
+Problem copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene& scene, Triangulator& triangulator,
+                  FaceCount& faces) {
+    if (Problem why = check_description(m)) return why;
     const FaceMaterials materials(m, known);
-    why = materials.check();
-    if (!why.empty()) return why;
+    if (Problem why = materials.check()) return why;
     const rt_u32 first_vertex = scene.vertex_count();
     if (uint64_t(first_vertex) + m.vertex_count > kMaxVertices) return "more than 4294967294 vertices in all";
     if (scene.triangle_count() + (m.face_sizes ? 0 : m.face_count) > RT_REF_INDEX_MAX) return kTooManyTriangles;
@@ -186,6 +184,7 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
     copy_attribute(m.colors, m.color_stride, first_vertex, m.vertex_count, 4, 1, reserved, scene.colors.own());
     limit_colors(first_vertex, scene.colors);
 
+    Problem why;
     Mesh mesh;
     mesh.name = m.name ? m.name : "";
     mesh.first_vertex = first_vertex;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "rt_plugin.h"
 #include "scene/scene.hpp"
 #include "scene/triangulate.hpp"
@@ -16,9 +17,9 @@ struct FaceCount {
 };
 
 // Appends one mesh with its vertices and triangles to the scene. materials: the scene material of each id that the plugin
-// received. Faces with unusable corners are left out and counted. Returns an empty text, or why the mesh is refused (it is too
+// received. Faces with unusable corners are left out and counted. Returns nothing, or why the mesh is refused (it is too
 // large, or the plugin has a bug).
-std::string copy_mesh(const rt_mesh& mesh, const std::vector<rt_u32>& materials, Scene& scene, Triangulator& triangulator,
-                      FaceCount& faces);
+Problem copy_mesh(const rt_mesh& mesh, const std::vector<rt_u32>& materials, Scene& scene, Triangulator& triangulator,
+                  FaceCount& faces);
 
 }  // namespace clarity::import

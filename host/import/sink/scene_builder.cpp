@@ -158,8 +158,7 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
             if (!progress_.report(fraction)) throw Cancelled();
         };
         progress_.stage("unpacking " + file_name(path));
-        const std::string why = unpack_file(path, report, unpacked);
-        if (!why.empty()) fail(path, why);
+        if (const Problem why = unpack_file(path, report, unpacked)) fail(path, why.text());
         progress_.stage(stage);
         services.set_content(unpacked);
     }
@@ -178,8 +177,7 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
         if (why.compare(0, path.size() + 1, path + ":") == 0) throw Error(Exit::import_failed, why);
         fail(path, why);
     }
-    const std::string why = sink.finish();
-    if (!why.empty()) fail(path, why);
+    if (const Problem why = sink.finish()) fail(path, why.text());
     as_stored_.resize(scene_.meshes.size(), stores_);
     stores_ = outer_stores;
     open_.pop_back();
@@ -231,8 +229,7 @@ const FileContent& SceneBuilder::content_or_sequence(const std::string& path, co
     return content;
 }
 
-std::string SceneBuilder::include(const std::string& from, const std::string& path, const Placement& placement,
-                                  FileContent& into) {
+Problem SceneBuilder::include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into) {
     const std::string what = "cannot load '" + path + "': ";
     // A path like walk_####.obj stands for the files beside the one that names it.
     const fs::path pattern = fs::path(from).parent_path() / path;
@@ -294,10 +291,9 @@ rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_
     const auto [known, is_new] = pictures_of_bytes_.insert({digest.hex(), rt_texture{}});
     rt_texture& picture = known->second;
     if (!is_new) return texture_of(picture, wrap);
-    const std::string why = d.height == 0
-                                ? decode_texture(d.bytes, d.byte_count, scene_.texels.own(), picture)
-                                : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene_.texels.own(), picture);
-    if (!why.empty()) warn(from, "an embedded texture is left out: " + why);
+    const Problem why = d.height == 0 ? decode_texture(d.bytes, d.byte_count, scene_.texels.own(), picture)
+                                      : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene_.texels.own(), picture);
+    if (why) warn(from, "an embedded texture is left out: " + why.text());
     return texture_of(picture, wrap);
 }
 
@@ -312,10 +308,9 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string&
     rt_texture& picture = known->second;
     if (!is_new) return texture_of(picture, wrap);
     std::string bytes;
-    std::string why = try_read_file(found.path, kMaxTexelBytes, bytes);
-    if (why.empty())
-        why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), picture);
-    return why.empty() ? texture_of(picture, wrap) : missing(why);
+    Problem why = try_read_file(found.path, kMaxTexelBytes, bytes);
+    if (!why) why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), picture);
+    return why ? missing(why.text()) : texture_of(picture, wrap);
 }
 
 // Channels of cameras and lights name them by `source` until here, because files that load each other mix their order.

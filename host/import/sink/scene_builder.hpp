@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "import/file_access.hpp"
 #include "import/importer_choice.hpp"
@@ -45,10 +46,10 @@ class SceneBuilder {
     void set_info(const std::string& path, const rt_scene_info& info);
     // Takes the sky of the first file that states one. Returns why it cannot; empty: it did, or there is one, or its picture is
     // missing, of which it warns.
-    std::string set_sky(const std::string& path, const rt_sky_desc& sky);
-    // Loads another file and places it into `into`. Returns an empty text on success, otherwise why it failed. Throws
+    Problem set_sky(const std::string& path, const rt_sky_desc& sky);
+    // Loads another file and places it into `into`. Returns nothing on success, otherwise why it failed. Throws
     // Cancelled.
-    std::string include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);
+    Problem include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);
     // Index of the scene's texture for a path, or for a picture in memory; RT_NONE (after a warning) if it cannot be read. A
     // picture is kept once, however many textures show it. wrap: see rt_texture.
     rt_u32 texture_of_file(const std::string& from, const std::string& path, rt_u32 wrap);

@@ -34,8 +34,8 @@ std::string clean_name(const char* name) {
 // function then fails with that reason.
 template <class T>
 T taken(const T* from, const char* what) {
-    const std::string why = from ? check_bytes<T>(what, from->struct_bytes) : std::string(what) + " is NULL";
-    if (!why.empty()) throw Error(Exit::import_failed, why);
+    if (const Problem why = from ? check_bytes<T>(what, from->struct_bytes) : std::string(what) + " is NULL")
+        throw Error(Exit::import_failed, why.text());
     return copied<T>(from, from->struct_bytes);
 }
 
@@ -201,8 +201,8 @@ rt_u32 SceneSink::material(const rt_material_desc& d) {
 
 rt_u32 SceneSink::mesh(const rt_mesh& d) {
     Scene& scene = builder_.scene();
-    const std::string why = copy_mesh(d, materials_, scene, builder_.triangulator(), faces_);
-    if (!why.empty()) return fail("mesh '" + clean_name(d.name) + "': " + why);
+    if (const Problem why = copy_mesh(d, materials_, scene, builder_.triangulator(), faces_))
+        return fail("mesh '" + clean_name(d.name) + "': " + why.text());
     scene.meshes.back().name = clean_name(d.name);
     if (!are_usable(d.origin)) return fail("mesh '" + clean_name(d.name) + "': its origin is not a finite number");
     origins_.push_back({d.origin[0], d.origin[1], d.origin[2]});
@@ -351,9 +351,9 @@ int32_t SceneSink::load(const rt_load& d) {
         placement.node_from_object = placement.world_from_object;
         placement.world_from_object = to_affine(motion_.at_rest(placement.node).world * to_matrix(placement.node_from_object));
     }
-    const std::string why = builder_.include(path_, d.path, placement, content_);
-    if (why.empty()) return RT_OK;
-    fail(d.where ? std::string(d.where) + ": " + why : why);
+    const Problem why = builder_.include(path_, d.path, placement, content_);
+    if (!why) return RT_OK;
+    fail((d.where ? std::string(d.where) + ": " : "") + why.text());
     return RT_FAILED;
 }
 
@@ -382,13 +382,13 @@ int32_t SceneSink::edit(const char* key, const char* value, const char* where) {
 }
 
 int32_t SceneSink::sky(const rt_sky_desc& d) {
-    const std::string why = builder_.set_sky(path_, d);
-    if (why.empty()) return RT_OK;
-    fail("the sky: " + why);
+    const Problem why = builder_.set_sky(path_, d);
+    if (!why) return RT_OK;
+    fail("the sky: " + why.text());
     return RT_FAILED;
 }
 
-std::string SceneSink::finish() {
+Problem SceneSink::finish() {
     const uint64_t lost = faces_.not_finite + faces_.out_of_range;
     const std::string of_all = " of " + std::to_string(faces_.all) + " faces have corners that ";
     const std::string not_finite = std::to_string(faces_.not_finite) + of_all + "are not finite numbers";

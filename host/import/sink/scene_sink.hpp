@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "import/sink/mesh_copy.hpp"
 #include "import/sink/motion_sink.hpp"
 #include "import/sink/scene_builder.hpp"
@@ -23,9 +24,9 @@ class SceneSink {
 
     const rt_scene_sink* sink() const { return &sink_; }
     bool cancelled() const { return cancelled_; }
-    // Call after the plugin has succeeded. Warns about everything that was left out. Returns an empty text, or why the import
+    // Call after the plugin has succeeded. Warns about everything that was left out. Returns nothing, or why the import
     // fails nevertheless.
-    std::string finish();
+    Problem finish();
 
  private:
     rt_u32 texture(const rt_texture_desc& desc);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/problem.hpp"
 #include "plugin/host_services.hpp"
 #include "scene/usable.hpp"
 
@@ -21,7 +22,7 @@ std::string number_text(double number) {
 }
 
 // Returns what is wrong with the values of a key; empty: nothing.
-std::string key_fault(const rt_key& key, const rt_key_values& values) {
+Problem key_fault(const rt_key& key, const rt_key_values& values) {
     const std::string who = std::string("`") + key.name + "`";
     const bool triples = key.kind == RT_KEY_POINT || key.kind == RT_KEY_VECTOR || key.kind == RT_KEY_POINTS;
     const bool list = key.kind == RT_KEY_NUMBERS || key.kind == RT_KEY_POINTS;
@@ -121,7 +122,7 @@ void add_shape_parts(const rt_primitive& primitive, const rt_primitive_desc& des
     if (desc.value_count != primitive.key_count || !desc.values)
         fail(std::to_string(desc.value_count) + " values, but the shape has " + std::to_string(primitive.key_count) + " keys");
     for (rt_u32 i = 0; i < primitive.key_count; ++i)
-        if (const std::string why = key_fault(primitive.keys[i], desc.values[i]); !why.empty()) fail(why);
+        if (const Problem why = key_fault(primitive.keys[i], desc.values[i])) fail(why.text());
     HostServices services(speaker, progress);
     Parts parts(services, scene);
     shape.first_part = static_cast<rt_u32>(scene.shape_parts.size());

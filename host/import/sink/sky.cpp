@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/memory_text.hpp"
 #include "base/pictures/picture_read.hpp"
+#include "base/problem.hpp"
 #include "import/sink/scene_builder.hpp"
 #include "import/sink/texture.hpp"
 #include "scene/usable.hpp"
@@ -25,7 +26,7 @@ size_t make_sound(std::vector<float>& texels) {
 
 }  // namespace
 
-std::string SceneBuilder::set_sky(const std::string& path, const rt_sky_desc& d) {
+Problem SceneBuilder::set_sky(const std::string& path, const rt_sky_desc& d) {
     if (scene_.sky.values.kind != RT_NONE) return {};
     if (d.kind >= RT_SKY_KINDS) return "kind " + std::to_string(d.kind) + " is unknown";
     const float numbers[2] = {d.rotate_deg, d.strength};

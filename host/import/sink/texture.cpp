@@ -19,8 +19,8 @@
 namespace clarity::import {
 namespace {
 
-// Returns an empty text if a picture of this size may still be added, otherwise why not.
-std::string check_size(uint64_t width, uint64_t height, const std::vector<uint32_t>& texels) {
+// Returns nothing if a picture of this size may still be added, otherwise why not.
+Problem check_size(uint64_t width, uint64_t height, const std::vector<uint32_t>& texels) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
     if (width == 0 || height == 0) return size + ": it is empty";
     if (width > kMaxTextureSide || height > kMaxTextureSide) {
@@ -40,15 +40,14 @@ void append(const void* rgba, rt_u32 width, rt_u32 height, std::vector<uint32_t>
 
 }  // namespace
 
-std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture) {
+Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture) {
     if (byte_count > INT_MAX) return "the picture has more than 2 GiB";
     const int count = static_cast<int>(byte_count);
     int width = 0, height = 0, channels = 0;
     const auto reason = [] { return std::string(stbi_failure_reason() ? stbi_failure_reason() : "unknown format"); };
     if (!stbi_info_from_memory(bytes, count, &width, &height, &channels))
         return "its format is not supported (PNG, JPEG, BMP, TGA, PSD, GIF, HDR and PNM are): " + reason();
-    std::string why = check_size(static_cast<uint64_t>(width), static_cast<uint64_t>(height), texels);
-    if (!why.empty()) return why;
+    if (Problem why = check_size(static_cast<uint64_t>(width), static_cast<uint64_t>(height), texels)) return why;
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_memory(bytes, count, &width, &height, &channels, 4),
                                                            stbi_image_free);
     if (!pixels) return "the picture is damaged: " + reason();
@@ -56,10 +55,9 @@ std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vecto
     return {};
 }
 
-std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
-                         rt_texture& texture) {
-    std::string why = check_size(width, height, texels);
-    if (!why.empty()) return why;
+Problem copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
+                     rt_texture& texture) {
+    if (Problem why = check_size(width, height, texels)) return why;
     if (byte_count < 4 * uint64_t(width) * height) return "its data in memory is shorter than its width and height need";
     append(bytes, width, height, texels, texture);
     return {};

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "rt_types.h"
 
 namespace clarity::import {
@@ -12,12 +13,12 @@ inline constexpr rt_u32 kMaxTextureSide = 16384;
 inline constexpr uint64_t kMaxTexelBytes = 256u << 20;  // bytes of all decoded textures of one scene
 
 // Decodes a picture (PNG, JPEG, BMP, TGA, PSD, GIF, HDR, PNM; `bytes` as in the file), appends it to `texels` as RGBA8 with the
-// top row first, and describes it in `texture`. Returns an empty text on success; otherwise the reason, and nothing is
+// top row first, and describes it in `texture`. Returns nothing on success; otherwise the reason, and nothing is
 // appended.
-std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture);
+Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture);
 
 // Same as decode_texture(), for a picture of width x height RGBA8 texels in memory.
-std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
-                         rt_texture& texture);
+Problem copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
+                     rt_texture& texture);
 
 }  // namespace clarity::import

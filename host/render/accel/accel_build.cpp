@@ -12,6 +12,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
+#include "base/problem.hpp"
 #include "base/scoped_fp_mode.hpp"
 #include "plugin/host_services.hpp"
 #include "render/accel/builder_output.hpp"
@@ -24,7 +25,7 @@ constexpr uint64_t kLeafChunk = 1u << 10;  // leaves that one task copies
 constexpr uint64_t kLeavesAhead = 24;      // how many leaves ahead triangles are prefetched
 
 // Copies the primitives in leaf order. Returns what is wrong with the refs; empty: nothing.
-std::string pack_leaves(const AlignedBytes& refs_in_order, AccelData& data) {
+Problem pack_leaves(const AlignedBytes& refs_in_order, AccelData& data) {
     data.leaves = AlignedBytes((data.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), false);
     const rt_u32* refs = static_cast<const rt_u32*>(refs_in_order.data());
     rt_packed_prim* leaves = static_cast<rt_packed_prim*>(data.leaves.data());
@@ -95,8 +96,7 @@ HostBuild run_build(const rt_plugin& plugin, const std::string& speaker, rt_u32 
         return call(services.host(), out.table());
     });
     HostBuild built{std::move(out.result()), ms_since(start)};
-    const std::string why = built.result.breach(plugin);
-    if (!why.empty()) throw fault(speaker, why);
+    if (const Problem why = built.result.breach(plugin)) throw fault(speaker, why.text());
     return built;
 }
 
@@ -159,8 +159,8 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     data.build_ms = built.ms;
     if (packs) {
         start = std::chrono::steady_clock::now();
-        const std::string why = topology_fault(topology_of(built.result), data.scene);
-        if (!why.empty()) throw fault(name_of(plugin, plugin), why);
+        if (const Problem why = topology_fault(topology_of(built.result), data.scene))
+            throw fault(name_of(plugin, plugin), why.text());
         data.pack_ms += ms_since(start);
         const HostBuild tree = std::move(built);
         const rt_topology topology = topology_of(tree.result);
@@ -179,8 +179,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     data.leaf_count = built.result.leaf_count;
     data.roots = std::move(built.result.roots);
     data.defines = std::move(built.result.defines);
-    const std::string why = pack_leaves(built.result.refs, data);
-    if (!why.empty()) throw fault(name_of(plugin, layout), why);
+    if (const Problem why = pack_leaves(built.result.refs, data)) throw fault(name_of(plugin, layout), why.text());
     built.result = {};
     data.scene.triangles = {};
     data.instances = data.scene.instances;

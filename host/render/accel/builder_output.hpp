@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/plugin_check.hpp"
 #include "render/accel/run_builder.hpp"
@@ -36,7 +37,7 @@ struct BuilderResultIn {
 
     // How the builder of `plugin` broke its contract, in its terms: "never asked for the leaves"; empty: it did not. Refs are
     // not checked.
-    std::string breach(const rt_plugin& plugin) const {
+    Problem breach(const rt_plugin& plugin) const {
         const rt_accel& accel = built_slots(plugin);
         const bool topology = plugin.accel->topology != nullptr;
         for (size_t s = 0; s < slots.size(); ++s)

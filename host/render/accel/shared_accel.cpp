@@ -1,25 +1,25 @@
 #include "render/accel/shared_accel.hpp"
 
 #include "base/error.hpp"
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 
 namespace clarity {
 namespace {
 
 // What of a structure is as it is in memory: all but its plugins, its slots and its leaves.
-template <class Packet, class Accel>
-void visit_plain(Packet& packet, Accel& a) {
+template <class Parcel, class Accel>
+void visit_plain(Parcel& parcel, Accel& a) {
     auto& s = a.scene;
-    packet(a.leaf_count, a.bytes, a.build_ms, a.pack_ms, s.bounds.min, s.bounds.max, s.bounds.empty, a.defines, a.stats);
-    packet(a.params, a.roots, a.instances);
-    packet(s.groups, s.instances, s.group_of_instance, s.world_from_object, s.attribute_triangle, s.flattened);
-    packet(s.instance_leaves, s.spheres, s.polygons, s.shape_leaves, s.shapes, s.polygon_table, s.polygon_corners);
-    packet(s.planes, s.group_of_mesh, s.first_ref_of_group, s.number_of_instance);
+    parcel(a.leaf_count, a.bytes, a.build_ms, a.pack_ms, s.bounds.min, s.bounds.max, s.bounds.empty, a.defines, a.stats);
+    parcel(a.params, a.roots, a.instances);
+    parcel(s.groups, s.instances, s.group_of_instance, s.world_from_object, s.attribute_triangle, s.flattened);
+    parcel(s.instance_leaves, s.spheres, s.polygons, s.shape_leaves, s.shapes, s.polygon_table, s.polygon_corners);
+    parcel(s.planes, s.group_of_mesh, s.first_ref_of_group, s.number_of_instance);
 }
 
-AlignedBytes borrow(PacketReader& packet) {
-    const uint64_t bytes = packet.begin_array();
-    return AlignedBytes::borrow(const_cast<char*>(packet.borrow(bytes)), bytes);
+AlignedBytes borrow(ParcelReader& parcel) {
+    const uint64_t bytes = parcel.begin_array();
+    return AlignedBytes::borrow(const_cast<char*>(parcel.borrow(bytes)), bytes);
 }
 
 const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) {
@@ -31,15 +31,15 @@ const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) 
 }  // namespace
 
 void write_accel(MemoryFile& file, const AccelData& accel) {
-    PacketWriter packet(file);
-    packet(std::string(accel.plugin->id), std::string(accel.layout->id), uint64_t{accel.slots.size()});
-    visit_plain(packet, accel);
-    packet.bytes(accel.leaves.data(), accel.leaves.bytes());
+    ParcelWriter parcel(file);
+    parcel(std::string(accel.plugin->id), std::string(accel.layout->id), uint64_t{accel.slots.size()});
+    visit_plain(parcel, accel);
+    parcel.bytes(accel.leaves.data(), accel.leaves.bytes());
     for (const AccelData::Slot& slot : accel.slots) {
-        packet(slot.count);
-        packet.bytes(slot.memory.data(), slot.memory.bytes());
+        parcel(slot.count);
+        parcel.bytes(slot.memory.data(), slot.memory.bytes());
     }
-    packet.finish();
+    parcel.finish();
     file.seal();
 }
 
@@ -50,23 +50,23 @@ std::shared_ptr<const AccelData> map_accel(const MemoryFile& file, const PluginR
     };
     const auto mapped = std::make_shared<Mapped>();
     AccelData& accel = mapped->accel;
-    PacketReader packet(file, PacketReader::How::mapped);
-    mapped->memory = packet.memory();
+    ParcelReader parcel(file, ParcelReader::How::mapped);
+    mapped->memory = parcel.memory();
     std::string plugin, layout;
     uint64_t slots = 0;
-    packet(plugin, layout, slots);
+    parcel(plugin, layout, slots);
     accel.plugin = accel_of(plugins, plugin);
     accel.layout = accel_of(plugins, layout);
-    visit_plain(packet, accel);
-    accel.leaves = borrow(packet);
+    visit_plain(parcel, accel);
+    accel.leaves = borrow(parcel);
     for (uint64_t s = 0; s < slots; ++s) {
         uint64_t count = 0;
-        packet(count);
-        accel.slots.push_back({borrow(packet), count});
+        parcel(count);
+        accel.slots.push_back({borrow(parcel), count});
     }
-    packet.end();
+    parcel.end();
     return {mapped, &accel};
-} catch (const PacketDamaged&) {
+} catch (const ParcelDamaged&) {
     throw Error(Exit::failed, "the shared memory holds no structure of this program: do all processes run the same version?");
 }
 

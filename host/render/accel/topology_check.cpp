@@ -12,7 +12,7 @@ class Checker {
         : topology_(topology), scene_(scene), seen_(topology.node_count) {}
 
     // Returns what is wrong with the tree of a group, in terms of its builder; empty: nothing.
-    std::string check(rt_u32 group) {
+    Problem check(rt_u32 group) {
         const rt_u32 count = scene_.groups[group].count, root = topology_.roots[group];
         const std::string of_group = " of group " + std::to_string(group);
         if (root == RT_NONE)
@@ -69,10 +69,10 @@ class Checker {
 
 }  // namespace
 
-std::string topology_fault(const rt_topology& topology, const BuildScene& scene) {
+Problem topology_fault(const rt_topology& topology, const BuildScene& scene) {
     Checker checker(topology, scene);
     for (rt_u32 g = 0; g < topology.group_count; ++g)
-        if (std::string why = checker.check(g); !why.empty()) return why;
+        if (Problem why = checker.check(g)) return why;
     return {};
 }
 

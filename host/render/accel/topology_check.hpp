@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "base/problem.hpp"
 #include "render/accel/build_scene.hpp"
 #include "render/accel/builder_output.hpp"
 #include "rt_plugin.h"
@@ -24,6 +25,6 @@ rt_topology topology_of(const BuilderResultIn<Bytes>& result) {
 
 // Returns how the builder broke its contract, in its terms: "gave node 4 of group 0 two parents"; empty: each root has a tree
 // of its own whose leaves name all refs of the group. Boxes are not checked.
-std::string topology_fault(const rt_topology& topology, const BuildScene& scene);
+Problem topology_fault(const rt_topology& topology, const BuildScene& scene);
 
 }  // namespace clarity

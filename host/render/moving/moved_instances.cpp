@@ -47,7 +47,7 @@ bool moves_flattened_mesh(const Pose& pose, const Scene& scene, const BuildScene
     });
 }
 
-std::string wrong_vertices(const Scene& scene, const Pose& pose) {
+Problem wrong_vertices(const Scene& scene, const Pose& pose) {
     for (const PosedMesh& mesh : pose.meshes)
         if (mesh.mesh >= scene.meshes.size() || mesh.positions.size() != 3 * size_t(scene.meshes[mesh.mesh].vertex_count))
             return "mesh " + std::to_string(mesh.mesh) + " has another number of vertices";

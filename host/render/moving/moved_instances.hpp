@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "render/accel/build_scene.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
@@ -26,7 +27,7 @@ void find_moved_instances(const Scene& scene, const BuildScene& build, const std
 // Whether vertices of a mesh that the structure holds moved into the world's space would move. scene: as it was built.
 bool moves_flattened_mesh(const Pose& pose, const Scene& scene, const BuildScene& build);
 
-// Empty, or why the pose's vertices are not those of the scene's meshes.
-std::string wrong_vertices(const Scene& scene, const Pose& pose);
+// Nothing, or why the pose's vertices are not those of the scene's meshes.
+Problem wrong_vertices(const Scene& scene, const Pose& pose);
 
 }  // namespace clarity

@@ -8,6 +8,7 @@
 #include "base/numbers.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/tracer_choice.hpp"
+#include "rt_types.h"
 
 namespace clarity {
 namespace {
@@ -71,7 +72,8 @@ Setting number(const std::string& key, std::string label, std::string help, doub
         [member](Settings& settings, Number value) { settings.*member = value; });
 }
 
-// A number that only kernels read: RT_SETTING(frame, key). This row is all that there is to it.
+// A number that only kernels read: RT_SETTING(frame, key). This row is all that there is to it. The type of its default
+// says whether it is a whole one.
 template <class Number>
 Setting kernel_number(const std::string& key, std::string label, std::string help, double min, double max, Number standard) {
     const auto read = [=](const Settings& settings) {
@@ -304,6 +306,9 @@ const std::vector<const Setting*>& kernel_numbers() {
         std::vector<const Setting*> found;
         for (const Setting& row : settings_table())
             if (row.number) found.push_back(&row);
+        if (found.size() > RT_MOST_NUMBERS)
+            throw Error(Exit::failed, "rt_frame has no room for " + std::to_string(found.size()) +
+                                          " numbers of kernels: raise RT_MOST_NUMBERS in cl/rt_types.h");
         return found;
     }();
     return numbers;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/files/known_contents.hpp"
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
 #include "base/physical_memory.hpp"
@@ -11,7 +12,6 @@
 #include "device/kernel_files.hpp"
 #include "plugin/trust.hpp"
 #include "render/film/film.hpp"
-#include "render/trial/passed_programs.hpp"
 #include "render/trial/trial_job.hpp"
 
 namespace clarity {
@@ -54,6 +54,12 @@ Suspects suspects_of(const DeviceInfo& info, const std::string& source, const st
     return found;
 }
 
+// By their text and all else that their trial depends on.
+KnownContents& passed_programs() {
+    static auto& programs = *new KnownContents("tried_kernels");
+    return programs;
+}
+
 // A program that may have to be tried.
 struct Subject {
     const DeviceInfo& info;
@@ -66,9 +72,9 @@ struct Subject {
 void try_subject(const Subject& subject, const std::function<TrialJob()>& work, Progress& progress) {
     const Suspects suspects = suspects_of(subject.info, subject.source, subject.plugins);
     if (suspects.text.empty()) return;
-    const PassedProgram passed(subject.options + '\n' + subject.info.name + '\n' + subject.info.driver + '\n' +
-                               subject.depends_on + '\n' + subject.source);
-    if (passed.known()) return;
+    const std::string name = KnownContents::name_of(subject.options + '\n' + subject.info.name + '\n' + subject.info.driver +
+                                                    '\n' + subject.depends_on + '\n' + subject.source);
+    if (passed_programs().has(name)) return;
     if (progress.cancelled()) throw Cancelled();
     progress.stage("trying kernels in a worker");
     worker::Job job(kTrialJob, "the trial of kernels", {60, 0, physical_memory_bytes() / 4 * 3});
@@ -87,7 +93,7 @@ void try_subject(const Subject& subject, const std::function<TrialJob()>& work, 
                     {}, place);
     }
     if (not_tried.empty())
-        passed.keep();
+        passed_programs().add(name, {});
     else
         log(LogLevel::debug, "kernels were not tried: " + printable_line(not_tried));
 }

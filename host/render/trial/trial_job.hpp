@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 #include "render/kernels/scene_features.hpp"
 #include "render/settings/settings.hpp"
 #include "render/trial/trial_shapes.hpp"
@@ -23,19 +23,19 @@ struct TrialJob {
     std::vector<TrialShape> shapes;
     Settings settings;
 
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
         std::vector<std::pair<std::string, std::string>> texts;  // of the settings
-        if constexpr (Packet::kWrites)
+        if constexpr (Parcel::kWrites)
             for (const Setting& setting : settings_table()) texts.emplace_back(setting.key, setting.get(self.settings));
-        packet(self.kernels, self.libraries, self.device, self.device_name, self.features, self.shapes, self.settings.accel,
+        parcel(self.kernels, self.libraries, self.device, self.device_name, self.features, self.shapes, self.settings.accel,
                self.settings.accel_params, texts);
-        if constexpr (!Packet::kWrites)
+        if constexpr (!Parcel::kWrites)
             for (const auto& [key, value] : texts) set_setting(self.settings, key, value);
     }
 };
 
 // The work of the job.
-void trial_job(PacketReader& arguments);
+void trial_job(ParcelReader& arguments);
 
 }  // namespace clarity

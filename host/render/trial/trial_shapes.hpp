@@ -13,15 +13,15 @@ struct TrialShape {
     struct Part {
         ShapePart part;
         std::vector<float> more;  // its range of Scene::shape_numbers
-        template <class Packet, class Self>
-        static void visit(Packet& packet, Self& self) {
-            packet(self.part, self.more);
+        template <class Parcel, class Self>
+        static void visit(Parcel& parcel, Self& self) {
+            parcel(self.part, self.more);
         }
     };
     std::vector<Part> parts;
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.id, self.parts);
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.id, self.parts);
     }
 };
 

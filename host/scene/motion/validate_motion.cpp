@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/problem.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/scene.hpp"
 
@@ -24,7 +25,7 @@ std::string text(const char* what, size_t index, const char* why) {
     return std::string(what) + " " + std::to_string(index) + ": " + why;
 }
 
-std::string check_nodes(const Motion& m) {
+Problem check_nodes(const Motion& m) {
     for (size_t i = 0; i < m.nodes.size(); ++i) {
         const rt_node_desc& n = m.nodes[i].values;
         if (n.parent != RT_NONE && n.parent >= i) return text("node", i, "its parent does not come before it");
@@ -36,7 +37,7 @@ std::string check_nodes(const Motion& m) {
     return {};
 }
 
-std::string check_channels(const Scene& s) {
+Problem check_channels(const Scene& s) {
     const Motion& m = s.motion;
     if (m.key_spans.size() != m.key_times.size()) return "keys: not one span for each";
     if (!all_finite(m.key_times) || !all_finite(m.key_values) || !all_finite(m.key_handles)) return "keys: not a finite number";
@@ -71,7 +72,7 @@ std::string check_channels(const Scene& s) {
     return {};
 }
 
-std::string check_skins(const Scene& s) {
+Problem check_skins(const Scene& s) {
     const Motion& m = s.motion;
     for (size_t i = 0; i < m.bones.size(); ++i)
         if (m.bones[i].node >= m.nodes.size() || !all_finite_in(m.bones[i].bone_from_mesh))
@@ -97,7 +98,7 @@ std::string check_skins(const Scene& s) {
     return all_finite(m.shares) ? "" : "shares of skins: not a finite number";
 }
 
-std::string check_morphs(const Scene& s) {
+Problem check_morphs(const Scene& s) {
     const Motion& m = s.motion;
     if (!all_finite(m.morph_positions) || !all_finite(m.morph_normals)) return "morphs: not a finite number";
     for (size_t i = 0; i < m.morphs.size(); ++i) {
@@ -120,7 +121,7 @@ std::string check_morphs(const Scene& s) {
     return {};
 }
 
-std::string check_frames(const Scene& s) {
+Problem check_frames(const Scene& s) {
     const Motion& m = s.motion;
     if (!all_finite(m.frame_times) || !all_finite(m.frame_positions)) return "vertex frames: not a finite number";
     for (size_t i = 0; i < m.frames.size(); ++i) {
@@ -138,7 +139,7 @@ std::string check_frames(const Scene& s) {
     return {};
 }
 
-std::string check_stored(const Scene& s) {
+Problem check_stored(const Scene& s) {
     const Motion& m = s.motion;
     if (!all_finite(m.stored_positions) || !all_finite(m.stored_normals)) return "stored meshes: not a finite number";
     for (size_t i = 0; i < m.stored.size(); ++i) {
@@ -153,7 +154,7 @@ std::string check_stored(const Scene& s) {
     return {};
 }
 
-std::string check_sequences(const Scene& s) {
+Problem check_sequences(const Scene& s) {
     for (size_t i = 0; i < s.motion.sequences.size(); ++i) {
         const FileSequence& q = s.motion.sequences[i];
         if (!within(q.first_mesh, q.mesh_count, s.meshes.size())) return text("sequence", i, "meshes past the last one");
@@ -164,7 +165,7 @@ std::string check_sequences(const Scene& s) {
     return {};
 }
 
-std::string check_hung(const Scene& s) {
+Problem check_hung(const Scene& s) {
     const auto bad = [&](rt_u32 node) { return node != RT_NONE && node >= s.motion.nodes.size(); };
     for (size_t i = 0; i < s.instances.size(); ++i) {
         const Instance& instance = s.instances[i];
@@ -182,20 +183,21 @@ std::string check_hung(const Scene& s) {
     for (size_t i = 0; i < s.lights.size(); ++i) {
         const Light& light = s.lights[i];
         if (bad(light.node)) return text("light", i, "no such node");
-        const std::string fault = light.node == RT_NONE ? "" : light_fault(light.at_node);
-        if (!fault.empty()) return text("light", i, ("in its node's space " + fault).c_str());
+        if (light.node == RT_NONE) continue;
+        if (const Problem fault = light_fault(light.at_node))
+            return text("light", i, ("in its node's space " + fault.text()).c_str());
     }
     return {};
 }
 
 }  // namespace
 
-std::string validate_motion(const Scene& scene) {
-    std::string why = check_nodes(scene.motion);
+Problem validate_motion(const Scene& scene) {
+    if (Problem why = check_nodes(scene.motion)) return why;
     for (const auto check :
          {check_channels, check_skins, check_morphs, check_frames, check_stored, check_sequences, check_hung})
-        if (why.empty()) why = check(scene);
-    return why;
+        if (Problem why = check(scene)) return why;
+    return {};
 }
 
 }  // namespace clarity

@@ -2,15 +2,16 @@
 //
 // The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. A mesh is imported once,
 // no matter how many nodes show it.
-#include <assimp/config.h>
-#include <assimp/scene.h>
-
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
-
-#include <algorithm>
+#include <assimp/config.h>
+#include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 #include <assimp/ProgressHandler.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -19,7 +20,6 @@
 #include "../common/mapped_file.hpp"
 #include "complaints.hpp"
 #include "content_checks.hpp"
-#include "file_kind.hpp"
 #include "lights_cameras.hpp"
 #include "materials.hpp"
 #include "meshes.hpp"
@@ -203,7 +203,8 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
 }
 
 int32_t probe(const uint8_t* head, uint64_t bytes) {
-    return certainty(head, bytes);
+    const std::string_view text(reinterpret_cast<const char*>(head), bytes);
+    return text.substr(0, 1024).find("<COLLADA") != text.npos ? 90 : 0;
 }
 
 // The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
@@ -213,6 +214,7 @@ constexpr const char* extensions[] = {"dae",     "3ds", "blend", "ac",  "ase", "
 constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>, RT_IMPORTER_TAKES_CONTENT, 0};
 
 }  // namespace
+
 }  // namespace assimp_import
 
 extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::importer_plugin(

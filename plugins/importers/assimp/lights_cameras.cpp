@@ -15,9 +15,9 @@ namespace {
 using Vec = std::array<double, 3>;
 
 // The n-th light (or camera) of a name belongs to the n-th node of that name.
-class Placement {
+class NodesOfNames {
  public:
-    explicit Placement(const NodeTree& tree) : tree_(tree) {}
+    explicit NodesOfNames(const NodeTree& tree) : tree_(tree) {}
     Transform next(const aiString& name) {
         const std::string key(name.data, name.length);
         const PlacedNode* node = tree_.find(key, seen_[key]++);
@@ -52,7 +52,7 @@ std::string quoted(const aiString& name) {
 }  // namespace
 
 void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host, const rt_scene_sink& sink) {
-    Placement placement(tree);
+    NodesOfNames placement(tree);
     importers::Lights lights;
     for (unsigned i = 0; i < scene.mNumLights; ++i) {
         const aiLight& light = *scene.mLights[i];
@@ -83,7 +83,7 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
 }
 
 void add_cameras(const aiScene& scene, const NodeTree& tree, const rt_scene_sink& sink) {
-    Placement placement(tree);
+    NodesOfNames placement(tree);
     for (unsigned i = 0; i < scene.mNumCameras; ++i) {
         const aiCamera& camera = *scene.mCameras[i];
         const Transform world = placement.next(camera.mName);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "diagnostics.hpp"
-#include "placement.hpp"
 #include "rt_plugin.h"
+#include "stated_transform.hpp"
 
 namespace scene_format {
 
@@ -57,7 +57,7 @@ struct Load {
     std::string path;
     Position position;  // of the path in the file
     Name name;
-    Placement placement;
+    StatedTransform placement;
     Name material;
 };
 

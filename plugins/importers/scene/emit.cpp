@@ -195,7 +195,7 @@ bool Emitter::load(const Load& load) {
     desc.path = load.path.c_str();
     desc.name = name_or_null(load.name.text);
     desc.node = motion_.node_of_load(load);
-    const Placement placement = desc.node == 0 ? load.placement : Placement();  // else the node has it
+    const StatedTransform placement = desc.node == 0 ? load.placement : StatedTransform();  // else the node has it
     const std::array<float, 12> placed = placement.world_from_object();
     std::copy(placed.begin(), placed.end(), desc.world_from_object);
     desc.material = material(load.material);

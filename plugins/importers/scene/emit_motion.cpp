@@ -76,7 +76,7 @@ rt_u32 MotionEmitter::add_node(const std::string& name) const {
     node.rotation[3] = 1;
     for (double& s : node.scale) s = 1;
     if (const Load* load = find(document_.loads, name)) {
-        const Placement& placement = load->placement;
+        const StatedTransform& placement = load->placement;
         std::copy(placement.translation().begin(), placement.translation().end(), node.translation);
         std::copy(placement.quaternion().begin(), placement.quaternion().end(), node.rotation);
         std::copy(placement.scales().begin(), placement.scales().end(), node.scale);

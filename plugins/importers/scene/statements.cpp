@@ -187,7 +187,7 @@ void read_load(Statement& s, Document& document, Diagnostics&) {
     Load load;
     load.path = s.path("the file to load");
     load.position = s.last();
-    Placement& placement = load.placement;
+    StatedTransform& placement = load.placement;
     while (!s.done()) {
         switch (s.key()) {
             case kTranslate:

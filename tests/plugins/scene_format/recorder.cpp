@@ -209,14 +209,14 @@ std::string Recording::unsound() const {
     }
     for (const auto& m : materials) {
         const rt_material& v = m.values;
-        if (!clarity::material_fault(v).empty()) return "material keys";
+        if (clarity::material_fault(v)) return "material keys";
         if (!all_finite(v.color) || !all_finite(v.emission) || !all_finite(v.specular)) return "material";
         if (!(v.reflect >= 0 && v.refract >= 0 && v.reflect + v.refract <= 1.0001f && v.ior > 0)) return "material shares";
         if (v.texture != RT_NONE && v.texture >= textures.size()) return "texture";
     }
     for (const auto& l : lights) {
         if (!all_finite(l.values.position) || !all_finite(l.values.direction) || !all_finite(l.values.color)) return "light";
-        if (!clarity::light_fault(l.light).empty()) return "light keys";
+        if (clarity::light_fault(l.light)) return "light keys";
     }
     for (const auto& c : cameras) {
         if (!all_finite(c.values.eye) || !all_finite(c.values.target) || !all_finite(c.values.up)) return "camera";

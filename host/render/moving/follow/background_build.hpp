@@ -3,10 +3,11 @@
 // It builds the trees of all meshes. rt_build_input::wanted would allow for those that have decayed alone: docs/experiments.md
 // (Refits) says what that would gain.
 #pragma once
-#include <atomic>
+#include <chrono>
 #include <functional>
 #include <future>
 #include <memory>
+#include <utility>
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
@@ -26,19 +27,23 @@ class BackgroundBuild {
  public:
     // Called on the other thread. May throw.
     using Build = std::function<BuiltPose(Progress&)>;
-    explicit BackgroundBuild(Build build);
+    explicit BackgroundBuild(Build build)
+        : result_(std::async(std::launch::async, [this, build = std::move(build)] { return build(progress_); })) {}
     // Cancels the build and waits for its end.
-    ~BackgroundBuild();
+    ~BackgroundBuild() {
+        progress_.cancel();
+        if (result_.valid()) result_.wait();
+    }
     BackgroundBuild(const BackgroundBuild&) = delete;
     BackgroundBuild& operator=(const BackgroundBuild&) = delete;
 
-    bool done() const { return done_; }
+    // Before take().
+    bool done() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
     // The result, once, or what the build threw. Waits for it.
     BuiltPose take() { return result_.get(); }
 
  private:
     Progress progress_;
-    std::atomic<bool> done_{false};
     std::future<BuiltPose> result_;  // last member: its thread uses the others
 };
 

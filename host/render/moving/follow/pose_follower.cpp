@@ -31,7 +31,7 @@ PoseFollower::Way way_of(const std::string& poses) {
 }
 
 // Why nothing that is there can become the pose; empty: it can.
-std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose) const {
+Problem PoseFollower::why_not(const PosedFrom& from, const Pose& pose) const {
     if (!mover_) return "the first pose";
     if (!(from == from_)) return "another scene or clip";
     if (!mover_->cannot().empty()) return mover_->cannot();
@@ -48,7 +48,7 @@ std::string PoseFollower::why_build(Way way) const {
 }
 
 bool PoseFollower::wants_build_beside(const PosedFrom& from, const Pose& pose, Way way) const {
-    return way == Way::automatic && !beside_ && why_not(from, pose).empty() && !mover_->can_build() && policy_.wants_build();
+    return way == Way::automatic && !beside_ && !why_not(from, pose) && !mover_->can_build() && policy_.wants_build();
 }
 
 void PoseFollower::build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
@@ -82,7 +82,7 @@ MovedStructure PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<
     update_.followed = true;
     update_.building = beside_ != nullptr;
     update_.refitted = false;
-    update_.why = why_not(from, pose);
+    update_.why = why_not(from, pose).text();
     if (!update_.why.empty()) return {};
     const std::string why_build = this->why_build(way);
     const bool builds = !why_build.empty();

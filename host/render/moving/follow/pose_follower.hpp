@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/moving/follow/background_build.hpp"
@@ -90,7 +91,7 @@ class PoseFollower {
     const PoseUpdate& update() const { return update_; }
 
  private:
-    std::string why_not(const PosedFrom& from, const Pose& pose) const;
+    Problem why_not(const PosedFrom& from, const Pose& pose) const;
     std::string why_build(Way way) const;
     void note_trees(const MovedStructure& moved, const Scene& scene, bool built);
 

@@ -7,7 +7,7 @@
 
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
-#include "render/moving/accel_copy.hpp"
+#include "render/accel/accel_copy.hpp"
 
 namespace clarity {
 namespace {
@@ -101,10 +101,10 @@ void DeviceMover::start() {
 }
 
 // Takes over a pose. Returns why a build is needed; nothing is changed then.
-std::string DeviceMover::place(const Pose& pose) {
+Problem DeviceMover::place(const Pose& pose) {
     const BuildScene& build = built_->scene;
     find_moved_instances(*scene_, build, instances_, pose, moved_);
-    if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose);
+    if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose).text();
     const auto in_world = [&](rt_u32 i) {
         return instances_[i].visible && build.number_of_instance[i] == RT_NONE &&
                scene_->meshes[instances_[i].mesh].triangle_count > 0;
@@ -275,7 +275,7 @@ MovedOnDevice DeviceMover::move(const Pose& pose, Update update) {
         if (!started_) start();
         result.worst_cost_ratio = worst_cost_ratio();
         device_->queue().enqueueMarkerWithWaitList(nullptr, &result.begin);
-        result.why = place(pose);
+        result.why = place(pose).text();
         if (result.why.empty()) finish_move(update, result);
         result.ms = ms_since(begin);
         return result;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/aligned_bytes.hpp"
+#include "base/problem.hpp"
 #include "render/moving/moved_instances.hpp"
 #include "render/moving/moved_structure.hpp"
 #include "render/moving/on_device/device_deformer.hpp"
@@ -70,7 +71,7 @@ class DeviceMover {
 
  private:
     void start();
-    std::string place(const Pose& pose);
+    Problem place(const Pose& pose);
     void deform(const Pose& pose);
     void set_vertices(rt_u32 mesh, const float* positions, const float* normals);
     void send(const cl::Buffer& to, size_t at, size_t bytes, const void* data);

@@ -11,7 +11,7 @@
 #include "base/scoped_fp_mode.hpp"
 #include "plugin/extensions.hpp"
 #include "plugin/host_services.hpp"
-#include "render/moving/accel_copy.hpp"
+#include "render/accel/accel_copy.hpp"
 
 namespace clarity {
 namespace {
@@ -142,10 +142,10 @@ void HostMover::touch(rt_u32 mesh) {
 }
 
 // Takes over a pose. Returns why a build is needed; nothing is changed then.
-std::string HostMover::place(const Pose& pose) {
+Problem HostMover::place(const Pose& pose) {
     const BuildScene& build = built_->scene;
     find_moved_instances(*scene_, build, instances_, pose, moved_);
-    if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose);
+    if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose).text();
     if (!moved_.why.empty()) return moved_.why;
 
     is_posed_.assign(scene_->meshes.size(), 0);
@@ -324,7 +324,7 @@ MovedStructure HostMover::move(const Pose& pose, Progress& progress) {
         return result;
     }
     if (!started_) start(progress);
-    result.why = place(pose);
+    result.why = place(pose).text();
     if (!result.why.empty()) return result;
     result = refit(progress);
     result.ms = ms_since(begin);

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/moving/moved_instances.hpp"
@@ -59,7 +60,7 @@ class HostMover : public PoseMover {
 
     void find_flat_instances();
     void start(Progress& progress);
-    std::string place(const Pose& pose);
+    Problem place(const Pose& pose);
     const float* vertices_at_rest(rt_u32 mesh) const;
     void set_vertices(rt_u32 mesh, const float* object);
     void transform_vertices(rt_u32 mesh, const float* object, const Affine* world);

@@ -33,7 +33,7 @@ std::string try_kernels(const TrialJob& job) {
 
 }  // namespace
 
-void trial_job(PacketReader& arguments) {
+void trial_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<TrialJob>(arguments);
     worker::enter_sandbox(worker::WorkerKind::driver);
     worker::answer(try_kernels(job));

@@ -2,16 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <list>
 #include <optional>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
+#include "render/accel/accel_copy.hpp"
+#include "render/accel/guarded_memory.hpp"
 #include "render/frame/preparer.hpp"
 #include "render/tracers/rays/query_scene.hpp"
 #include "render/tracers/smoke.hpp"
-#include "render/trial/worker/guarded_accel.hpp"
 #include "render/trial/worker/trial_scene.hpp"
 
 namespace clarity {
@@ -28,6 +30,20 @@ class TrialProgress : public Progress {
  private:
     const TrialSteps& say_step_;
 };
+
+// A copy of a structure whose arrays lie between guard pages. Kernels on a CPU read them in place.
+std::shared_ptr<const AccelData> guarded(const AccelData& built, std::list<GuardedBytes>& memory) {
+    const rt_accel& accel = *built.layout->accel;
+    rt_u32 slot = 0;
+    return std::make_shared<const AccelData>(copy_of(built, [&](const AlignedBytes& from) {
+        const std::string name = slot < accel.slot_count ? std::string("the slot ") + accel.slots[slot].name : "the leaves";
+        ++slot;
+        GuardedBytes& copy = memory.emplace_back(from.bytes(), name);
+        if (from.bytes() > 0) std::memcpy(copy.data(), from.data(), from.bytes());
+        copy.make_read_only();
+        return AlignedBytes::borrow(copy.data(), copy.bytes());
+    }));
+}
 
 // Between guard pages, which kernels on a CPU see.
 cl::Buffer guarded_buffer(Device& device, std::list<GuardedBytes>& memory, const char* name, size_t bytes) {
@@ -56,8 +72,9 @@ std::string try_on_small_scene(const TrialJob& job, const PluginRegistry& plugin
     settings.shutter = 0;
     TrialProgress progress(say_step);
     Preparer preparer(plugins, device);
-    const GuardedAccel guarded(*preparer.build(scene, settings, progress));
-    const auto prepared = prepare_queries(*device, scene, guarded.accel(), settings, progress);
+    std::list<GuardedBytes> memory;  // outlives all that uses the structure
+    const auto accel = guarded(*preparer.build(scene, settings, progress), memory);
+    const auto prepared = prepare_queries(*device, scene, accel, settings, progress);
     const Smoke smoke{device, *prepared, make_view(*scene, float(kWidth) / float(kHeight)), say_step};
     const Tracer& tracer = find_tracer(job.kernels);
     if (tracer.smoke)

@@ -1,34 +1,9 @@
-/* rt_plugin.h -- the plugin ABI, version 2, frozen. A plugin may include this file and rt_shared.h. C99 and C++17, 64-bit machines.
- *
- * A plugin is one shared library that exports one symbol, the *data* `rt_plugin_v1`. The host checks abi_version, sizes and
- * types_digest there before it runs any code of the plugin. Strings are UTF-8 and live as long as the library, which is never
- * unloaded. Plugins keep no state: they write all results into memory of the host, and pointers that the host passes to them are
- * valid during the call only. No C++ type, exception or allocator crosses this interface (rt_plugin.hpp wraps calls for C++).
- *
- * The promise: a plugin that was built with this file loads into every later host that speaks version 2, and a plugin that was
- * built with a later version-2 file loads into this host. For that, only the following may change within version 2:
- * - Fields are appended to structs that begin with struct_bytes, and to the elements of arrays whose size is told (rt_param,
- *   rt_slot, rt_extension). Such a struct never has padding at its end. What is in it today keeps its place, type and meaning.
- * - A field that a plugin does not have reads as zero in the host: the host copies what is there into a zeroed struct of its own.
- *   So 0 in an appended field means "as before". A host accepts every struct that has at least the fields of the first release.
- * - A struct that the host passes may be shorter, or longer, than in the plugin's header. A plugin tests with RT_HAS whether a field
- *   is there, if that field is younger than version 2. All other fields of this file are always there.
- * - Enums get further values and bit masks further bits. A host refuses a kind that it does not know, and ignores other bits.
- * - Anything larger is an rt_extension: it has a name and a version of its own.
- * The other structs (rt_packed_prim, rt_prim, rt_group, rt_topology_node, rt_cl_file) never change: data beside theirs would come in
- * arrays of their own. Kernels have a version of their own, RT_KERNEL_CONTRACT. Any other change increases RT_ABI_VERSION.
- *
- * Version history:
- *   1  First release. Hosts of later versions do not load it.
- *   2  Structs and arrays that can grow. What a structure can do is data. The kernel contract has a number. Materials and lights
- *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin. */
+/* rt_plugin.h -- the plugin ABI, version 2, as it was when it was frozen, without its comments: host/sdk/rt_plugin.h has them. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
-
 #include "rt_shared.h"
 #define RT_ABI_VERSION 2u
-/* Version of what a traversal may use and must promise (CONTRACT.md). A later contract with this number only adds names. */
 #define RT_KERNEL_CONTRACT 1u
 #ifdef _WIN32
 #define RT_EXPORT __declspec(dllexport)
@@ -38,122 +13,85 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Whether a struct that the host passed has a field: RT_HAS(in, rt_build_input, device). */
 #define RT_HAS(pointer, type, field) ((pointer)->struct_bytes >= offsetof(type, field) + sizeof((pointer)->field))
-
 enum { RT_OK = 0, RT_FAILED = 1, RT_CANCELLED = 2 };
 enum { RT_LOG_DEBUG, RT_LOG_INFO, RT_LOG_WARNING };
-
-/* Services of the host; valid during the call that received them. All may be called from any thread of parallel_for. On all these
- * threads builders run with the default floating-point mode: denormal numbers are not flushed to zero. */
 typedef struct rt_host {
     rt_u32 struct_bytes;
     void *ctx;
-    int32_t (*fail)(void *ctx, const char *why); /* keeps the first reason and returns RT_FAILED: `return host->fail(..)` */
+    int32_t (*fail)(void *ctx, const char *why);
     void (*log)(void *ctx, int32_t level, const char *text);
-    int32_t (*progress)(void *ctx, float fraction); /* 0..1; returns 0 if the user cancelled: then return RT_CANCELLED soon */
-    void (*parallel_for)(void *ctx, rt_u32 count, void (*body)(void *user, rt_u32 i), void *user); /* on all cores; may be nested */
+    int32_t (*progress)(void *ctx, float fraction);
+    void (*parallel_for)(void *ctx, rt_u32 count, void (*body)(void *user, rt_u32 i), void *user);
 } rt_host;
-
 enum { RT_PARAM_INT, RT_PARAM_FLOAT, RT_PARAM_BOOL, RT_PARAM_ENUM };
-enum { RT_EFFECT_REBUILD, RT_EFFECT_RECOMPILE }; /* what the host must do when a parameter changes */
-/* A parameter is data: the host draws its widget, parses `--accel bvh2,max_leaf=4`, stores it in presets and checks its range.
- * rt_plugin::param_bytes tells the size of an element. */
+enum { RT_EFFECT_REBUILD, RT_EFFECT_RECOMPILE };
 typedef struct rt_param {
-    const char *key, *label, *help; /* "max_leaf", "Max leaf size", "primitives in a leaf, at most" (with the unit) */
+    const char *key, *label, *help;
     int32_t kind, effect;
     double min, max, def;
-    const char *const *choices; /* RT_PARAM_ENUM only, NULL-terminated; the value is the index */
+    const char *const *choices;
 } rt_param;
-
-/* ---- acceleration structures -------------------------------------------------------------------------------------------- */
-
-/* A primitive as builders see it: its bounds and an opaque ref. 32 B; it never grows. */
 typedef struct rt_prim {
     float lo[3];
     rt_u32 ref;
     float hi[3];
-    rt_u32 mesh; /* number of the placed mesh that it belongs to; primitives of one mesh are contiguous within a group */
+    rt_u32 mesh;
 } rt_prim;
 typedef struct rt_group {
-    rt_u32 first, count; /* range of prims; may be empty */
+    rt_u32 first, count;
 } rt_group;
-
-/* Geometry, for builders that split or pack primitives. triangles[i] holds the corners a, b, c of the triangle with ref i, in the
- * space of its group. */
 typedef struct rt_geometry {
     rt_u32 struct_bytes;
     const rt_packed_prim *triangles;
     uint64_t triangle_count;
 } rt_geometry;
-
 enum { RT_DEVICE_UNKNOWN, RT_DEVICE_CPU, RT_DEVICE_GPU };
-/* The device for which a structure is built. It is advice: the host may trace the same result on another device, so the result must
- * be right everywhere. 0: not known. */
 typedef struct rt_device {
     rt_u32 struct_bytes;
-    rt_u32 kind;             /* RT_DEVICE_... */
-    rt_u32 lanes;            /* rays that a work-item traces together: RT_LANES in kernels */
-    rt_u32 compute_units;    /* cores of a CPU, multiprocessors of a GPU */
+    rt_u32 kind;
+    rt_u32 lanes;
+    rt_u32 compute_units;
     rt_u32 cache_line_bytes;
-    rt_u32 local_bytes;      /* local memory of a work-group */
-    uint64_t unit_cache_bytes;   /* the largest cache that a core has for itself */
-    uint64_t shared_cache_bytes; /* the largest cache that the device's units share */
+    rt_u32 local_bytes;
+    uint64_t unit_cache_bytes;
+    uint64_t shared_cache_bytes;
     uint64_t memory_bytes;
 } rt_device;
-
 typedef struct rt_build_input {
     rt_u32 struct_bytes, group_count;
     const rt_prim *prims;
-    const rt_group *groups; /* [0]: the world, refs of any kind. [1..]: one instanced mesh each, in its own space, no instances */
+    const rt_group *groups;
     const rt_geometry *geometry;
-    const double *params;    /* in the order of rt_plugin::params */
-    const rt_device *device; /* never NULL */
-    /* Some groups only. NULL: build all groups; first_elements is NULL then, too. Otherwise group g is built if wanted[g] is not 0,
-     * and the others have neither root, nodes nor leaves in the output. The host appends the result to other parts of the same
-     * structure. So every index into slot s that the builder writes or reports as a root counts from first_elements[s], and every
-     * position in leaf order from first_leaf. Where parts define different values, kernels get the greatest. The host asks only
-     * structures with RT_BUILDS_GROUPS for this. */
+    const double *params;
+    const rt_device *device;
     const uint8_t *wanted;
     const uint64_t *first_elements;
     uint64_t first_leaf;
 } rt_build_input;
-
 typedef struct rt_build_output {
     rt_u32 struct_bytes;
     void *ctx;
-    /* Returns zeroed, 128-byte aligned memory of the host for `count` elements of a slot. Call it once for each slot. After NULL,
-     * stop and return RT_FAILED. */
     void *(*alloc)(void *ctx, rt_u32 slot, uint64_t count);
-    /* Returns memory of the host for `count` refs in leaf order. Call it once. The host packs the primitives in this order, and
-     * RT_LEAF takes a position in it. A ref may occur several times (spatial splits); each time costs a packed primitive of 48 B.
-     * Where many leaves name the same primitive, as in grids and kd-trees, give each ref once, and keep lists of positions in a
-     * slot of `uint`. After NULL, stop and return RT_FAILED. */
     rt_u32 *(*leaves)(void *ctx, uint64_t count);
-    void (*root)(void *ctx, rt_u32 group, rt_u32 node); /* node: an element of slot 0. Call it for every group, also empty ones */
-    void (*define)(void *ctx, const char *name, rt_u32 value); /* a kernel's macro, BVH2_STACK; round up: a new value recompiles */
-    void (*stat)(void *ctx, const char *label, double value); /* "nodes", "depth", "sah_cost": for panel, --stats and bench */
+    void (*root)(void *ctx, rt_u32 group, rt_u32 node);
+    void (*define)(void *ctx, const char *name, rt_u32 value);
+    void (*stat)(void *ctx, const char *label, double value);
 } rt_build_output;
-
-/* A slot becomes a kernel argument and the member `name` of rt_ctx: `const global <cl_type> *<name>`. rt_accel::slot_bytes tells the
- * size of an element. */
-#define RT_SLOT_HOST_ONLY 1u /* for `levels` and the host: it is not sent to a device, and kernels have no such member */
+#define RT_SLOT_HOST_ONLY 1u
 typedef struct rt_slot {
-    const char *name, *cl_type; /* cl_type: NULL with RT_SLOT_HOST_ONLY */
-    rt_u32 elem_bytes;          /* compared with sizeof(cl_type) on the device */
-    rt_u32 flags;               /* RT_SLOT_...; slot 0 has none, because roots are elements of it */
+    const char *name, *cl_type;
+    rt_u32 elem_bytes;
+    rt_u32 flags;
 } rt_slot;
 typedef struct rt_cl_file {
-    const char *name, *text; /* "bvh2.cl"; in development the host reads the file from disk, else it takes the embedded text */
+    const char *name, *text;
 } rt_cl_file;
-
-/* A finished structure, read-only, for `levels`. */
 typedef struct rt_built {
     rt_u32 struct_bytes, group_count;
-    const void *const *slots;    /* slot_count pointers */
-    const uint64_t *slot_counts; /* elements */
-    const rt_u32 *roots;         /* one per group */
+    const void *const *slots;
+    const uint64_t *slot_counts;
+    const rt_u32 *roots;
 } rt_built;
 #define RT_LEVEL_BOTTOM 0xFFFFFFFFu
 typedef struct rt_volume_sink {
@@ -162,217 +100,168 @@ typedef struct rt_volume_sink {
     void (*box)(void *ctx, const float lo[3], const float hi[3]);
     void (*sphere)(void *ctx, const float center[3], float radius);
 } rt_volume_sink;
-
-/* A node of a binary tree over the primitives of one group. 32 B; it never grows. */
 typedef struct rt_topology_node {
     float lo[3];
-    rt_u32 left; /* inner node: index of a child. Leaf: position of its first ref */
+    rt_u32 left;
     float hi[3];
-    rt_u32 right; /* inner node: index of the other child. Leaf: RT_TOPOLOGY_LEAF | number of its refs, 1 or more */
+    rt_u32 right;
 } rt_topology_node;
 #define RT_TOPOLOGY_LEAF 0x80000000u
-#define RT_TOPOLOGY_DEPTH 256u /* nodes on the way from a root to a leaf, at most */
-
-/* Receives a topology. Call nodes and refs once each; after NULL, stop and return RT_FAILED. */
+#define RT_TOPOLOGY_DEPTH 256u
 typedef struct rt_topology_output {
     rt_u32 struct_bytes;
     void *ctx;
-    rt_topology_node *(*nodes)(void *ctx, uint64_t count); /* zeroed; the host ignores nodes that no root reaches */
-    rt_u32 *(*refs)(void *ctx, uint64_t count);            /* in the order in which leaves name them; a ref may occur several times */
-    void (*root)(void *ctx, rt_u32 group, rt_u32 node);    /* RT_NONE: the group is empty */
+    rt_topology_node *(*nodes)(void *ctx, uint64_t count);
+    rt_u32 *(*refs)(void *ctx, uint64_t count);
+    void (*root)(void *ctx, rt_u32 group, rt_u32 node);
     void (*stat)(void *ctx, const char *label, double value);
 } rt_topology_output;
-
-/* A finished topology. The host has checked it: each root has a tree of its own, at most RT_TOPOLOGY_DEPTH deep, whose leaves name
- * known refs. Boxes are the builder's, unchecked. */
 typedef struct rt_topology {
     rt_u32 struct_bytes, group_count;
     const rt_topology_node *nodes;
     uint64_t node_count;
     const rt_u32 *refs;
     uint64_t ref_count;
-    const rt_u32 *roots; /* a node for each group, or RT_NONE: the group is empty */
+    const rt_u32 *roots;
 } rt_topology;
-
-/* What a structure offers besides RT_TRAVERSE and `build`, as bits of rt_accel::capabilities; cl/CONTRACT.md describes those of
- * kernels. The host defines the names of those that are set in the structure's kernels. It ignores bits that it does not know. */
 enum {
-    RT_TRAVERSES_STREAMS = 1,  /* RT_TRAVERSE_STREAM: traces neighbouring packets together, on CPUs */
-    RT_TRAVERSES_STEPS = 2,    /* RT_TRAVERSE_step: traces step by step, so that a work-item may fetch another ray, on GPUs */
-    RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp visit the same nodes, on GPUs */
-    RT_REQUEUES_LONG_RAYS = 8, /* RT_TRAVERSE_REQUEUED: many work-items trace one long ray, on GPUs */
-    RT_SPLITS_INCOHERENT = 16, /* reads ray->incoherent: traces incoherent packets ray by ray, on CPUs */
-    RT_BUILDS_GROUPS = 32      /* `build` obeys rt_build_input::wanted */
+    RT_TRAVERSES_STREAMS = 1,
+    RT_TRAVERSES_STEPS = 2,
+    RT_TRAVERSES_WARPS = 4,
+    RT_REQUEUES_LONG_RAYS = 8,
+    RT_SPLITS_INCOHERENT = 16,
+    RT_BUILDS_GROUPS = 32
 };
-/* How the time of a ray grows with the number n of primitives: like log n, as with trees, or like n. Tests and benches leave out
- * structures of linear cost where a scene is large. */
 enum { RT_RAY_COST_LOGARITHMIC, RT_RAY_COST_LINEAR };
-
-/* There are two kinds of structures:
- * - One with slots and a traversal of its own. It has `build`, and may have `levels` and `pack`. `layout` and `topology` are NULL.
- * - One that builds only the topology of a binary tree. It has `layout` and `topology`. Another structure, the layout, packs that
- *   tree into its own nodes and traces it. All other pointers, slot_count, kernel_contract and capabilities are 0. */
 typedef struct rt_accel {
     rt_u32 struct_bytes;
-    rt_u32 kernel_contract; /* RT_KERNEL_CONTRACT: the version for which types and traverse were written */
-    rt_u32 slot_count, slot_bytes; /* slot_bytes: sizeof(rt_slot) */
+    rt_u32 kernel_contract;
+    rt_u32 slot_count, slot_bytes;
     const rt_slot *slots;
-    rt_cl_file types;    /* structs shared with the builder; text may be NULL */
-    rt_cl_file traverse; /* see cl/CONTRACT.md */
-    int32_t (*build)(const rt_host *, const rt_build_input *, const rt_build_output *); /* [worker thread] */
-    /* Bounding volumes of level n of one group's tree (0 = root, RT_LEVEL_BOTTOM = leaves), in the group's space. [any thread] */
-    int32_t (*levels)(const rt_host *, const rt_built *, rt_u32 group, rt_u32 level, const rt_volume_sink *); /* or NULL */
-    /* Fills the slots with the tree that another plugin built, instead of `build`. `params` of the input are this plugin's own, at
-     * their defaults. Leaves may be split, but not lose a ref. [worker thread] */
-    int32_t (*pack)(const rt_host *, const rt_build_input *, const rt_topology *, const rt_build_output *); /* or NULL */
-    const char *layout; /* id of a structure that has `pack`: "bvh2"; or NULL */
-    /* Builds a binary tree for each group. [worker thread] */
-    int32_t (*topology)(const rt_host *, const rt_build_input *, const rt_topology_output *); /* or NULL */
-    rt_u32 capabilities;        /* RT_TRAVERSES_STREAMS, ...: bits */
-    float merit_cpu, merit_gpu; /* primary and diffuse rays a second over usual scenes, divided by those of Clarity's binary BVH
-                                 * on a device of that kind; 0: not measured. If the user names no structure, the host takes the
-                                 * one of the highest merit. Among equal ones it takes the first by id. */
-    rt_u32 ray_cost;            /* RT_RAY_COST_LOGARITHMIC or RT_RAY_COST_LINEAR */
+    rt_cl_file types;
+    rt_cl_file traverse;
+    int32_t (*build)(const rt_host *, const rt_build_input *, const rt_build_output *);
+    int32_t (*levels)(const rt_host *, const rt_built *, rt_u32 group, rt_u32 level, const rt_volume_sink *);
+    int32_t (*pack)(const rt_host *, const rt_build_input *, const rt_topology *, const rt_build_output *);
+    const char *layout;
+    int32_t (*topology)(const rt_host *, const rt_build_input *, const rt_topology_output *);
+    rt_u32 capabilities;
+    float merit_cpu, merit_gpu;
+    rt_u32 ray_cost;
 } rt_accel;
-
-/* ---- importers ------------------------------------------------------------------------------------------------------------ */
-
-/* Strides are in bytes. The host copies all data before the call returns. Faces may have any number of corners. The host
- * triangulates them in order: flat convex ones as a fan from the first corner, bent or concave ones as scene/triangulate.hpp says.
- * It drops faces of fewer than three corners. */
 typedef struct rt_mesh {
     rt_u32 struct_bytes;
-    rt_u32 material;  /* RT_NONE: the default material */
-    const char *name; /* or NULL */
+    rt_u32 material;
+    const char *name;
     const float *positions;
     rt_u32 vertex_count, position_stride;
-    const float *normals; /* per vertex, or NULL */
+    const float *normals;
     rt_u32 normal_stride;
-    const float *uvs; /* per vertex, (0,0) at the bottom left; or NULL */
+    const float *uvs;
     rt_u32 uv_stride;
-    const rt_u32 *indices; /* corners of all faces, one after the other */
+    const rt_u32 *indices;
     uint64_t index_count;
-    const rt_u32 *face_sizes; /* corners of each face; NULL: all triangles */
+    const rt_u32 *face_sizes;
     uint64_t face_count;
-    const rt_u32 *face_materials; /* per face, ids that the sink's `material` returned; NULL: all have `material` */
+    const rt_u32 *face_materials;
 } rt_mesh;
-
 typedef struct rt_instance_desc {
     rt_u32 struct_bytes;
-    const char *name; /* or NULL */
-    rt_u32 mesh;      /* id that the sink's `mesh` returned */
-    rt_u32 material;  /* for the whole instance; RT_NONE: the mesh's own */
-    float world_from_object[12]; /* row-major 3x4 */
+    const char *name;
+    rt_u32 mesh;
+    rt_u32 material;
+    float world_from_object[12];
 } rt_instance_desc;
-
-/* Whitted's material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */
 typedef struct rt_material_desc {
     rt_u32 struct_bytes;
-    rt_u32 flags;      /* RT_MATERIAL_CHECKER, or 0 */
-    const char *name;  /* or NULL */
-    float color[3];    /* diffuse reflectance; also tints refracted light */
-    float reflect;     /* 0..1, mirror share */
-    float emission[3]; /* light added at each hit */
-    float refract;     /* 0..1, share that Fresnel's equations split into reflected and refracted light */
-    float specular[3]; /* colour of the Blinn-Phong highlight */
-    float shininess;   /* exponent of the highlight */
-    float ior;         /* index of refraction of the inside, 1.5 for glass */
-    rt_u32 texture;    /* id that the sink's `texture` returned, which multiplies color; RT_NONE: none */
+    rt_u32 flags;
+    const char *name;
+    float color[3];
+    float reflect;
+    float emission[3];
+    float refract;
+    float specular[3];
+    float shininess;
+    float ior;
+    rt_u32 texture;
 } rt_material_desc;
-
 typedef struct rt_texture_desc {
     rt_u32 struct_bytes;
-    const char *path;           /* relative to the file being imported; NULL: the image is in `bytes` */
-    const uint8_t *bytes;       /* encoded (PNG, JPEG, ...) if height is 0, else width x height RGBA8 */
+    const char *path;
+    const uint8_t *bytes;
     uint64_t byte_count;
     rt_u32 width, height;
 } rt_texture_desc;
-
 typedef struct rt_camera {
     rt_u32 struct_bytes;
-    const char *name; /* or NULL */
+    const char *name;
     float eye[3], target[3], up[3];
     float fov_y_rad;
 } rt_camera;
-
-/* A light without falloff. */
 typedef struct rt_light_desc {
     rt_u32 struct_bytes;
-    rt_u32 kind;        /* RT_LIGHT_POINT, RT_LIGHT_DIRECTIONAL */
-    const char *name;   /* or NULL */
-    float position[3];  /* of a point light */
-    float direction[3]; /* into which a directional light shines; need not be unit */
-    float color[3];     /* linear RGB, intensity included */
-    rt_u32 pad;         /* 0 */
+    rt_u32 kind;
+    const char *name;
+    float position[3];
+    float direction[3];
+    float color[3];
+    rt_u32 pad;
 } rt_light_desc;
-
 typedef struct rt_load {
     rt_u32 struct_bytes;
-    const char *path;            /* relative to the file being imported */
-    const char *name;            /* or NULL */
-    float world_from_object[12]; /* applied after the file's own transforms */
-    rt_u32 material;             /* for all of it, or RT_NONE */
-    const char *where;           /* place that names the file, for error messages: "main.scene:3:9"; or NULL */
+    const char *path;
+    const char *name;
+    float world_from_object[12];
+    rt_u32 material;
+    const char *where;
 } rt_load;
-
 typedef struct rt_scene_info {
     rt_u32 struct_bytes;
-    rt_u32 up_axis;    /* 0 X, 1 Y, 2 Z, as the file says; geometry is passed in the file's own axes */
-    double unit_scale; /* metres per unit of the file, as the file says; 0: it does not say */
-    const float *background; /* linear RGB, or NULL: the file does not say */
-    const float *ambient;    /* linear RGB, or NULL */
+    rt_u32 up_axis;
+    double unit_scale;
+    const float *background;
+    const float *ambient;
 } rt_scene_info;
-
-/* Calls that return an id copy their arguments. RT_NONE means that they failed and recorded the error: then return RT_FAILED. */
 typedef struct rt_scene_sink {
     rt_u32 struct_bytes;
     void *ctx;
-    rt_u32 (*texture)(void *ctx, const rt_texture_desc *); /* a missing or broken image is a warning: RT_NONE is no error here */
+    rt_u32 (*texture)(void *ctx, const rt_texture_desc *);
     rt_u32 (*material)(void *ctx, const rt_material_desc *);
     rt_u32 (*mesh)(void *ctx, const rt_mesh *);
     rt_u32 (*instance)(void *ctx, const rt_instance_desc *);
     rt_u32 (*sphere)(void *ctx, const float center[3], float radius, rt_u32 material);
     rt_u32 (*plane)(void *ctx, const float normal[3], float offset, rt_u32 material);
-    rt_u32 (*polygon)(void *ctx, const float *corners, rt_u32 corner_count, rt_u32 material); /* planar, 3 floats a corner */
+    rt_u32 (*polygon)(void *ctx, const float *corners, rt_u32 corner_count, rt_u32 material);
     rt_u32 (*light)(void *ctx, const rt_light_desc *);
     rt_u32 (*camera)(void *ctx, const rt_camera *);
     void (*info)(void *ctx, const rt_scene_info *);
-    void (*warn)(void *ctx, const char *text);         /* shown to the user, in `info` as warnings[] */
-    int32_t (*load)(void *ctx, const rt_load *);       /* imports another file; RT_OK, or RT_FAILED with the error recorded */
+    void (*warn)(void *ctx, const char *text);
+    int32_t (*load)(void *ctx, const rt_load *);
 } rt_scene_sink;
-
 typedef struct rt_importer {
     rt_u32 struct_bytes;
-    const char *const *extensions; /* lower case, no dot, NULL-terminated */
-    int32_t (*probe)(const uint8_t *head, uint64_t bytes); /* 0..100 certainty by the first bytes; or NULL: extension only */
+    const char *const *extensions;
+    int32_t (*probe)(const uint8_t *head, uint64_t bytes);
     int32_t (*load)(const rt_host *, const char *path, const double *params, const rt_scene_sink *);
 } rt_importer;
-
-/* ---- the description ------------------------------------------------------------------------------------------------------ */
-
-/* Something that a plugin offers beyond this file, such as refitting or building on the device. Extensions are frozen one by one,
- * each in a header of its own that names the struct behind `data`. Names without a dot belong to Clarity; it has none yet. A host
- * ignores extensions and versions that it does not know. */
 typedef struct rt_extension {
-    const char *name;  /* NULL ends the array */
+    const char *name;
     rt_u32 version;
-    rt_u32 data_bytes; /* size of *data, at least that of the version's first release */
+    rt_u32 data_bytes;
     const void *data;
 } rt_extension;
-
 typedef struct rt_plugin {
-    rt_u32 abi_version, struct_bytes, types_digest, param_count; /* first in every version */
-    const char *id, *name, *version, *reference; /* id: [a-z][a-z0-9_]*, also the prefix of its CL names; reference: paper, or NULL */
+    rt_u32 abi_version, struct_bytes, types_digest, param_count;
+    const char *id, *name, *version, *reference;
     const rt_param *params;
-    const rt_accel *accel; /* exactly one of the two is not NULL */
+    const rt_accel *accel;
     const rt_importer *importer;
-    const rt_extension *extensions; /* or NULL */
-    rt_u32 param_bytes, extension_bytes; /* sizeof(rt_param), sizeof(rt_extension) */
+    const rt_extension *extensions;
+    rt_u32 param_bytes, extension_bytes;
 } rt_plugin;
-
-RT_EXPORT extern const rt_plugin rt_plugin_v1; /* the only exported symbol; data, not code */
+RT_EXPORT extern const rt_plugin rt_plugin_v1;
 #ifdef __cplusplus
 }
 #endif
-#include "rt_digest.h" /* RT_TYPES_DIGEST */
+#include "rt_digest.h"
 #endif

@@ -1,7 +1,4 @@
-/* rt_shared.h -- the few types that host, plugins and kernels share. A plugin sees no other type of the kernels: all of this is
- * part of the plugin ABI (rt_plugin.h) and changes only with RT_ABI_VERSION.
- *
- * C99 subset, scalars and arrays only, as in rt_types.h. */
+/* rt_shared.h -- as it was when version 2 was frozen, without its comments. */
 #ifndef RT_SHARED_H
 #define RT_SHARED_H
 #ifdef __OPENCL_VERSION__
@@ -14,10 +11,7 @@ typedef uint32_t rt_u32;
 typedef int32_t rt_i32;
 typedef float rt_f32;
 #endif
-
 #define RT_NONE 0xFFFFFFFFu
-
-/* A ref names one primitive: its kind in the top 4 bits, its index within that kind in the low 28. */
 #define RT_REF_TRIANGLE 0x00000000u
 #define RT_REF_SPHERE 0x10000000u
 #define RT_REF_POLYGON 0x20000000u
@@ -25,25 +19,15 @@ typedef float rt_f32;
 #define RT_REF_KIND(r) ((r)&0xF0000000u)
 #define RT_REF_INDEX(r) ((r)&0x0FFFFFFFu)
 #define RT_REF_INDEX_MAX 0x0FFFFFFFu
-
-/* One primitive as the leaf tests read it, packed by the host in the leaf order that the builder chose. 48 B.
- *   triangle   a, b, c = corners in the group's space
- *   sphere     a = centre, b[0] = radius
- *   polygon    a = unit normal, b = a point of its plane; corners in rt_polygon
- *   instance   a, b = lower and upper bounds in the world */
 typedef struct rt_packed_prim {
     rt_f32 a[3];
     rt_u32 ref;
     rt_f32 b[3];
     rt_u32 material;
     rt_f32 c[3];
-    rt_u32 prim; /* number shown as `prim`; within an instance it counts from rt_instance.first_prim */
+    rt_u32 prim;
 } rt_packed_prim;
-
-/* Kinds of lights, in rt_light_desc and in the kernels' rt_light. */
 #define RT_LIGHT_POINT 0u
 #define RT_LIGHT_DIRECTIONAL 1u
-
-/* Flags of materials, in rt_material_desc and in the kernels' rt_material. */
-#define RT_MATERIAL_CHECKER 1u /* a unit checkerboard of color and a third of it, in world x and z; for planes */
+#define RT_MATERIAL_CHECKER 1u
 #endif

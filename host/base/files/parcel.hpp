@@ -1,4 +1,4 @@
-// packet.hpp -- values in a file in memory, by which the processes of a host give them to each other.
+// parcel.hpp -- values in a file in memory, by which the processes of a host give them to each other.
 //
 // Values stand one behind the other, without their names: writer and reader visit them in the same order. Plain data is
 // its bytes; a text is the number of its bytes (8 bytes) and its bytes; other containers are the number of their elements and
@@ -6,7 +6,7 @@
 // a multiple. So the large arrays of a file may be used where they lie.
 //
 // A struct says once which values it has, for writing and reading:
-//     template <class Packet, class Self> static void visit(Packet& packet, Self& self) { packet(self.name, self.numbers); }
+//     template <class Parcel, class Self> static void visit(Parcel& parcel, Self& self) { parcel(self.name, self.numbers); }
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -22,16 +22,16 @@
 namespace clarity {
 
 // A file that holds something else than what is read, or was cut.
-struct PacketDamaged : Error {
-    PacketDamaged() : Error(Exit::failed, "the shared memory is damaged") {}
+struct ParcelDamaged : Error {
+    ParcelDamaged() : Error(Exit::failed, "the shared memory is damaged") {}
 };
 
 namespace detail {
 
-template <class T, class Packet, class = void>
+template <class T, class Parcel, class = void>
 inline constexpr bool is_visited = false;
-template <class T, class Packet>
-inline constexpr bool is_visited<T, Packet, std::void_t<decltype(T::visit(std::declval<Packet&>(), std::declval<T&>()))>> =
+template <class T, class Parcel>
+inline constexpr bool is_visited<T, Parcel, std::void_t<decltype(T::visit(std::declval<Parcel&>(), std::declval<T&>()))>> =
     true;
 
 // Of plain elements that lie one behind the other.
@@ -67,13 +67,13 @@ void advise_large_pages(void* data, uint64_t bytes);
 
 }  // namespace detail
 
-inline constexpr uint64_t kPacketAlignment = 128;
+inline constexpr uint64_t kParcelAlignment = 128;
 
 // Writes into an empty file. All functions throw Error(failed).
-class PacketWriter {
+class ParcelWriter {
  public:
     static constexpr bool kWrites = true;
-    explicit PacketWriter(MemoryFile& file) : file_(file) {}
+    explicit ParcelWriter(MemoryFile& file) : file_(file) {}
     template <class... Values>
     void operator()(Values&&... values) {
         (put(values), ...);
@@ -87,7 +87,7 @@ class PacketWriter {
     template <class T>
     void put(T& value) {
         using Value = std::remove_const_t<T>;
-        if constexpr (detail::is_visited<Value, PacketWriter>) {
+        if constexpr (detail::is_visited<Value, ParcelWriter>) {
             Value::visit(*this, value);
         } else if constexpr (detail::is_pair<Value>) {
             put(value.first), put(value.second);
@@ -118,10 +118,10 @@ class PacketWriter {
     std::string waiting_;  // what follows them
 };
 
-// Reads what a PacketWriter wrote. The other process is not trusted: every size is compared with the file's, whose size must be
-// sealed, and each byte is read once, so that it does not matter if that process still writes. Functions throw PacketDamaged,
+// Reads what a ParcelWriter wrote. The other process is not trusted: every size is compared with the file's, whose size must be
+// sealed, and each byte is read once, so that it does not matter if that process still writes. Functions throw ParcelDamaged,
 // and Error(failed) if the file cannot be read.
-class PacketReader {
+class ParcelReader {
  public:
     static constexpr bool kWrites = false;
     enum class How {
@@ -129,7 +129,7 @@ class PacketReader {
         emptied,  // the file's memory goes back to the system behind the reading, so that large arrays are not held twice
         mapped    // a SharedArray refers to the file's memory. Only for a file that is sealed whole
     };
-    PacketReader(const MemoryFile& file, How how);
+    ParcelReader(const MemoryFile& file, How how);
     template <class... Values>
     void operator()(Values&... values) {
         (get(values), ...);
@@ -146,7 +146,7 @@ class PacketReader {
  private:
     template <class T>
     void get(T& value) {
-        if constexpr (detail::is_visited<T, PacketReader>) {
+        if constexpr (detail::is_visited<T, ParcelReader>) {
             T::visit(*this, value);
         } else if constexpr (detail::is_pair<T>) {
             get(value.first), get(value.second);
@@ -170,7 +170,7 @@ class PacketReader {
     void get_array(Array& array) {
         using Value = typename Array::value_type;
         const uint64_t count = begin_array();
-        if (count % sizeof(Value) != 0) throw PacketDamaged();
+        if (count % sizeof(Value) != 0) throw ParcelDamaged();
         if constexpr (detail::is_shared<Array>) {
             if (memory_)
                 array = Array::borrow(memory_, reinterpret_cast<const Value*>(borrow(count)), count / sizeof(Value));

@@ -1,4 +1,4 @@
-#include "placement.hpp"
+#include "stated_transform.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -25,7 +25,7 @@ std::array<double, 4> quaternion_about(const Vec3& unit_axis, double degrees) {
     return {s * unit_axis[0], s * unit_axis[1], s * unit_axis[2], std::cos(half)};
 }
 
-void Placement::rotate(const Vec3& unit_axis, float degrees) {
+void StatedTransform::rotate(const Vec3& unit_axis, float degrees) {
     const Rotation turn = rotation_about(unit_axis, double{degrees});
     Rotation product{};
     for (size_t row = 0; row < 3; ++row) {
@@ -40,7 +40,7 @@ void Placement::rotate(const Vec3& unit_axis, float degrees) {
                    a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]};
 }
 
-std::array<float, 12> Placement::world_from_object() const {
+std::array<float, 12> StatedTransform::world_from_object() const {
     std::array<float, 12> m{};
     for (size_t row = 0; row < 3; ++row) {
         for (size_t column = 0; column < 3; ++column) {

@@ -1,4 +1,4 @@
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr uint64_t kBytesAtOnce = uint64_t(4) << 20;
 
 uint64_t padding_at(uint64_t at) {
-    return (kPacketAlignment - at % kPacketAlignment) % kPacketAlignment;
+    return (kParcelAlignment - at % kParcelAlignment) % kParcelAlignment;
 }
 
 // The whole pages within a range of addresses or offsets.
@@ -34,22 +34,22 @@ void detail::advise_large_pages(void* data, uint64_t bytes) {
     if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 }
 
-void PacketWriter::append(const void* data, uint64_t count) {
+void ParcelWriter::append(const void* data, uint64_t count) {
     waiting_.append(static_cast<const char*>(data), count);
     if (waiting_.size() >= (size_t(64) << 10)) flush();
 }
 
-void PacketWriter::pad() {
+void ParcelWriter::pad() {
     waiting_.append(padding_at(at_ + waiting_.size()), '\0');
 }
 
-void PacketWriter::flush() {
+void ParcelWriter::flush() {
     file_.write_at(at_, waiting_.data(), waiting_.size());
     at_ += waiting_.size();
     waiting_.clear();
 }
 
-void PacketWriter::bytes(const void* data, uint64_t count, bool gives_back) {
+void ParcelWriter::bytes(const void* data, uint64_t count, bool gives_back) {
     plain(count);
     pad();
     if (count < 4096) {
@@ -71,22 +71,22 @@ void PacketWriter::bytes(const void* data, uint64_t count, bool gives_back) {
     pad();
 }
 
-void PacketWriter::finish() {
+void ParcelWriter::finish() {
     flush();
     file_.seal_size();
 }
 
-PacketReader::PacketReader(const MemoryFile& file, How how) : file_(file), how_(how), bytes_(file.bytes()) {
+ParcelReader::ParcelReader(const MemoryFile& file, How how) : file_(file), how_(how), bytes_(file.bytes()) {
     if (how == How::mapped ? !file.sealed() : !file.size_sealed()) throw Error(Exit::failed, "the shared memory is not sealed");
     if (how == How::mapped && bytes_ > 0) memory_ = map_file(file.fd(), bytes_);
 }
 
-uint64_t PacketReader::checked(uint64_t count) const {
-    if (count > bytes_ - at_) throw PacketDamaged();
+uint64_t ParcelReader::checked(uint64_t count) const {
+    if (count > bytes_ - at_) throw ParcelDamaged();
     return count;
 }
 
-void PacketReader::read(void* to, uint64_t count, bool of_array) {
+void ParcelReader::read(void* to, uint64_t count, bool of_array) {
     checked(count);
     if (count == 0) return;
     if (memory_)
@@ -101,29 +101,29 @@ void PacketReader::read(void* to, uint64_t count, bool of_array) {
     given_back_ = at_;
 }
 
-void PacketReader::skip_padding() {
+void ParcelReader::skip_padding() {
     at_ += checked(padding_at(at_));
 }
 
-uint64_t PacketReader::begin_array() {
+uint64_t ParcelReader::begin_array() {
     const uint64_t count = number();
     skip_padding();
     return checked(count);
 }
 
-void PacketReader::end_array() {
+void ParcelReader::end_array() {
     skip_padding();
 }
 
-const char* PacketReader::borrow(uint64_t count) {
+const char* ParcelReader::borrow(uint64_t count) {
     const char* const here = memory_.get() + at_;
     at_ += checked(count);
     end_array();
     return here;
 }
 
-void PacketReader::end() const {
-    if (at_ != bytes_) throw PacketDamaged();
+void ParcelReader::end() const {
+    if (at_ != bytes_) throw ParcelDamaged();
 }
 
 }  // namespace clarity

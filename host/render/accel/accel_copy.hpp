@@ -1,4 +1,4 @@
-// accel_copy.hpp -- copies of a finished structure, for structures that move.
+// accel_copy.hpp -- copies of a finished structure: for structures that move, and for kernels that are tried.
 #pragma once
 #include "render/accel/accel_build.hpp"
 

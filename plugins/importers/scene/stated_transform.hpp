@@ -1,4 +1,4 @@
-// placement.hpp -- the transform of a loaded file.
+// stated_transform.hpp -- the transform of a loaded file.
 #pragma once
 #include <array>
 
@@ -13,7 +13,7 @@ Rotation rotation_about(const Vec3& unit_axis, double degrees);
 std::array<double, 4> quaternion_about(const Vec3& unit_axis, double degrees);
 
 // First scale, then the rotations in their order, then the translation.
-class Placement {
+class StatedTransform {
  public:
     void scale(const Vec3& factors) { scale_ = factors; }
     void rotate(const Vec3& unit_axis, float degrees);

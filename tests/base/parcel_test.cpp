@@ -1,5 +1,5 @@
 // Values that pass through a file in memory arrive whole, or are refused.
-#include "base/files/packet.hpp"
+#include "base/files/parcel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ namespace {
 struct Part {
     std::string name;
     std::vector<double> numbers;
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.name, self.numbers);
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.name, self.numbers);
     }
     bool operator==(const Part& b) const { return name == b.name && numbers == b.numbers; }
 };
@@ -33,10 +33,10 @@ struct All {
     std::vector<Part> parts;
     std::vector<char> bytes;
     SharedArray<uint32_t> large;
-    template <class Packet, class Self>
-    static void visit(Packet& packet, Self& self) {
-        packet(self.number, self.flag, self.text, self.texts, self.flags, self.set, self.map, self.pairs, self.parts);
-        packet(self.bytes, self.large);
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.number, self.flag, self.text, self.texts, self.flags, self.set, self.map, self.pairs, self.parts);
+        parcel(self.bytes, self.large);
     }
 };
 
@@ -66,38 +66,38 @@ void expect_same(const All& a, const All& b) {
 }
 
 void write(MemoryFile& file, const All& all) {
-    PacketWriter packet(file);
-    packet(all);
-    packet.finish();
+    ParcelWriter parcel(file);
+    parcel(all);
+    parcel.finish();
 }
 
-TEST(Packet, EverythingArrivesHoweverItIsRead) {
+TEST(Parcel, EverythingArrivesHoweverItIsRead) {
     const All sent = sample();
     MemoryFile file;
     write(file, sent);
     file.seal();
-    for (const auto how : {PacketReader::How::copied, PacketReader::How::mapped}) {
-        PacketReader packet(file, how);
+    for (const auto how : {ParcelReader::How::copied, ParcelReader::How::mapped}) {
+        ParcelReader parcel(file, how);
         All got;
         got.texts = {"is replaced"};
-        packet(got);
-        packet.end();
+        parcel(got);
+        parcel.end();
         expect_same(got, sent);
-        EXPECT_EQ(got.large.is_sole_owner(), how == PacketReader::How::copied);
+        EXPECT_EQ(got.large.is_sole_owner(), how == ParcelReader::How::copied);
         EXPECT_EQ(reinterpret_cast<uintptr_t>(got.large.data()) % 4, 0u);
     }
 }
 
-TEST(Packet, WhatIsNotReadIsAFault) {
+TEST(Parcel, WhatIsNotReadIsAFault) {
     MemoryFile file;
     write(file, sample());
-    PacketReader packet(file, PacketReader::How::copied);
+    ParcelReader parcel(file, ParcelReader::How::copied);
     uint32_t number = 0;
-    packet(number);
-    EXPECT_THROW(packet.end(), PacketDamaged);
+    parcel(number);
+    EXPECT_THROW(parcel.end(), ParcelDamaged);
 }
 
-TEST(Packet, EveryCutAndEverySizeIsChecked) {
+TEST(Parcel, EveryCutAndEverySizeIsChecked) {
     All sent = sample();
     sent.large = {1, 2, 3};
     MemoryFile whole;
@@ -108,15 +108,15 @@ TEST(Packet, EveryCutAndEverySizeIsChecked) {
         MemoryFile file;
         file.write_at(0, bytes.data(), bytes.size());
         file.seal_size();
-        PacketReader packet(file, PacketReader::How::copied);
+        ParcelReader parcel(file, ParcelReader::How::copied);
         All got;
-        packet(got);
-        packet.end();
+        parcel(got);
+        parcel.end();
     };
     EXPECT_NO_THROW(read(all));
     for (size_t bytes = 0; bytes < all.size(); ++bytes) {
         const std::vector<char> cut(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(bytes));
-        EXPECT_THROW(read(cut), PacketDamaged) << bytes;
+        EXPECT_THROW(read(cut), ParcelDamaged) << bytes;
     }
     // Numbers that are as large as can be at every place: nothing of that size is asked for.
     int refused = 0;
@@ -125,20 +125,20 @@ TEST(Packet, EveryCutAndEverySizeIsChecked) {
         std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(at), 8, '\xff');
         try {
             read(damaged);
-        } catch (const PacketDamaged&) {
+        } catch (const ParcelDamaged&) {
             ++refused;
         }
     }
     EXPECT_GT(refused, 100);
 }
 
-TEST(Packet, AFileWhoseSizeMayChangeIsRefused) {
+TEST(Parcel, AFileWhoseSizeMayChangeIsRefused) {
     MemoryFile file;
     file.write_at(0, "abcd", 4);
-    EXPECT_THROW(PacketReader(file, PacketReader::How::copied), Error);
+    EXPECT_THROW(ParcelReader(file, ParcelReader::How::copied), Error);
     file.seal_size();
-    EXPECT_NO_THROW(PacketReader(file, PacketReader::How::copied));
-    EXPECT_THROW(PacketReader(file, PacketReader::How::mapped), Error) << "its content may change";
+    EXPECT_NO_THROW(ParcelReader(file, ParcelReader::How::copied));
+    EXPECT_THROW(ParcelReader(file, ParcelReader::How::mapped), Error) << "its content may change";
 }
 
 }  // namespace
