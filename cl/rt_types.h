@@ -94,6 +94,33 @@ typedef struct rt_emitter {
 #define RT_EMITTER_SURFACE 7u
 #define RT_EMITTER_SKY 8u
 
+/* What kernels are compiled for besides shapes and attributes, as bits of RT_LIGHTS and RT_LOBES. Lights: 1 << RT_LIGHT_* or
+ * 1 << RT_EMITTER_*, and whether some light has RT_LIGHT_FALLOFF. Lobes: how surfaces scatter in `path`, besides diffusely. */
+#define RT_LIGHTS_FADE (1u << 9)
+#define RT_LIGHTS_ALL 1023u
+#define RT_LOBE_MIRROR 1u
+#define RT_LOBE_METAL 2u
+#define RT_LOBE_GLASS 4u
+#define RT_LOBE_FROSTED 8u  /* rough glass */
+#define RT_LOBE_ABSORBS 16u /* glass that takes light on its way through */
+#define RT_LOBES_ALL 31u
+#ifdef __OPENCL_VERSION__
+#ifndef RT_LIGHTS
+#define RT_LIGHTS RT_LIGHTS_ALL
+#endif
+#ifndef RT_LOBES
+#define RT_LOBES RT_LOBES_ALL
+#endif
+#define RT_MAY_SHINE(kinds) ((RT_LIGHTS & (kinds)) != 0u) /* whether the scene has one of them */
+#define RT_MAY_SCATTER(lobes) ((RT_LOBES & (lobes)) != 0u)
+#endif
+#define RT_LIGHTS_PLAIN (1u << RT_LIGHT_POINT | 1u << RT_LIGHT_DIRECTIONAL) /* without RT_LIGHTS_FADE: as Whitted has them */
+#define RT_LIGHTS_POINTS (1u << RT_LIGHT_POINT | 1u << RT_LIGHT_SPOT)
+#define RT_LIGHTS_FLAT (1u << RT_LIGHT_RECT | 1u << RT_LIGHT_DISC)
+#define RT_LIGHTS_SOLID (RT_LIGHTS_FLAT | 1u << RT_LIGHT_SPHERE) /* they are somewhere, with a size */
+#define RT_LIGHTS_BEYOND (1u << RT_LIGHT_SUN | 1u << RT_EMITTER_SKY)
+#define RT_LIGHTS_GIVEN ((1u << RT_LIGHT_KINDS) - 1u) /* lights of the frame, of any kind */
+
 /* Primitives of consecutive numbers that are emitters of consecutive numbers, as many as up to the next run's first emitter. 8 B. */
 typedef struct rt_emitter_run {
     rt_u32 first_prim, first_emitter;

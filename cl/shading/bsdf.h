@@ -41,12 +41,18 @@ RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, vfloat mu)
     p.metal = b->metal * scale;
     p.glass = b->glass * scale;
     p.again = zero;
-    const vmask metal = rt_is_rough(b, b->metal) & b->compensate, glass = rt_is_rough(b, b->glass) & b->compensate;
+#if RT_MAY_SCATTER(RT_LOBE_METAL)
+    const vmask metal = rt_is_rough(b, b->metal) & b->compensate;
     if (rt_any(metal)) p.again = rt_select(metal, rt_lost_by_metal(mu, b->alpha), zero);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
+    const vmask glass = rt_is_rough(b, b->glass) & b->compensate;
     if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_glass(mu, b->alpha, b->eta), p.again);
+#endif
     return p;
 }
 
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
 /* Light that meets several facets of a dielectric: the share that goes through, and the mean losses of both sides. The shares of both
  * sides keep light reciprocal: through mean_here = eta^2 through' mean_there, as 1 - mean reflectance of the two sides do. */
 typedef struct rt_glass_again {
@@ -97,6 +103,7 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
     }
     return rt_choose(through, rt_scale(value, b->color), rt_vec_of(value, value, value));
 }
+#endif
 
 /* f(wo, wi) |cos wi| of the lobes that are no deltas. *pdf: the density with which rt_bsdf_draw() gives wi. Both are 0 in other lanes. */
 RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lanes, vfloat *pdf)
@@ -108,6 +115,7 @@ RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
     rt_vec f = rt_scale(rt_select(above, b->diffuse * cosine, zero), b->color);
     *pdf = rt_select(above, p.diffuse * cosine, zero);
 
+#if RT_MAY_SCATTER(RT_LOBE_METAL)
     const vmask rough = above & rt_is_rough(b, b->metal);
     if (rt_any(rough)) {
         const vfloat alpha = rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA));
@@ -132,6 +140,8 @@ RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
         f = rt_choose(rough, rt_along(b->metal, value, f), f);
         *pdf = rt_select(rough, fma(p.metal, density, *pdf), *pdf);
     }
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     const vmask frosted = lanes & RT_MASK(wo.z > zero) & RT_MASK(wi.z != zero) & rt_is_rough(b, b->glass);
     if (rt_any(frosted)) {
         vfloat density;
@@ -139,6 +149,7 @@ RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
         f = rt_choose(frosted, rt_along(b->glass, value, f), f);
         *pdf = rt_select(frosted, fma(p.glass, density, *pdf), *pdf);
     }
+#endif
     return f;
 }
 
@@ -162,9 +173,11 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
     rt_bsdf_sample s;
     /* The diffuse lobe comes first, then mirror, metal, glass. */
     vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + p.mirror + p.metal + p.glass > zero);
-    const vmask diffuse = rt_takes_lobe(left, p.diffuse, &u_lobe);
+    vmask diffuse = left, mirror = rt_vint(0);
+    /* A share that alone is 1 may be rounded. */
+    if (RT_LOBES != 0u) diffuse = rt_takes_lobe(left, rt_select(RT_MASK(p.mirror + p.metal + p.glass > zero), p.diffuse, one), &u_lobe);
     left &= ~diffuse;
-    const vmask mirror = rt_takes_lobe(left, p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
+    if (RT_MAY_SCATTER(RT_LOBE_MIRROR)) mirror = rt_takes_lobe(left, p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
     left &= ~mirror;
     const vmask metal = left & RT_MASK(p.metal > zero), glass = left & ~metal; /* no surface is both */
 
@@ -173,11 +186,11 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
     s.pdf = zero;
     s.delta = mirror | (smooth & (metal | glass));
     s.transmitted = rt_vint(0);
-    if (rt_any(s.delta)) {
+    if (RT_MAY_SCATTER(RT_LOBE_MIRROR | RT_LOBE_METAL | RT_LOBE_GLASS) && rt_any(s.delta)) {
         const vfloat share = rt_select(mirror, b->mirror / rt_max(p.mirror, rt_vfloat(1e-20f)), b->metal / rt_max(p.metal, rt_vfloat(1e-20f)));
         s.weight = rt_scale(share, rt_choose(mirror, rt_splat(1.0f, 1.0f, 1.0f), rt_fresnel_metal(b->color, wo.z)));
         s.pdf = rt_select(mirror, p.mirror, p.metal);
-        if (rt_any(glass & smooth)) {
+        if (RT_MAY_SCATTER(RT_LOBE_GLASS) && rt_any(glass & smooth)) {
             vfloat cos_out;
             const vfloat reflected = rt_fresnel_dielectric(wo.z, b->eta, &cos_out);
             const vfloat glass_share = b->glass / rt_max(p.glass, rt_vfloat(1e-20f));
@@ -196,15 +209,17 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
         const vmask facets = spread & ~diffuse & ~rt_takes_lobe(spread & ~diffuse, p.again, &u_lobe), frosted = spread & glass;
         rt_vec wi = rt_warp_cosine(u1, u2);
         vmask through = rt_vint(0);
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
         if (rt_any(frosted & ~facets)) {
             through = rt_takes_lobe(frosted & ~facets, rt_glass_again_of(b).through, &u_lobe);
             wi.z = rt_select(through, -wi.z, wi.z);
         }
-        if (rt_any(facets)) {
+#endif
+        if (RT_MAY_SCATTER(RT_LOBE_METAL | RT_LOBE_FROSTED) && rt_any(facets)) {
             const rt_vec h = rt_warp_visible_normal(wo, rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA)), u1, u2);
             const vfloat to_facet = rt_max(rt_dot(wo, h), zero);
             rt_vec along = rt_sub(rt_scale(to_facet + to_facet, h), wo);
-            if (rt_any(frosted & facets)) {
+            if (RT_MAY_SCATTER(RT_LOBE_FROSTED) && rt_any(frosted & facets)) {
                 vfloat cos_out;
                 const vfloat reflected = rt_fresnel_dielectric(to_facet, b->eta, &cos_out);
                 const vmask bent = frosted & facets & ~rt_takes_lobe(frosted & facets, reflected, &u_lobe);

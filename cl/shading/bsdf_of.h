@@ -2,8 +2,9 @@
 #ifndef RT_BSDF_OF_H
 #define RT_BSDF_OF_H
 
-/* The surfaces of the lanes in `bits`. entering: the ray comes from the side that the normal points to. at: the points, world. */
-RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask entering, uint bits, rt_vec at)
+/* The surfaces of the lanes in `bits`. entering: the ray comes from the side that the normal points to. around: ior on that side. at: the
+ * points, world. */
+RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask entering, vfloat around, uint bits, rt_vec at)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     rt_bsdf out;
@@ -22,22 +23,27 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
             diffuse = max(1.0f - m->reflect - m->refract, 0.0f);
             mirror = m->reflect;
             glass = m->refract;
-        } else {
+        } else if (RT_LOBES != 0u) {
             alpha = m->roughness * m->roughness;
             if (m->model == RT_MODEL_CONDUCTOR) metal = 1.0f;
             else glass = 1.0f;
-            /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
-            if (glass > 0.0f && fabs(m->ior - 1.0f) < 1e-3f) alpha = 0.0f;
         }
         out.color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out.color);
         out.diffuse = rt_select(mine, rt_vfloat(diffuse), out.diffuse);
+        if (RT_LOBES == 0u) continue;
         out.mirror = rt_select(mine, rt_vfloat(mirror), out.mirror);
         out.metal = rt_select(mine, rt_vfloat(metal), out.metal);
         out.glass = rt_select(mine, rt_vfloat(glass), out.glass);
         out.alpha = rt_select(mine, rt_vfloat(alpha > 0.0f ? max(alpha, RT_LEAST_ALPHA) : 0.0f), out.alpha);
-        out.eta = rt_select(mine, rt_select(entering, rt_vfloat(m->ior), rt_vfloat(1.0f / m->ior)), out.eta);
+        const vfloat ior = rt_vfloat(m->ior);
+        out.eta = rt_select(mine, rt_select(entering, ior / around, around / ior), out.eta);
         if (m->flags & RT_MATERIAL_SINGLE_SCATTER) out.compensate &= ~mine;
     }
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
+    /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
+    const vmask straight = RT_MASK(rt_max(out.eta, one / out.eta) < rt_vfloat(1.001f));
+    out.alpha = rt_select(RT_MASK(out.glass > zero) & straight, zero, out.alpha);
+#endif
     return out;
 }
 

@@ -10,13 +10,13 @@ RT_INLINE void rt_hit_lights(const rt_ctx *ctx, const constant rt_frame *frame, 
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const rt_vec origin = rt_vec_of(ray->ox, ray->oy, ray->oz), direction = rt_vec_of(ray->dx, ray->dy, ray->dz);
     *light = rt_vint(-1);
-    for (uint i = 0; i < frame->light_count; ++i) {
+    for (uint i = 0; RT_MAY_SHINE(RT_LIGHTS_SOLID) && i < frame->light_count; ++i) {
         const global rt_light *l = ctx->lights + i;
         if (l->kind < RT_LIGHT_RECT) continue;
         const rt_vec to = rt_sub(rt_spread(l->position), origin);
         vfloat distance;
         vmask meets;
-        if (l->kind == RT_LIGHT_SPHERE) {
+        if (RT_MAY_SHINE(1u << RT_LIGHT_SPHERE) && l->kind == RT_LIGHT_SPHERE) {
             vmask from_within;
             distance = rt_meet_sphere(to, rt_vfloat(l->radius), direction, &from_within);
             meets = RT_MASK(distance > zero);
@@ -54,7 +54,7 @@ RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfl
         mine &= lanes;
         const global rt_light *l = ctx->lights + i;
         vfloat density;
-        if (l->kind == RT_LIGHT_SPHERE) {
+        if (RT_MAY_SHINE(1u << RT_LIGHT_SPHERE) && l->kind == RT_LIGHT_SPHERE) {
             density = rt_sphere_density(rt_sub(rt_spread(l->position), rt_vec_of(ray->ox, ray->oy, ray->oz)), rt_vfloat(l->radius));
         } else {
             float u[3], v[3], n[3];

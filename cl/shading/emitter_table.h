@@ -115,7 +115,7 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
     RT_LIT(RT_LIT_RADIUS) = 0.0f;
     RT_LIT(RT_LIT_INNER) = RT_LIT(RT_LIT_OUTER) = 1.0f;
     RT_LIT_3(RT_LIT_COLOR, 0.0f, 0.0f, 0.0f);
-    if (kind < RT_LIGHT_KINDS) {
+    if (RT_MAY_SHINE(RT_LIGHTS_GIVEN) && kind < RT_LIGHT_KINDS) {
         const global rt_light *light = ctx->lights + e->at;
         *flags = light->flags;
         RT_LIT_3(RT_LIT_COLOR, light->color[0], light->color[1], light->color[2]);
@@ -127,8 +127,8 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
             u[k] = kind == RT_LIGHT_SPOT ? light->normal[k] : light->u[k];
             v[k] = light->v[k];
         }
-        if (kind == RT_LIGHT_DISC) rt_disc_axes(light->normal, light->radius, u, v);
-    } else if (kind == RT_EMITTER_SURFACE) {
+        if (RT_MAY_SHINE(1u << RT_LIGHT_DISC) && kind == RT_LIGHT_DISC) rt_disc_axes(light->normal, light->radius, u, v);
+    } else if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE) && kind == RT_EMITTER_SURFACE) {
         const global rt_packed_prim *leaf = ctx->leaves + e->at;
         uint number = leaf->material;
 #if RT_HAS_INSTANCES

@@ -25,6 +25,8 @@ typedef struct rt_light_sample {
 
 /* A shadow ray ends this share before an emitter, so that it does not hit the emitter itself. */
 #define RT_LIGHT_CLEARANCE 1e-4f
+/* What is drawn as a sphere: lights, and surfaces if primitives may be spheres. */
+#define RT_LIGHTS_SPHERES (1u << RT_LIGHT_SPHERE | (RT_HAS_SPHERES ? 1u << RT_EMITTER_SURFACE : 0u))
 /* Within this share of its radius^2 a point counts as on a sphere. */
 #define RT_SPHERE_SHELL 1e-5f
 
@@ -105,7 +107,7 @@ RT_INLINE vmask rt_draw_flat(const rt_lit *lit, rt_vec at, vfloat u1, vfloat u2,
     rt_warp_triangle(u1, u2, &s, &t);
     s = rt_select(rect, fma(two, u1, -one), s);
     t = rt_select(rect, fma(two, u2, -one), t);
-    if (rt_any(disc)) {
+    if (RT_MAY_SHINE(1u << RT_LIGHT_DISC) && rt_any(disc)) {
         vfloat x, y;
         rt_warp_disc(u1, u2, &x, &y);
         s = rt_select(disc, x, s);
@@ -131,11 +133,11 @@ RT_INLINE rt_vec rt_sky(const rt_ctx *ctx, const constant rt_frame *frame, rt_ve
     const vfloat zero = rt_vfloat(0.0f);
     vfloat density = zero;
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
-    if (lighting->sky_emitter != RT_NONE) {
+    if (RT_MAY_SHINE(1u << RT_EMITTER_SKY) && lighting->sky_emitter != RT_NONE) {
         sum = rt_sky_radiance(ctx, direction, lanes, &density);
         density *= rt_vfloat(ctx->emitters[lighting->sky_emitter].pick);
     }
-    if (lighting->sun_count != 0u)
+    if (RT_MAY_SHINE(1u << RT_LIGHT_SUN) && lighting->sun_count != 0u)
         for (uint i = 0; i < frame->light_count; ++i) {
             const global rt_light *sun = ctx->lights + i;
             if (sun->kind != RT_LIGHT_SUN) continue;
@@ -179,9 +181,10 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
     lanes &= RT_MASK(lit.pick > zero);
     out.light = lit.light;
     const vfloat legacy = rt_select(lit.falloff, one, rt_vfloat(RT_PI)); /* irradiance of lights without falloff: pi times color */
-#define RT_KIND(k) (lanes & RT_MASK(lit.kind == rt_vint((int)(k))))
+#define RT_KIND(k) (RT_MAY_SHINE(1u << (k)) ? lanes & RT_MASK(lit.kind == rt_vint((int)(k))) : rt_vint(0))
     const vmask spot = RT_KIND(RT_LIGHT_SPOT), point = spot | RT_KIND(RT_LIGHT_POINT);
-    const vmask flat = RT_KIND(RT_LIGHT_RECT) | RT_KIND(RT_LIGHT_DISC) | RT_KIND(RT_EMITTER_SURFACE), sphere = RT_KIND(RT_LIGHT_SPHERE);
+    const vmask flat = RT_KIND(RT_LIGHT_RECT) | RT_KIND(RT_LIGHT_DISC) | RT_KIND(RT_EMITTER_SURFACE);
+    const vmask sphere = RT_MAY_SHINE(RT_LIGHTS_SPHERES) ? lanes & RT_MASK(lit.kind == rt_vint((int)RT_LIGHT_SPHERE)) : rt_vint(0);
     vmask sun = RT_KIND(RT_LIGHT_SUN), directional = RT_KIND(RT_LIGHT_DIRECTIONAL);
     const vfloat sun_sin2 = rt_sun_sin2(lit.radius, lit.cos_outer);
     const vmask sharp = sun & RT_MASK(sun_sin2 <= zero);
@@ -191,7 +194,7 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
     vfloat density = one;
     out.delta = point | directional | sharp;
     out.valid = out.delta;
-    if (rt_any(point)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_POINTS) && rt_any(point)) {
         const rt_vec to = rt_sub(lit.p, at);
         const vfloat d2 = rt_dot(to, to), scale = rt_inverse_length(to);
         const rt_vec towards = rt_scale(scale, to);
@@ -203,11 +206,11 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
         light = rt_choose(point, rt_scale(strength, lit.color), light);
         out.valid &= ~point | RT_MASK(d2 > zero) & RT_MASK(strength > zero);
     }
-    if (rt_any(directional | sharp)) {
+    if (RT_MAY_SHINE(1u << RT_LIGHT_DIRECTIONAL | 1u << RT_LIGHT_SUN) && rt_any(directional | sharp)) {
         out.towards = rt_choose(directional | sharp, lit.p, out.towards);
         light = rt_choose(directional, rt_scale(legacy, lit.color), light);
     }
-    if (rt_any(flat)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_FLAT | 1u << RT_EMITTER_SURFACE) && rt_any(flat)) {
         rt_vec to;
         vfloat by_area;
         const vmask shines = flat & rt_draw_flat(&lit, at, lit.u1, u2, &to, &by_area);
@@ -217,7 +220,7 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
         density = rt_select(flat, by_area, density);
         out.valid |= shines;
     }
-    if (rt_any(sphere)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_SPHERES) && rt_any(sphere)) {
         const rt_vec to = rt_sub(lit.p, at);
         rt_vec direction;
         vmask from_within;
@@ -233,7 +236,7 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
         density = rt_select(sphere, by_cone, density);
         out.valid |= sphere & RT_MASK(distance > zero) & (lit.two_sided | ~from_within | rim);
     }
-    if (rt_any(far)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_BEYOND) && rt_any(far)) {
         rt_vec direction = rt_in_cone(lit.p, u1, u2, rt_versine(sun_sin2));
         if (rt_any(far & ~sun)) direction = rt_choose(sun, direction, rt_draw_sky(ctx, u1, u2));
         vfloat of_all;

@@ -1,5 +1,5 @@
 /* lost_glass_outside.h -- made by scripts/albedo_tables glass_outside, which says what the numbers are: 65535 is 1. */
-#ifndef RT_LOST_GLASS_OUTSIDE_H
+#if !defined(RT_LOST_GLASS_OUTSIDE_H) && RT_MAY_SCATTER(RT_LOBE_FROSTED)
 #define RT_LOST_GLASS_OUTSIDE_H
 
 constant ushort rt_lost_glass_outside[] = {

@@ -88,6 +88,7 @@ RT_INLINE vfloat rt_mix(vfloat a, vfloat b, vfloat share) { return fma(share, b 
 /* The tables' axis along the cosine: where alpha is small, the loss depends on mu / alpha. */
 RT_INLINE vfloat rt_facet_axis(vfloat mu, vfloat alpha) { return sqrt(mu * (rt_vfloat(1.0f) + alpha) / (mu + alpha)); }
 
+#if RT_MAY_SCATTER(RT_LOBE_METAL)
 /* The share of the light from a direction of cosine mu that a metal with F = 1 loses when light meets one facet only. */
 RT_CALLED vfloat rt_lost_by_metal(vfloat mu, vfloat alpha)
 {
@@ -103,6 +104,8 @@ RT_CALLED vfloat rt_lost_by_metal_mean(vfloat alpha)
     return rt_vfloat(RT_LOST_MEAN_SCALE) * alpha * sqrt(alpha) * rt_from_pair(rt_lost_metal_mean, r.low, r.share);
 }
 
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
 /* The tables' axis along the ior n: the root of (n - 1) / (n + 1), 1 at an ior of 10. eta may be n or 1 / n. */
 RT_INLINE rt_between rt_ior_nodes(vfloat eta)
 {
@@ -134,5 +137,6 @@ RT_CALLED vfloat rt_lost_by_glass_mean(vfloat alpha, vfloat eta)
                rt_from_either(rt_lost_glass_outside_mean, rt_lost_glass_inside_mean, inside, first + rt_vint(RT_GLASS_IORS), n.share), r.share);
     return rt_vfloat(RT_LOST_MEAN_SCALE) * alpha * sqrt(alpha) * mean;
 }
+#endif
 
 #endif

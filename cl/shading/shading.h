@@ -63,7 +63,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             const rt_vec above = rt_along(p->outward, p->geometric, p->at);
             rt_vec towards = rt_spread(light->position);
             vfloat distance = RT_INFINITY;
-            if (light->kind != RT_LIGHT_DIRECTIONAL && light->kind != RT_LIGHT_SUN) {
+            if (!RT_MAY_SHINE(1u << RT_LIGHT_DIRECTIONAL | 1u << RT_LIGHT_SUN) || (light->kind != RT_LIGHT_DIRECTIONAL && light->kind != RT_LIGHT_SUN)) {
                 towards = rt_sub(towards, above);
                 const vfloat scale = rt_inverse_length(towards);
                 distance = one / scale;
@@ -110,7 +110,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
                 highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
             }
             rt_vec color = rt_spread(light->color);
-            if (light->kind > RT_LIGHT_DIRECTIONAL || light->flags != 0u)
+            if (RT_MAY_SHINE(~RT_LIGHTS_PLAIN) && (light->kind > RT_LIGHT_DIRECTIONAL || light->flags != 0u))
                 color = rt_scale(rt_light_strength(light, rt_vec_of(rays[b].ox, rays[b].oy, rays[b].oz), towards), color);
             diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
             shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);

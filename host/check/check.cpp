@@ -24,9 +24,6 @@ namespace {
 constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;  // of a worker; the scenes are small
 // After so many deaths of its worker a phase ends: each endless loop costs its time limit.
 constexpr unsigned kMostDeaths = 3;
-// oclgrind takes seconds to minutes for the same rays, as the kernels are: it is cut after this processor time.
-constexpr double kAccesses_s = 60;
-constexpr const char* kAccessesCut = "cut after 60 s";
 
 // The checks were told to stop.
 struct Stopped {
@@ -223,13 +220,15 @@ class Run {
                 finish(result);
             };
             const auto begin = std::chrono::steady_clock::now();
+            const std::string accesses_cut = "cut after " + worker::in_words(options_.oclgrind_time_s);
             const std::function<std::string(const worker::WorkerProcess&)> stop_worker =
                 [&](const worker::WorkerProcess& process) {
                     std::string why = stop();
                     // On a busy machine its processor time grows slowly: then it has three times as long.
                     if (why.empty() && !log.empty() &&
-                        (process.processor_s() > kAccesses_s || seconds_since(begin) > 3 * kAccesses_s))
-                        why = kAccessesCut;
+                        (process.processor_s() > options_.oclgrind_time_s ||
+                         seconds_since(begin) > 3 * options_.oclgrind_time_s))
+                        why = accesses_cut;
                     return why;
                 };
             CheckRun run(record_.plugin->id, stop_worker, on_result);
@@ -241,7 +240,7 @@ class Run {
                 CheckResult result = run.current();
                 if (result.name.empty() || job.done.count(result.name)) return passed;
                 const std::string during = stopped.why + ", while " + run.step();
-                result.outcome = stopped.why == kAccessesCut
+                result.outcome = stopped.why == accesses_cut
                                      ? with_findings(Outcome::passed("no access outside of a buffer so far; " + during), log)
                                      : Outcome::skipped("cut by " + during);
                 finish(result);

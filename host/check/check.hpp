@@ -25,6 +25,7 @@ struct CheckOptions {
     bool list = false;                 // runs nothing: each check is a skipped result
     uint64_t seed = 0;                 // of random numbers: see seed.hpp
     double time_limit_s = 0;           // for one plugin; 0: none
+    double oclgrind_time_s = 60;       // processor time; it takes seconds to minutes for the same rays, as the kernels are
     bool stop_at_first = false;        // no check begins after one has failed
     // Of structures: the user's own scene, without shapes, and rays through it. Null: none.
     std::shared_ptr<const Scene> scene;

@@ -178,6 +178,43 @@ Scene bent(Scene regular) {
     return regular;
 }
 
+Scene sizes_scene(uint64_t seed) {
+    Maker make(seed);
+    make.soup({0, 0, 0}, 6, 1, 300);
+    make.place(make.mesh());
+    for (unsigned count = 1; count <= 20; ++count) {
+        make.soup({0, 0, 0}, 2, 1, count);
+        make.place(make.mesh(), placed({20 + 5 * float(count), 0, 5}, 0.3f * float(count), {1, 1, -1}));
+        make.scene.instances.back().apart = true;
+    }
+    for (int i = 0; i < 300; ++i) {
+        const float s = 1 + make.random(), h = 0.2f + make.random(), c = h * (2 * make.random() - 1);
+        make.triangle({-s, -s, -h}, {s, -s, h}, {-s, s, c});
+    }
+    make.place(make.mesh(), placed({-30, 0, 0}, 0.4f, {1, 2, 1}));
+    make.scene.instances.back().apart = true;
+    add_common_part(make, {0, 30, 0});
+    return std::move(make.scene);
+}
+
+Scene crowd_scene(unsigned count) {
+    Maker make;
+    make.box({-60, -60, -60}, {60, 60, 60});
+    for (unsigned i = 0; i < count; ++i) {
+        const float s = 1 + make.random();
+        const Point o = make.around({0, 0, 0}, 0.2f);
+        const auto corner = [&](int k) {  // in the plane where the coordinates add up to s and to those of o
+            Point p;
+            for (int j = 0; j < 3; ++j) p[j] = o[j] + (j == k ? 2 : -0.5f) * s;
+            return p;
+        };
+        make.triangle(corner(0), corner(1), corner(2));
+    }
+    make.place(make.mesh());
+    add_common_part(make, {30, 33, 31});
+    return std::move(make.scene);
+}
+
 Scene floor_scene() {
     Maker make;
     kPatchRows[0].fill(make);

@@ -25,4 +25,12 @@ Scene bent(Scene regular);
 // The first patch alone, a flat floor of 64 x 64 squares from 0 to 10, in the world itself.
 Scene floor_scene();
 
+// Trees of 1 to 20 triangles, each that of a mesh, and of 300 in the world; and 300 whose boxes have one centre, which no
+// builder can split by it. None hides another from close by.
+Scene sizes_scene(uint64_t seed = 0);
+
+// `count` triangles around the origin, and a room around them. The box of each holds a cube of 0.3 around the origin, but a ray
+// from there across (1, 1, 1) meets none of them: it enters all boxes and leaves and hits the room behind them.
+Scene crowd_scene(unsigned count);
+
 }  // namespace clarity::check

@@ -44,8 +44,8 @@ BenchRequest make_request(const BenchCommand& command) {
     }
     request.settings.insert(request.settings.end(), command.settings.begin(), command.settings.end());
     for (const auto& [key, value] : request.settings) {
-        const bool whole =
-            request.suites == std::vector<std::string>{"devices"} || request.suites == std::vector<std::string>{"mpi"};
+        const auto only = [&](const char* suite) { return request.suites == std::vector<std::string>{suite}; };
+        const bool whole = only("devices") || only("mpi") || only("light");
         if (key == "spp" && value != "1" && !whole)
             throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed; leave it out");
         if (key == "aov" && value != "color")
@@ -55,6 +55,7 @@ BenchRequest make_request(const BenchCommand& command) {
     request.max_triangles = command.max_triangles;
     if (!command.ranks.empty()) request.ranks = command.ranks;
     if (!command.mpirun.empty()) request.mpirun = command.mpirun;
+    request.reference = command.reference;
     request.time_limit_s = command.time_limit_s;
     request.baselines = !command.no_baselines;
     return request;
@@ -128,9 +129,9 @@ void write(const BenchCommand& command, const BenchReport& report, RowsFile* row
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && command.join_files.empty())
-        throw Error(
-            Exit::usage,
-            "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, mpi, moving, quick) or a scene file");
+        throw Error(Exit::usage,
+                    "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, mpi, light, moving, quick) or a "
+                    "scene file");
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {

@@ -19,6 +19,7 @@
 #include "check/check.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "device/device.hpp"
 #include "import/import.hpp"
 #include "render/edit/edit.hpp"
 #include "render/tracers/rays/ray_text.hpp"
@@ -350,6 +351,22 @@ std::shared_ptr<const Scene> own_scene(const PluginRegistry& plugins, const std:
     return scene;
 }
 
+// Refuses a device whose own faults would be taken for the plugins'.
+void expect_sound_compiler(const check::CheckOptions& options) {
+    const auto traces_nothing = [](const std::string& name) {
+        return name.rfind("builds", 0) == 0 || name.rfind("keys", 0) == 0;
+    };
+    if (!options.only.empty() && std::all_of(options.only.begin(), options.only.end(), traces_nothing)) return;
+    const DeviceInfo device = choose_device(options.device);
+    if (device.llvmpipe)
+        throw Error(
+            Exit::no_device,
+            device.name + " (" + device.platform +
+                ") is no device to check plugins on: it makes wrong code of some kernels, such as those of bvh4, and what "
+                "fails there may be its own fault; name another one with --device, as `clarity devices` lists them, or "
+                "check the builder alone with --only builds");
+}
+
 }  // namespace
 
 int run_check(const PluginRegistry& plugins, const CheckCommand& asked) {
@@ -365,6 +382,9 @@ int run_check(const PluginRegistry& plugins, const CheckCommand& asked) {
             libraries.emplace_back(std::move(record), name);
         }
     }
+    const bool runs_kernels = std::any_of(libraries.begin(), libraries.end(),
+                                          [](const auto& library) { return library.first.plugin->importer == nullptr; });
+    if (runs_kernels && !command.options.list) expect_sound_compiler(command.options);
     if (!command.options.report_folder.empty()) std::filesystem::create_directories(command.options.report_folder);
     if (!command.junit_file.empty()) check_writable(command.junit_file);
     Progress progress;

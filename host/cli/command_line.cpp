@@ -260,6 +260,10 @@ void add_check(CLI::App& app, CheckCommand& command) {
                           "Limit for the checks of one plugin; what is cut is not said to be right"))
         ->type_name("SECONDS")
         ->check(CLI::Range(1.0, 1e6));
+    single(app.add_option("--oclgrind-time", command.options.oclgrind_time_s,
+                          "Processor time for accesses.oclgrind, which then says that it was cut; default: 60"))
+        ->type_name("SECONDS")
+        ->check(CLI::Range(1.0, 1e6));
     app.add_flag("--stop-at-first", command.options.stop_at_first, "Begin no check after one has failed");
     app.add_option("--samples", command.options.samples,
                    "Of importers: files to read and to damage, or folders with files of its extensions; may be repeated")
@@ -298,7 +302,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("what", bench.what,
                    "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
                    "triangles), cpu (side by side with the best of each peer), devices (one picture by one, two, ... of "
-                   "--device), mpi (one picture by 1, 2, 4 processes that mpirun starts), moving (refits and rebuilds while "
+                   "--device), mpi (one picture by 1, 2, 4 processes that mpirun starts), light (paths of light: errors over "
+                   "samples and seconds), moving (refits and rebuilds while "
                    "all vertices move), quick (a minute); or scene files, with a "
                    "suite: instead of its own")
         ->type_name("SUITE|SCENE");
@@ -342,6 +347,11 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     single(app.add_option("--mpirun", bench.mpirun,
                           "Of suite mpi: what starts them, with its options; default: mpirun --bind-to none --oversubscribe"))
         ->type_name("COMMAND");
+    single(app.add_option(
+               "--reference", bench.reference,
+               "Of suite light: what should come out, .pfm, .exr or .png; default: a picture of 16 times as many samples"))
+        ->type_name("FILE")
+        ->check(CLI::ExistingFile);
     app.add_option("--search-path", bench.import.search_paths,
                    "A folder which the scene may read files from, besides its own; may be repeated")
         ->type_name("DIR")

@@ -119,6 +119,7 @@ struct BenchCommand {
     uint64_t max_triangles = 10'000'000;
     std::vector<unsigned> ranks;  // of suite mpi; empty: the suite's own
     std::string mpirun;           // the same
+    std::string reference;        // of suite light: a picture; "": one is rendered
     import::ImportOptions import;
     std::string text;  // the command line as typed
 };

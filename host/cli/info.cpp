@@ -17,6 +17,7 @@
 #include "import/sequence_reader.hpp"
 #include "render/edit/edit.hpp"
 #include "scene/emissive.hpp"
+#include "scene/light_kinds.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
@@ -44,6 +45,13 @@ uint64_t face_count(const Scene& scene) {
 std::map<std::string, uint64_t> shape_counts(const Scene& scene) {
     std::map<std::string, uint64_t> counts;
     for (const Shape& shape : scene.shapes) ++counts[scene.shape_kinds[shape.kind].id];
+    return counts;
+}
+
+// How many lights there are of each kind, by its name.
+std::map<std::string, uint64_t> light_counts(const Scene& scene) {
+    std::map<std::string, uint64_t> counts;
+    for (const Light& light : scene.lights) ++counts[light_kind_of(light.values).name];
     return counts;
 }
 
@@ -94,11 +102,13 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["materials"] = scene.materials.size();
     json["textures"] = scene.textures.size();
     json["lights"] = scene.lights.size();
+    json["light_kinds"] = Json::object();
+    for (const auto& [kind, count] : light_counts(scene)) json["light_kinds"][kind] = count;
     const EmissiveCounts emissive = count_emissive(scene);
-    json["emissive"] = {{"triangles", emissive.triangles},
-                        {"spheres", emissive.spheres},
-                        {"polygons", emissive.polygons},
-                        {"by_rays_alone", emissive.by_rays_alone()}};
+    json["emissive"] = {
+        {"triangles", emissive.triangles},           {"spheres", emissive.spheres}, {"polygons", emissive.polygons},
+        {"by_rays_alone", emissive.by_rays_alone()}, {"planes", emissive.planes},   {"shapes", emissive.shapes},
+        {"bent_polygons", emissive.bent_polygons}};
     json["sky"] = sky_text(scene.sky);
     json["cameras"] = scene.cameras.size();
     const Bounds bounds = scene.bounds();
@@ -157,13 +167,20 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("shapes", scene.shapes.size(), kinds);
     count_row("materials", scene.materials.size());
     count_row("textures", scene.textures.size());
-    count_row("lights", scene.lights.size());
+    kinds.clear();
+    for (const auto& [kind, count] : light_counts(scene)) kinds += ", " + grouped(count) + ' ' + kind;
+    count_row("lights", scene.lights.size(), kinds);
     const EmissiveCounts emissive = count_emissive(scene);
     count_row("emissive", emissive.triangles + emissive.spheres + emissive.polygons,
               " triangles, spheres and polygons that `path` draws light from");
-    count_row(
-        "emissive too", emissive.by_rays_alone(),
-        " planes, shapes and polygons that are not convex: `path` finds their light only where a ray hits them by chance");
+    std::string apart;
+    const auto add_apart = [&](uint64_t count, const std::string& one, const std::string& many) {
+        if (count > 0) apart += (apart.empty() ? "" : ", ") + grouped(count) + " " + noun(count, one, many);
+    };
+    add_apart(emissive.planes, "plane", "planes");
+    add_apart(emissive.shapes, "shape", "shapes");
+    add_apart(emissive.bent_polygons, "polygon that is not convex", "polygons that are not convex");
+    if (!apart.empty()) row("emissive too", apart + ": `path` finds their light only where a ray hits them by chance");
     if (scene.sky.values.kind != RT_NONE) row("sky", sky_text(scene.sky));
     count_row("cameras", scene.cameras.size());
     for (const Camera& camera : scene.cameras) {

@@ -39,7 +39,10 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     uint stack[BROKEN_STACK];
     uint top = 0, ref = root;
 #ifdef BROKEN_GIVES_UP
-    uint steps = 0;
+    uint steps_left = 100u;
+#endif
+#ifdef BROKEN_GIVES_UP_LATE
+    uint steps_left = 1000u;
 #endif
 #if defined(BROKEN_ANY_FORGETS_T_MAX) && RT_ANY_HIT
     hit->t = rt_select(RT_MASK(hit->t >= rt_vfloat(0.0f)), RT_INFINITY, hit->t);
@@ -75,8 +78,8 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #ifdef BROKEN_NOT_INSIDE
         if (node->count > 0u) inside &= rt_bits(RT_MASK(entry > ray->t_min)); /* leaves that hold the origin */
 #endif
-#ifdef BROKEN_GIVES_UP
-        if (++steps > 100u) return;
+#if defined(BROKEN_GIVES_UP) || defined(BROKEN_GIVES_UP_LATE)
+        if (steps_left-- == 0u) return;
 #endif
 #if defined(BROKEN_LANES_16_ANY) && RT_LANES == 16 && RT_ANY_HIT
         inside &= 0x7fffu;
@@ -110,6 +113,16 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #else
 #ifdef BROKEN_UNASKED_DEEP
                 if (top >= 3u)
+                    ++top;
+                else
+#endif
+#ifdef BROKEN_UNASKED_FROM_8
+                if (top >= 8u)
+                    ++top;
+                else
+#endif
+#ifdef BROKEN_UNASKED_ODD
+                if (top & 1u)
                     ++top;
                 else
 #endif

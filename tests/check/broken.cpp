@@ -60,11 +60,14 @@ constexpr Macro kMacros[] = {{"octant", "BROKEN_OCTANT"},
                              {"not_far", "BROKEN_NOT_FAR"},
                              {"not_inside", "BROKEN_NOT_INSIDE"},
                              {"gives_up", "BROKEN_GIVES_UP"},
+                             {"gives_up_late", "BROKEN_GIVES_UP_LATE"},
                              {"lanes_16_any", "BROKEN_LANES_16_ANY"},
                              {"unasked", "BROKEN_UNASKED"},
                              {"unasked_any", "BROKEN_UNASKED_ANY"},
                              {"unasked_mesh", "BROKEN_UNASKED_MESH"},
                              {"unasked_deep", "BROKEN_UNASKED_DEEP"},
+                             {"unasked_from_8", "BROKEN_UNASKED_FROM_8"},
+                             {"unasked_odd", "BROKEN_UNASKED_ODD"},
                              {"own_test", "BROKEN_OWN_TEST"},
                              {"cut_positions", "BROKEN_CUT_POSITIONS"},
                              {"reads_past_empty", "BROKEN_READS_PAST_EMPTY"}};
@@ -99,6 +102,9 @@ class Builder {
         const rt_u32 root = add_nodes(1);
         split(root, order.data(), rt_u32(order.size()), 1);
         if (g == 0) depth_of_world = depth;
+        for (size_t i = root; i < nodes.size() && is("last_short"); ++i)  // the last primitive is in no leaf's range
+            if (nodes[i].count > 1 && nodes[i].count != BROKEN_EMPTY && nodes[i].first + nodes[i].count == refs.size())
+                --nodes[i].count;
         return root;
     }
 
@@ -127,17 +133,19 @@ class Builder {
             nodes[at].box[k] = count ? box.lo[k] : FLT_MAX;
             nodes[at].box[3 + k] = count ? box.hi[k] : FLT_MAX;
         }
-        if (count <= most_) {
-            nodes[at].first = rt_u32(refs.size());
-            nodes[at].count = count ? count : BROKEN_EMPTY;
-            for (rt_u32 i = 0; i < count; ++i) refs.push_back(input_.prims[order[i]].ref);
-            return;
-        }
         // The median of the longest axis.
         int axis = 0;
         for (int k = 1; k < 3; ++k)
             if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
         const auto middle = [&](rt_u32 i) { return 0.5f * input_.prims[i].lo[axis] + 0.5f * input_.prims[i].hi[axis]; };
+        const bool one_centre = is("counts_of_8_bits") &&
+                                std::all_of(order, order + count, [&](rt_u32 i) { return middle(i) == middle(order[0]); });
+        if (count <= most_ || one_centre) {
+            nodes[at].first = rt_u32(refs.size());
+            nodes[at].count = count == 0 ? BROKEN_EMPTY : count > 255 ? count & 255u : count;
+            for (rt_u32 i = 0; i < count; ++i) refs.push_back(input_.prims[order[i]].ref);
+            return;
+        }
         std::sort(order, order + count, [&](rt_u32 x, rt_u32 y) {
             const float p = middle(x), q = middle(y);
             return p < q || (p == q && x < y);
@@ -315,7 +323,7 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
         }
         if (is("refit_costs_of_before"))
             out->cost(out->ctx, g, cost_before);
-        else
+        else if (g == 0 || !is("refit_costs_of_world"))
             out->cost(out->ctx, g, is("refit_constant_cost") ? 1.0 : cost_of(nodes, in->roots[g], end));
         if (is("refit_ignores_group") && g + 1 < in->group_count) nodes[in->roots[g + 1]].box[0] -= 1;
     }

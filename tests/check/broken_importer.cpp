@@ -105,10 +105,21 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     mesh.face_count = indices.size() / 3;
     rt_instance_desc instance{
         sizeof(rt_instance_desc), nullptr, 0, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0, nullptr};
-    static const rt_material_desc white = rt::material();
-    mesh.material = rt::id(sink_of->material(sink_of->ctx, &white));
+    // One material for each half of the triangles.
+    rt_material_desc white = rt::material();
+    rt_u32 halves[2];
+    for (int k = 0; k < 2; ++k) {
+        white.name = k ? "second" : "first";
+        halves[k] = rt::id(sink_of->material(sink_of->ctx, &white));
+    }
     if (is("material_again")) rt::id(sink_of->material(sink_of->ctx, &white));
+    std::vector<rt_u32> materials;
+    for (size_t t = 0; t < mesh.face_count; ++t) materials.push_back(halves[t >= mesh.face_count / 2]);
+    if (is("last_material")) materials.back() = halves[0];
+    mesh.face_materials = materials.data();
+    instance.name = is("loses_name") ? nullptr : "triangles";
     instance.mesh = rt::id(sink_of->mesh(sink_of->ctx, &mesh));
+    if (is("moves_instance") && count == 4) instance.world_from_object[3] = 0.25f;
     if (is("singular")) instance.world_from_object[10] = 0;
     if (is("first_differs") && imports++ == 0) instance.world_from_object[3] = 1e-3f;
     if (!is("no_instance")) rt::id(sink_of->instance(sink_of->ctx, &instance));

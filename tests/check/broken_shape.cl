@@ -5,7 +5,8 @@ enum {
     BROKEN_SHAPE_WRONG_UV, BROKEN_SHAPE_INEXACT, BROKEN_SHAPE_READS_BEYOND, BROKEN_SHAPE_LOOP, BROKEN_SHAPE_HOLE, BROKEN_SHAPE_NAN,
     BROKEN_SHAPE_LANES_8, BROKEN_SHAPE_ZERO_RADIUS,
     BROKEN_SHAPE_UV_SEAM, BROKEN_SHAPE_UV_OFF_CENTRE, BROKEN_SHAPE_UV_WORLD_CENTRE, BROKEN_SHAPE_UV_TWICE, BROKEN_SHAPE_UV_CONSTANT,
-    BROKEN_SHAPE_UV_ONE_DIRECTION, BROKEN_SHAPE_UV_STEPS, BROKEN_SHAPE_UV_HALVES, BROKEN_SHAPE_UV_NEVER_ENDS, BROKEN_SHAPE_UV_MIRRORED_HALF
+    BROKEN_SHAPE_UV_ONE_DIRECTION, BROKEN_SHAPE_UV_STEPS, BROKEN_SHAPE_UV_HALVES, BROKEN_SHAPE_UV_NEVER_ENDS, BROKEN_SHAPE_UV_MIRRORED_HALF,
+    BROKEN_SHAPE_AXIS, BROKEN_SHAPE_SLIM
 };
 
 /* The vector in the space where the ball has the radius 1. */
@@ -35,6 +36,8 @@ RT_INLINE vfloat broken_shape_hit(const global float *numbers, const global floa
     vfloat t = rt_select(takes_first, first, second);
     vmask hits = RT_MASK(room >= zero) & (defect == BROKEN_SHAPE_FORGETS_T_MIN ? RT_MASK(t == t) : RT_MASK(t >= ray->t_min));
     if (defect == BROKEN_SHAPE_ONE_SIDED) hits &= takes_first;
+    if (defect == BROKEN_SHAPE_AXIS) hits &= ~(RT_MASK(d.y == zero) & RT_MASK(d.z == zero));
+    if (defect == BROKEN_SHAPE_SLIM) hits &= RT_MASK(room > rt_vfloat(0.02f)); /* its outline is 1 % too small */
     if (defect == BROKEN_SHAPE_OCTANT)
         hits &= ~(RT_MASK(d.x < zero) & RT_MASK(d.y > zero) & RT_MASK(d.z < zero));
     if (defect == BROKEN_SHAPE_HOLE) /* no hits near the top for rays that come from above */

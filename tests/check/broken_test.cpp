@@ -51,6 +51,8 @@ const Defect kDefects[] = {
     {"root_of_another", "hits.instances", {"wrong"}},
     {"refs_of_another_group", "hits.instances", {"wrong"}},
     {"leaf_reaches_too_far", "hits.nested", {"behind the last leaf"}},  // the last leaf is one of the shells
+    {"last_short", "hits.each", {"hit nothing", "a leaf's last primitive"}},
+    {"counts_of_8_bits", "hits.each", {"hit nothing"}},
     {"leaf_far_outside", "hits.random", {"crashed (segmentation fault", "while tracing"}},
     {"leaf_off_by_three", "hits.random", {"wrong"}},
     // refits
@@ -110,12 +112,15 @@ const Defect kDefects[] = {
     {"culls_closely", "hits.decals", {"are lost when t_max is just behind them"}},
     {"culls_leaves", "hits.decals", {"behind the nearest", "begins before the nearest hit"}},
     {"gives_up", "hits.uneven", {"are wrong"}},
+    {"gives_up_late", "hits.crowd", {"are wrong", "gave up after a number of steps"}},
     {"lanes_16_any", "hits.random", {"any-hit", "but something is hit"}, "16"},
     // what must be asked
     {"unasked", "hits.pushes", {"it never asked RT_STACK_OK", "stack[BROKEN_STACK]"}},
     {"unasked_any", "hits.pushes", {"refuses every push", "any-hit queries"}},
     {"unasked_mesh", "hits.pushes", {"refuses every push", "nearest hits in meshes"}},
     {"unasked_deep", "hits.pushes", {"refuses all but the first 12 pushes", "one path down the tree"}},
+    {"unasked_from_8", "hits.pushes", {"refuses all but the first 12 pushes", "at many triangles whose boxes overlap"}},
+    {"unasked_odd", "hits.pushes", {"refuses all but the first 12 pushes"}},
     {"world_stack", "hits.stack", {"stack was full", "must hold the deepest tree"}},
     {"own_test", "hits.counts", {"tested none through the host"}},
     {"defines_lanes", "builds.sound", {"a define the name 'RT_LANES'", "are the host's"}},
@@ -132,6 +137,7 @@ const Defect kDefects[] = {
     {"node_far_outside", "hits.random", {"crashed", "beyond the end of slot broken_nodes", "element"}},
     {"refit_constant_cost", "builds.refit", {"the cost", "does not follow its boxes"}},
     {"refit_costs_of_before", "builds.refit", {"the cost", "does not follow its boxes"}},
+    {"refit_costs_of_world", "builds.refit", {"reports the cost of the world, but never that of group"}},
     {"refit_moves_leaves", "hits.refit", {"after a refit"}},
     {"build_after_refit", "hits.refit", {"after a refit and a new build"}},
 };

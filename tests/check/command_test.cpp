@@ -123,6 +123,14 @@ TEST_F(CheckCommand, WhatTheTimeLimitCutsIsNotRight) {
     EXPECT_NE(cut.out.find("cut by --time-limit: 1 s are over"), std::string::npos) << cut.out;
 }
 
+// A cut is no fault, and the line says what was done last.
+TEST_F(CheckCommand, OclgrindIsCutAfterItsTime) {
+    const ProgramResult cut = run_program({"check", "bvh2", "--only", "accesses", "--oclgrind-time", "1"});
+    if (cut.out.find("oclgrind is not installed") != std::string::npos) GTEST_SKIP() << "no oclgrind";
+    EXPECT_EQ(cut.exit_code, 0) << cut.out;
+    EXPECT_NE(cut.out.find("no access outside of a buffer so far; cut after 1 s, while "), std::string::npos) << cut.out;
+}
+
 TEST_F(CheckCommand, NothingThatWasCheckedIsNotRight) {
     const ProgramResult none = run("importer_none", {"--only", "imports.truth"});
     EXPECT_EQ(none.exit_code, 1);
@@ -146,12 +154,15 @@ TEST_F(CheckCommand, ATruthThatIsWrittenWronglySaysWhichKey) {
         return run("importer_none", {"--samples", sample_, "--only", "imports.truth"});
     };
     EXPECT_EQ(complaint(R"({"triangles": 2, "bbox": [[0, 0, 0], [1, 1, 1]]})").exit_code, 0);  // no area: that is not compared
-    for (const auto& [text, words] : {std::pair<const char*, const char*>{R"({"volumes": 1})", "states nothing about the file"},
-                                      {R"({"triangles": "two"})", "the key 'triangles' must be a number"},
-                                      {R"({"corners": [{"uv": [0, 0]}]})", "the key 'corners' must be"},
-                                      {R"({"corners": [{"at": [0, 0, 0], "nromal": [0, 0, 1]}]})", "not 'nromal'"},
-                                      {R"({"bbox": [0, 1]})", "the key 'bbox' must be"},
-                                      {"[", "must hold a JSON object"}}) {
+    for (const auto& [text, words] :
+         {std::pair<const char*, const char*>{R"({"volumes": 1})", "states nothing about the file"},
+          {R"({"triangles": "two"})", "the key 'triangles' must be a number"},
+          {R"({"corners": [{"uv": [0, 0]}]})", "the key 'corners' must be"},
+          {R"({"corners": [{"at": [0, 0, 0], "nromal": [0, 0, 1]}]})", "not 'nromal'"},
+          {R"({"instances": [{"triangles": 2}]})", "the key 'instances' must be of objects with the key name"},
+          {R"({"material_triangles": 2})", "the key 'material_triangles' must be an object"},
+          {R"({"bbox": [0, 1]})", "the key 'bbox' must be"},
+          {"[", "must hold a JSON object"}}) {
         const ProgramResult said = complaint(text);
         EXPECT_NE(said.exit_code, 0) << text;
         EXPECT_NE((said.out + said.err).find(words), std::string::npos) << text << "\n" << said.out << said.err;

@@ -21,7 +21,9 @@ class ImporterCheck : public testing::Test {
         scratch_.write("tetrahedron.tri",
                        "4\n0 0 0  0 1 0  1 0 0\n0 0 0  1 0 0  0 0 1\n0 0 0  0 0 1  0 1 0\n1 0 0  0 1 0  0 0 1\n");
         scratch_.write("tetrahedron.tri.json",
-                       R"({"triangles": 4, "volume": 0.16666667, "instance_count": 1, "material_count": 1,
+                       R"({"triangles": 4, "volume": 0.16666667, "instance_count": 1, "material_count": 2,
+            "material_triangles": {"first": 2, "second": 2},
+            "instances": [{"name": "triangles", "triangles": 4, "bbox": [[0, 0, 0], [1, 1, 1]]}],
             "corners": [{"at": [1, 0, 0], "normal": [0, 0, -1], "facing": [0, 0, -1], "uv": [1, 0]}, {"at": [0, 1, 0], "uv": [0, 1]}]})");
     }
     json results_of(const std::string& library, int exit_code, std::vector<std::string> words = {}) {
@@ -59,7 +61,10 @@ const Defect kDefects[] = {
     {"flips_normals", "imports.truth", {"the normal", "0 0 1", "there should be the normal 0 0 -1"}},
     {"turns_normals", "imports.truth", {"there should be the normal 0 0 -1"}},
     {"forgets_normals", "imports.truth", {"the normal none"}},
-    {"material_again", "imports.truth", {"has 2 materials, not 1"}},
+    {"material_again", "imports.truth", {"has 3 materials, not 2"}},
+    {"last_material", "imports.truth", {"has 3 triangles of the material 'first', not 2", "1 of 'second'"}},
+    {"loses_name", "imports.truth", {"has no instance with the name 'triangles'"}},
+    {"moves_instance", "imports.truth", {"has an instance 'triangles' that goes from 0.25 to 1.25 along x"}},
     // memory that nobody has written, and state
     {"border_normals", "imports.memory", {"memory that it has not written", "the normal of vertex"}},
     {"uv_of_stack", "imports.memory", {"memory that it has not written", "a texture coordinate of vertex 2"}},

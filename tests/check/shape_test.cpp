@@ -31,6 +31,8 @@ const Defect kDefects[] = {
     {"far_root", "hits.again", {"rays miss the surface"}},
     {"octant", "hits.again", {"direction signs (-,+,-)"}},
     {"one_sided", "hits.again", {"come from behind the surface"}},
+    {"axis", "hits.again", {"rays miss the surface"}},
+    {"slim", "hits.again", {"rays miss the surface"}},
     {"hole", "hits.again", {"rays miss the surface"}},
     {"loop", "hits.again", {"did not come to an end"}},
     {"reads_beyond", "hits.again", {"crashed (segmentation fault", "numbers of the shape"}},

@@ -51,7 +51,7 @@ PathPicture trace_paths(const Scene& scene, const View& view, unsigned samples, 
     const ScenePtr shared = shared_scene(scene);
     Workbench& bench = Workbench::get();
     Progress progress;
-    bench.frames().trace(*bench.prepare(shared, settings), settings, view, Samples(0, samples), false, progress);
+    bench.frames().trace(*bench.prepare(shared, settings, view), settings, view, Samples(0, samples), false, progress);
     PathPicture picture;
     picture.mean = bench.frames().read_values();
     // The film's second plane: cl/tracers/path/sum.h.

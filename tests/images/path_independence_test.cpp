@@ -63,8 +63,8 @@ class PathIndependence : public testing::Test {
         Workbench& bench = Workbench::get();
         Progress progress;
         for (unsigned sample = 0; sample < kSamples; sample += in_a_call)
-            bench.frames().trace(*bench.prepare(scene_, s), s, view_, Samples(sample, std::min(in_a_call, kSamples - sample)),
-                                 false, progress);
+            bench.frames().trace(*bench.prepare(scene_, s, view_), s, view_,
+                                 Samples(sample, std::min(in_a_call, kSamples - sample)), false, progress);
         return bench.frames().read_values();
     }
     const ScenePtr scene_ = every_kind();
@@ -95,7 +95,7 @@ TEST_F(PathIndependence, OfTheOrderOfRows) {
     const Settings s = settings({});
     const FloatImage one = picture({});
     Workbench& bench = Workbench::get();
-    const auto prepared = bench.prepare(scene_, s);
+    const auto prepared = bench.prepare(scene_, s, view_);
     Progress progress;
     SharedRows shared;
     shared.rows.resize(prepared->layout.groups_y(kHeight));
@@ -120,7 +120,7 @@ TEST_F(PathIndependence, GoesOnFromItsSums) {
     const FloatImage whole = picture({});
     const Settings s = settings({});
     Workbench& bench = Workbench::get();
-    const auto prepared = bench.prepare(scene_, s);
+    const auto prepared = bench.prepare(scene_, s, view_);
     Progress progress;
     FrameRenderer first(bench.shared_device()), second(bench.shared_device());
     first.trace(*prepared, s, view_, Samples(0, 2), false, progress);
@@ -154,7 +154,7 @@ TEST_F(PathIndependence, MeansOfAllLaneCountsAgree) {
         const Settings s = settings({{"lanes", lanes}, {"packet", "4x4"}});
         Workbench& bench = Workbench::get();
         Progress progress;
-        bench.frames().trace(*bench.prepare(scene_, s), s, view_, Samples(0, 16), false, progress);
+        bench.frames().trace(*bench.prepare(scene_, s, view_), s, view_, Samples(0, 16), false, progress);
         const FloatImage values = bench.frames().read_values();
         return std::accumulate(values.pixels.begin(), values.pixels.end(), 0.0) / double(values.pixels.size());
     };

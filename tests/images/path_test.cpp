@@ -163,7 +163,8 @@ TEST(Path, StatisticsAreThoseOfTheFilm) {
         all.insert(all.end(), base.begin(), base.end());
         const Settings settings = make_settings(all);
         const ScenePtr scene = shared_scene(sphere_over_floor());
-        bench.frames().trace(*bench.prepare(scene, settings), settings, floor_view(), Samples(0, 64), false, progress);
+        bench.frames().trace(*bench.prepare(scene, settings, floor_view()), settings, floor_view(), Samples(0, 64), false,
+                             progress);
         return bench.frames().read_values();
     };
     const FloatImage error = shown("error"), variance = shown("variance"), samples = shown("samples"), mis = shown("mis");

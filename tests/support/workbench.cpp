@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "render/settings/accel_choice.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity::test {
 namespace {
@@ -58,11 +59,17 @@ std::vector<std::string> Workbench::fast_accels() const {
 }
 
 std::shared_ptr<const Prepared> Workbench::prepare(const ScenePtr& scene, const Settings& settings) {
-    return preparer_.prepare(scene, settings, progress_);
+    Settings for_any = settings;
+    for_any.optics = {RT_LIGHTS_ALL, RT_LOBES_ALL};
+    return preparer_.prepare(scene, for_any, progress_);
+}
+
+std::shared_ptr<const Prepared> Workbench::prepare(const ScenePtr& scene, const Settings& settings, const View& view) {
+    return preparer_.prepare(scene, with_optics(settings, *scene, view), progress_);
 }
 
 FrameStats Workbench::trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample) {
-    return frames_.trace(*prepare(scene, settings), settings, view, sample, true, progress_);
+    return frames_.trace(*prepare(scene, settings, view), settings, view, sample, true, progress_);
 }
 
 FloatImage Workbench::values(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats) {

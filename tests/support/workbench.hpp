@@ -31,7 +31,9 @@ class Workbench {
     // The same without structures that test every primitive: on large scenes they would take minutes.
     std::vector<std::string> fast_accels() const;
 
+    // For views with any lights and surfaces, or for one view.
     std::shared_ptr<const Prepared> prepare(const ScenePtr& scene, const Settings& settings);
+    std::shared_ptr<const Prepared> prepare(const ScenePtr& scene, const Settings& settings, const View& view);
     // Traces one sample into frames().
     FrameStats trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample = 0);
     // The same, and returns the film's values as FrameRenderer::read_values() does.

@@ -88,6 +88,26 @@ TEST_F(Edits, AHandleMovesTheSelectedObject) {
     EXPECT_NEAR(window->state()["moved"][0]["translate"][0], by, 1e-6);
 }
 
+// Kernels are compiled for the lights and surfaces that a scene has. Others, which an edit brings, are compiled then.
+TEST_F(Edits, NewKindsOfLightsAndSurfacesAreShown) {
+    ASSERT_EQ(window->command("set tracer path"), "");
+    ASSERT_EQ(window->command("set spp 4"), "");
+    window->settle();
+    Pixels last = window->picture();
+    for (const char* edit : {"material.1.model conductor", "light.0 rect,0,3,4,1,0,0,0,0,1,9,9,9,true", "background 0,0,0",
+                             "material.2.emission 2,1,0"}) {
+        ASSERT_EQ(window->command("edit " + std::string(edit)), "");
+        window->settle();
+        EXPECT_EQ(window->state()["message"], "");
+        EXPECT_GT(difference(window->picture(), last, 1), 0.02) << edit;
+        last = window->picture();
+    }
+    expect_as_command();
+    window->key("ctrl+z");
+    window->settle();
+    EXPECT_GT(difference(window->picture(), last, 1), 0.02);
+}
+
 TEST_F(Edits, HiddenObjectsComeBackByARefit) {
     const Pixels before = window->picture();
     ASSERT_EQ(window->command("edit hide 1"), "");

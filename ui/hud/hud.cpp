@@ -187,6 +187,9 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
         if (const uint64_t dropped = picture->main.stats.dropped; dropped > 0)
             status_item(count_text(static_cast<double>(dropped)) + " " + noun(dropped, "ray") + " dropped", colors::kAmber,
                         "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");
+        if (const uint64_t broken = picture->main.stats.not_finite; broken > 0)
+            status_item(count_text(static_cast<double>(broken)) + " " + noun(broken, "sample") + " not finite", colors::kAmber,
+                        "they are no number, or infinite: the log says more");
         if (overlay.level()) {
             const std::string level =
                 *overlay.level() == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(*overlay.level() + 1);

@@ -14,6 +14,7 @@ bool same_where(const Settings& a, const Settings& b, const Counts& counts) {
 
 bool prepares_same(const Side& a, const Side& b) {
     return a.device == b.device && a.settings.accel == b.settings.accel && a.settings.accel_params == b.settings.accel_params &&
+           a.settings.optics == b.settings.optics &&
            same_where(a.settings, b.settings, [](const Setting& row) { return !row.at_once(); });
 }
 

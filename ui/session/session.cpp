@@ -10,6 +10,7 @@
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
+#include "render/view/view_optics.hpp"
 #include "ui/session/comparisons.hpp"
 
 namespace clarity::ui {
@@ -111,7 +112,11 @@ void Session::cancel() {
     files_revision_ = was.files_revision;
     // The prepared scene already has these settings, so there is nothing to request, unless its devices were closed meanwhile.
     posted_request_.reset();
-    if (!was_withdrawn) posted_request_ = desired_request();
+    if (was_withdrawn) return;
+    posted_request_ = desired_request();
+    // The view has been edited all the same, so kernels that know it are asked for again.
+    posted_request_->main.settings.optics = was.main.settings.optics;
+    if (was.other && posted_request_->other) posted_request_->other->settings.optics = was.other->settings.optics;
 }
 
 Settings& Session::settings_for(const std::string& key) {
@@ -143,8 +148,23 @@ PrepareRequest Session::desired_request() const {
         request.instances = desired.instances;
         request.apart = apart_;
         if (desired.pose.time_s) request.pose = desired.pose;
+        add_optics(request);
     }
     return request;
+}
+
+// Edits may bring lights and surfaces that the kernels do not know. Kernels that know more than is shown are kept.
+void Session::add_optics(PrepareRequest& request) const {
+    if (!ready_) return;
+    const View view = edited_view(desired).view;
+    const auto add = [&](Settings& settings, const Settings& prepared) {
+        settings.optics = prepared.optics;
+        if (!knows(settings, *ready_->loaded->scene, view))
+            settings.optics = settings.optics | optics_of(*ready_->loaded->scene, view, settings);
+    };
+    add(request.main.settings, ready_->request.main.settings);
+    if (request.other)
+        add(request.other->settings, (ready_->request.other ? *ready_->request.other : ready_->request.main).settings);
 }
 
 bool Session::is_posted(const PrepareRequest& request) const {
@@ -177,6 +197,7 @@ void Session::post_frame() {
     if (desired.other) job.other_settings = desired.other->settings;
     EditedView edited = edited_view(desired);
     job.view = visible_view(edited);
+    job.known = ready_->knows(job.view);
     job.camera_path = edited.follows_path ? std::move(edited.camera_path) : CameraPath();
     job.continuous = desired.continuous;
     job.resolution_scale = std::clamp(desired.resolution_scale, 0.05f, 4.0f);

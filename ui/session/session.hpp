@@ -141,6 +141,7 @@ class Session {
     void take_saved();
     void take_pick();
     PrepareRequest desired_request() const;
+    void add_optics(PrepareRequest& request) const;
     bool is_posted(const PrepareRequest& request) const;
     Preset desired_preset(EditedView base) const;
 

@@ -7,6 +7,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "ui/threads/picture_difference.hpp"
 #include "ui/threads/thread_priority.hpp"
@@ -66,7 +67,7 @@ bool FrameThread::idle() const {
 
 bool FrameThread::begun() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return !job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost() ||
+    return !job_.ready || !job_.known || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost() ||
            job_.revision == begun_revision_;
 }
 
@@ -129,7 +130,7 @@ std::vector<FrameThread::Saved> FrameThread::take_saved() {
 // Whether there is something to do, which sample is next, and whether it must be traced. The caller holds the lock.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     retrace = false;
-    if (!job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost()) return false;
+    if (!job_.ready || !job_.known || failed_ || released_ || job_.ready->withdrawn() || job_.ready->lost()) return false;
     const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
     const bool fresh = job_.revision != traced_revision_ || sharpen;
     sample = fresh ? 0 : samples_;
@@ -407,6 +408,10 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         picture->other = side_of(1, *job.ready->other, *on_other, *job.other_settings);
         ms += picture->other->frame_ms;
     }
+    uint64_t& broken = picture->main.stats.not_finite;
+    if (retrace && sample > 0 && last) broken += last->main.stats.not_finite;
+    if (broken > 0 && job.moving_fps <= 0 && std::exchange(told_revision_, job.revision) != job.revision)
+        log(LogLevel::error, not_finite_text(broken) + ". There may be more in the samples to come");
     picture->job.settings = picture->main.settings;
     picture->reduced = reduced;
     const bool same = shown && retrace && shown->job.revision == job.revision && shown->job.ready == job.ready &&

@@ -16,6 +16,7 @@ struct FrameJob {
     Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
     std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
     View view;
+    bool known = true;              // Ready::knows() the view; else nothing is traced
     double open_s = 0;              // motion blur: how long the shutter is open, of the clip's clock; 0: none
     CameraPath camera_path;         // that the view's camera is on, for motion blur; empty: it is on none
     uint64_t revision = 0;          // when it changes, the films start again from sample 0

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/launch/device_scene.hpp"
+#include "render/view/view_optics.hpp"
 #include "scene/motion/deform.hpp"
 
 namespace clarity::ui {
@@ -46,6 +47,10 @@ bool ReadySide::uses(const DeviceInfo& info) const {
     return std::any_of(devices.begin(), devices.end(), [&](const DeviceInfo& device) {
         return device.platform_index == info.platform_index && device.device_index == info.device_index;
     });
+}
+
+bool Ready::knows(const View& view) const {
+    return clarity::knows(main.settings, *scene, view) && (!other || clarity::knows(other->settings, *scene, view));
 }
 
 const Deformation* left_out(const Ready& ready, rt_u32 mesh) {

@@ -107,6 +107,8 @@ struct Ready {
     std::optional<ReadySide> other;
     // What motion blur needs of a side with these devices and settings. Used by the thread that traces. May be empty.
     std::function<MotionBlur::Source(const Devices&, const Settings&)> blur_source;
+    // Whether the kernels of both sides know the lights and surfaces of a view. If not, they are being compiled.
+    bool knows(const View& view) const;
     // Whether its devices were closed. Its picture can still be shown, but not traced.
     bool withdrawn() const { return main.loan->withdrawn() || (other && other->loan->withdrawn()); }
     // Whether the devices of a side are lost, so that they have to be opened anew.

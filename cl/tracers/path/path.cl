@@ -3,7 +3,7 @@
  * A lane whose path has ended takes the next pixel of the packet (state.h), so that all lanes have work until few pixels are
  * left. There is no queue of rays. A work-item of one lane does the same with the samples of its pixel. */
 
-/* film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's, 0 dropped rays, and full stacks.
+/* film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's, samples that are not finite, and full stacks.
  * distances: those of sample 0's camera rays, as in iterative.cl. */
 RT_PICTURE_KERNEL
 trace_path(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters, global float *distances,
@@ -16,14 +16,15 @@ trace_path(const constant rt_frame *frame, const uint first_group, global float4
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
         rt_tally tally = {0, 0, 0};
+        uint not_finite = 0;
         rt_path paths = rt_no_paths(frame);
         for (uint next = 0;;) {
             rt_refill(frame, origin, &paths, &next);
             if (!rt_any(paths.alive)) break;
             const vmask on = rt_trace_segment(&ctx, frame, &paths, distances + (size_t)number * rays, &tally);
-            rt_end_paths(frame, &paths, rt_bits(paths.alive & ~on), film);
+            rt_end_paths(frame, &paths, rt_bits(paths.alive & ~on), film, &not_finite);
             paths.alive = on;
         }
-        counters[number] = (uint4)(tally.shadow, tally.secondary, 0u, tally.overflow);
+        counters[number] = (uint4)(tally.shadow, tally.secondary, not_finite, tally.overflow);
     }
 }

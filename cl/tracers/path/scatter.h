@@ -77,19 +77,49 @@ RT_INLINE rt_vec rt_passed(const rt_path *p, vfloat distance)
     const vfloat way = -rt_min(distance, rt_vfloat(1e30f));
     return rt_vec_of(rt_exp(way * p->absorption.x), rt_exp(way * p->absorption.y), rt_exp(way * p->absorption.z));
 }
-RT_INLINE vmask rt_in_medium(const rt_path *p) { return RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)); }
-
-/* The medium of paths that go through a surface: that of the material inside, nothing outside. */
-RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, vmask lanes)
+RT_INLINE vmask rt_in_medium(const rt_path *p)
 {
+    return RT_MAY_SCATTER(RT_LOBE_ABSORBS) ? RT_MASK(rt_largest(p->absorption) > rt_vfloat(0.0f)) : rt_vint(0);
+}
+
+#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+/* Of the solids around a ray, the innermost apart from that of the surface's material: what is on the other side of its outside. */
+RT_INLINE vint rt_solid_around(const rt_path *p, const rt_surface *surface)
+{
+    return rt_select(RT_MASK(p->inside[0] == surface->material), p->inside[1], p->inside[0]);
+}
+
+/* The ior outside of a surface: that of the solid that it lies in, 1 if it lies in none. */
+RT_INLINE vfloat rt_ior_around(const rt_ctx *ctx, const rt_path *p, const rt_surface *surface, vmask lanes)
+{
+    const vint around = rt_solid_around(p, surface);
+    vfloat ior = rt_vfloat(1.0f);
     int id;
     vmask mine;
-    for (rt_groups g = rt_group_lanes(surface->material, rt_bits(lanes)); rt_next_group(&g, &id, &mine);) {
-        mine &= lanes;
-        const rt_vec inside = rt_choose(entering, rt_spread(ctx->materials[id].absorption), rt_splat(0.0f, 0.0f, 0.0f));
-        p->absorption = rt_choose(mine, inside, p->absorption);
-    }
+    for (rt_groups g = rt_group_lanes(around, rt_bits(lanes & RT_MASK(around >= rt_vint(0)))); rt_next_group(&g, &id, &mine);)
+        ior = rt_select(mine, rt_vfloat(ctx->materials[id].ior), ior);
+    return ior;
 }
+
+/* Paths go through a surface: they enter its solid, or leave it and are in the one around it again. */
+RT_INLINE void rt_change_medium(const rt_ctx *ctx, rt_path *p, const rt_surface *surface, vmask entering, vmask lanes)
+{
+    const vmask leaves = lanes & ~entering, enters = lanes & entering & ~RT_MASK(p->inside[0] == surface->material);
+    vmask found = rt_vint(0); /* the place of the solid that is left, or one further in */
+    for (int k = 0; k < RT_SOLIDS; ++k) {
+        found |= leaves & RT_MASK(p->inside[k] == surface->material);
+        p->inside[k] = rt_select(found, k + 1 < RT_SOLIDS ? p->inside[k + 1] : rt_vint(-1), p->inside[k]);
+    }
+    for (int k = RT_SOLIDS - 1; k > 0; --k) p->inside[k] = rt_select(enters, p->inside[k - 1], p->inside[k]);
+    p->inside[0] = rt_select(enters, surface->material, p->inside[0]);
+    if (!RT_MAY_SCATTER(RT_LOBE_ABSORBS)) return;
+    p->absorption = rt_choose(lanes, rt_splat(0.0f, 0.0f, 0.0f), p->absorption);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(p->inside[0], rt_bits(lanes & RT_MASK(p->inside[0] >= rt_vint(0)))); rt_next_group(&g, &id, &mine);)
+        p->absorption = rt_choose(mine & lanes, rt_spread(ctx->materials[id].absorption), p->absorption);
+}
+#endif
 
 /* Adds the light that arrives directly, by one shadow ray for each lane. */
 RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, rt_path *p, vmask lanes, const rt_meeting *m,
@@ -127,7 +157,7 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
         RT_TALLY_OVERFLOW(tally, &hit)
     }
     const vmask lit = asked & RT_MASK(hit.t >= zero);
-    if (rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
+    if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
     const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
@@ -158,7 +188,9 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     p->pdf = rt_select(on, s.pdf, p->pdf);
     p->sharp = rt_select(on, s.delta, p->sharp);
     p->scale = rt_select(on, scale, p->scale);
-    rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted);
+#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+    if (rt_any(on & s.transmitted)) rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted);
+#endif
     p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
     p->event += rt_vint(1);
 #ifdef RT_SPLITS_INCOHERENT
@@ -191,15 +223,15 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     vfloat t = hit.t;
     vint light;
     rt_hit_lights(ctx, frame, &ray, &t, &light);
-    if (rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
+    if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
     const vmask lights = p->alive & RT_MASK(light >= rt_vint(0)), hits = p->alive & ~lights & RT_MASK(hit.prim >= rt_vint(0));
     const vmask missed = p->alive & ~lights & ~hits;
     vfloat pdf;
-    if (rt_any(lights)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_SOLID) && rt_any(lights)) {
         const rt_vec found = rt_emission_of_light(ctx, &ray, t, light, lights, &pdf);
         rt_collect(frame, p, lights, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, light);
     }
-    if (rt_any(missed)) {
+    if (RT_MAY_SHINE(RT_LIGHTS_BEYOND) && rt_any(missed)) {
         const vmask seen = missed & RT_MASK(p->event == rt_vint(0));
         rt_vec found = rt_scale(rt_vfloat(0.0f), p->direction);
         if (rt_any(missed & ~seen)) {
@@ -214,8 +246,10 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
     rt_meeting m;
     m.point = rt_point_of(&ray, &surface, hits);
-    const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
-    rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
+    if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE)) {
+        const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
+        rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
+    }
 
     const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
     const uint scattered_bits = rt_bits(scattered);
@@ -223,7 +257,11 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     const rt_sampler sampler = rt_sampler_of(frame, p);
     rt_basis(m.point.normal, &m.s, &m.t);
     m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
-    m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, scattered_bits, m.point.at);
+    vfloat around = rt_vfloat(1.0f);
+#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+    around = rt_ior_around(ctx, p, &surface, scattered);
+#endif
+    m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, around, scattered_bits, m.point.at);
     if (ctx->lighting->emitter_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
     const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);
     tally->secondary += popcount(rt_bits(on));

@@ -4,6 +4,9 @@
 #ifndef RT_PATH_STATE_H
 #define RT_PATH_STATE_H
 
+/* The most solids within each other of which a path knows that it is inside. Of more it forgets the outermost. */
+#define RT_SOLIDS 4
+
 typedef struct rt_path {
     vmask alive;
     vint slot;         /* number of the pixel in the packet, block by block; -1: no pixel is left for this lane */
@@ -16,6 +19,9 @@ typedef struct rt_path {
     vfloat pdf;        /* density per solid angle with which the surface has drawn `direction` */
     vfloat scale;      /* by which entered glass makes the weight small */
     rt_vec absorption; /* of the medium around the ray, per unit of length */
+#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+    vint inside[RT_SOLIDS]; /* materials of the solids around the ray, the innermost first; -1: none */
+#endif
     vmask sharp;       /* there was no choice: the direction is the camera's, or that of a smooth mirror or glass */
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;       /* rt_surface.area where the ray starts */
@@ -104,6 +110,9 @@ RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *
     p->pdf = rt_select(begun, rt_vfloat(0.0f), p->pdf);
     p->scale = rt_select(begun, rt_vfloat(1.0f), p->scale);
     p->absorption = rt_choose(begun, rt_splat(0.0f, 0.0f, 0.0f), p->absorption);
+#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+    for (int k = 0; k < RT_SOLIDS; ++k) p->inside[k] = rt_select(begun, rt_vint(-1), p->inside[k]);
+#endif
     p->sharp |= begun;
 #ifdef RT_SPLITS_INCOHERENT
     p->area = rt_select(begun, RT_INFINITY, p->area);
@@ -123,14 +132,20 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
     p.direction = rt_splat(0.0f, 0.0f, 1.0f);
     p.pdf = rt_vfloat(0.0f);
     p.scale = rt_vfloat(1.0f);
+#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+    for (int k = 0; k < RT_SOLIDS; ++k) p.inside[k] = rt_vint(-1);
+#endif
 #ifdef RT_SPLITS_INCOHERENT
     p.area = RT_INFINITY;
 #endif
     return p;
 }
 
-/* Adds the light of paths that have ended to their pixels. */
-RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, uint bits, global float4 *film)
+/* Whether a number is infinite or none, by its bits: compilers may take isfinite() for granted. */
+RT_INLINE bool rt_is_broken(float x) { return (as_uint(x) & 0x7f800000u) == 0x7f800000u; }
+
+/* Adds the light of paths that have ended to their pixels. *not_finite: counts light that is no number, which is added all the same. */
+RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, uint bits, global float4 *film, uint *not_finite)
 {
     const size_t pixels = (size_t)frame->width * frame->height;
     float4 light[RT_LANES];
@@ -139,8 +154,10 @@ RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, ui
     rt_store(p->pixel, pixel);
     rt_store(p->sample, sample);
     for (uint l = 0; l < RT_LANES; ++l)
-        if (bits >> l & 1u)
+        if (bits >> l & 1u) {
             rt_add_sample(film, pixels, (size_t)pixel[l], light[l], frame->adds == 0u && sample[l] == (int)frame->sample);
+            *not_finite += rt_is_broken(light[l].x) || rt_is_broken(light[l].y) || rt_is_broken(light[l].z) ? 1u : 0u;
+        }
 }
 
 #endif

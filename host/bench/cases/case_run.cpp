@@ -4,6 +4,7 @@
 
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/baseline_entries.hpp"
+#include "bench/cases/light.hpp"
 #include "bench/cases/own_entries.hpp"
 #include "bench/run/bench.hpp"
 #include "render/settings/accel_choice.hpp"
@@ -67,6 +68,8 @@ class CaseRunner : CaseRun {
                 add_whitted(state_, entry, settings, held);
             else if (definition.measure == "moving")
                 add_moving(state_, entry, settings, held, variant.overlapped);
+            else if (definition.measure == "light")
+                add_light(state_, entry, settings, held, request.reference);
             else if (definition.measure == "dropped")
                 entry.finish = [=](BenchRecord& r) { count_rays(state_, r, settings, held, fixture.view()); };
             else

@@ -33,6 +33,7 @@ struct CaseState {
     Agreement agreement;
     const RaySet* rays = nullptr;         // of this case; null until one of our rows can trace them
     std::optional<WhittedScene> whitted;  // the frame that baselines render too; empty until one of our rows can render it
+    std::optional<FloatImage> light_reference;                    // of suite light; empty until the first row has it
     std::map<unsigned, std::shared_ptr<const RayBlocks>> packed;  // `rays` packed for each number of lanes
 };
 

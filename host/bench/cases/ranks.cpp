@@ -73,7 +73,7 @@ void send(pid_t group, int signal) {
 
 // Starts a program in a process group of its own, so that Ctrl-C reaches only us, and waits for its end. messages: a file for
 // its stdout and stderr.
-Ended run_program(std::vector<std::string> words, const std::string& messages, const Progress& progress) {
+Ended run_program(std::vector<std::string> words, const std::string& messages, const char* install, const Progress& progress) {
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
@@ -96,9 +96,7 @@ Ended run_program(std::vector<std::string> words, const std::string& messages, c
     const int error = posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&files);
-    if (error != 0)
-        throw Error(Exit::failed, words[0] + " cannot be started: " + std::strerror(error) +
-                                      "; install Open MPI (Debian: openmpi-bin), or name what starts ranks with --mpirun");
+    if (error != 0) throw Error(Exit::failed, words[0] + " cannot be started: " + std::strerror(error) + "; " + install);
     constexpr double kPatienceMs = 5000;  // mpirun ends the ranks when it gets SIGTERM
     Clock::time_point cancelled;
     for (bool asked = false;;) {
@@ -139,29 +137,20 @@ std::string words_of(const std::string& messages) {
     return printable(ours.empty() ? theirs : ours);
 }
 
-RankRunner::RankRunner(const std::string& mpirun, std::vector<std::string> render)
-    : folder_("clarity-ranks"), render_(std::move(render)) {
-    std::istringstream words(mpirun);
-    for (std::string word; words >> word;) mpirun_.push_back(word);
-    if (mpirun_.empty()) throw Error(Exit::usage, "--mpirun: name a program, as in --mpirun \"mpirun --oversubscribe\"");
-}
-
-RankRun RankRunner::run(unsigned ranks, const std::string& device, const Progress& progress) const {
-    const std::string stats = folder_.path() + "/stats.json", picture = folder_.path() + "/picture.pfm",
-                      messages = folder_.path() + "/messages";
+// Runs a command that ends in the words of `clarity render`, and waits. It gets options for statistics, picture and messages in
+// `folder`. what: names it in errors. install: what to do if its program cannot be started. Throws Error(failed) with the
+// program's last words, and Cancelled, after all that it has started has ended.
+RankRun run_render(std::vector<std::string> words, const std::string& folder, const std::string& what, const char* install,
+                   const Progress& progress) {
+    const std::string stats = folder + "/stats.json", picture = folder + "/picture.pfm", messages = folder + "/messages";
     unlink(stats.c_str());
     unlink(picture.c_str());
-    std::vector<std::string> words = mpirun_;
-    for (const std::string& word : {std::string("-n"), std::to_string(ranks), program_file().string(), std::string("render")})
+    for (const std::string& word : {std::string("-q"), std::string("-o"), picture, std::string("--stats"), stats})
         words.push_back(word);
-    words.insert(words.end(), render_.begin(), render_.end());
-    for (const std::string& word : {std::string("--mpi"), std::string("-q"), std::string("--device"), device, std::string("-o"),
-                                    picture, std::string("--stats"), stats})
-        words.push_back(word);
-    const Ended ended = run_program(words, messages, progress);
+    const Ended ended = run_program(words, messages, install, progress);
     if (!WIFEXITED(ended.status) || WEXITSTATUS(ended.status) != 0)
-        throw Error(Exit::failed, mpirun_[0] + " -n " + std::to_string(ranks) + ": " + cause(ended.status) +
-                                      words_of(read_file(messages, kMaxTextFileBytes, Exit::failed)));
+        throw Error(Exit::failed,
+                    what + ": " + cause(ended.status) + words_of(read_file(messages, kMaxTextFileBytes, Exit::failed)));
     RankRun run;
     run.whole_ms = ended.ms;
     try {
@@ -172,6 +161,23 @@ RankRun RankRunner::run(unsigned ranks, const std::string& device, const Progres
     run.picture = digest_of_file(picture);
     if (run.picture.empty()) throw Error(Exit::failed, picture + ": cannot be read");
     return run;
+}
+
+RankRunner::RankRunner(const std::string& mpirun, std::vector<std::string> render)
+    : folder_("clarity-ranks"), render_(std::move(render)) {
+    std::istringstream words(mpirun);
+    for (std::string word; words >> word;) mpirun_.push_back(word);
+    if (mpirun_.empty()) throw Error(Exit::usage, "--mpirun: name a program, as in --mpirun \"mpirun --oversubscribe\"");
+}
+
+RankRun RankRunner::run(unsigned ranks, const std::string& device, const Progress& progress) const {
+    std::vector<std::string> words = mpirun_;
+    for (const std::string& word : {std::string("-n"), std::to_string(ranks), program_file().string(), std::string("render")})
+        words.push_back(word);
+    words.insert(words.end(), render_.begin(), render_.end());
+    for (const std::string& word : {std::string("--mpi"), std::string("--device"), device}) words.push_back(word);
+    return run_render(words, folder_.path(), mpirun_[0] + " -n " + std::to_string(ranks),
+                      "install Open MPI (Debian: openmpi-bin), or name what starts ranks with --mpirun", progress);
 }
 
 using Json = nlohmann::json;
@@ -329,6 +335,43 @@ std::vector<BenchRecord> measure_ranks(const BenchScene& scene, const PluginRegi
                                  device_count(one, options.devices.size());
         rows.insert(rows.end(), own.begin(), own.end());
     }
+    return rows;
+}
+
+std::vector<BenchRecord> measure_start(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
+                                       const BenchCase& c, const BenchOptions& options, Progress& progress) {
+    std::vector<BenchRecord> rows;
+    std::unique_ptr<TemporaryFolder> kept;
+    const TemporaryFolder output("clarity-start");
+    for (const DeviceInfo& device : options.devices)
+        for (const Variant& variant : c.variants) {
+            if (!kept || variant.label.find("cold") != std::string::npos)
+                kept = std::make_unique<TemporaryFolder>("clarity-cold");
+            BenchRecord row = make_row(c);
+            row.scene = scene.name;
+            row.variant = variant.label;
+            describe(row, device);
+            std::vector<std::string> words = {"env"};
+            for (const char* name : {"XDG_CACHE_HOME", "POCL_CACHE_DIR", "CUDA_CACHE_PATH"})
+                words.push_back(std::string(name) + "=" + kept->path() + "/" + name);
+            for (const std::string& word :
+                 {program_file().string(), std::string("render"), std::string("--device"), device.id()})
+                words.push_back(word);
+            const std::vector<std::string> render = render_words(scene, plugins, request, variant, options.import);
+            words.insert(words.end(), render.begin(), render.end());
+            try {
+                const RankRun run = run_render(words, output.path(), variant.label, "install coreutils", progress);
+                describe(row, run.stats);
+                row.time_ms = summarize({run.stats.at("compile_ms").get<double>()});
+                row.wall_ms = summarize({run.whole_ms});
+            } catch (const Cancelled&) {
+                throw;
+            } catch (const std::exception& error) {
+                row.status = RowStatus::failed;
+                row.why = failure_text(error);
+            }
+            rows.push_back(std::move(row));
+        }
     return rows;
 }
 

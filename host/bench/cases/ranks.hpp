@@ -1,4 +1,5 @@
-// ranks.hpp -- measures one picture by one process, by two, and so on, which mpirun starts and which share it.
+// ranks.hpp -- starts the program anew: one picture by one process, by two, and so on, which mpirun starts and which share it;
+// first pictures.
 #pragma once
 #include "bench/run/bench.hpp"
 #include "bench/run/measure.hpp"
@@ -11,5 +12,11 @@ namespace clarity::bench {
 std::vector<BenchRecord> measure_ranks(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
                                        const BenchCase& c, const BenchOptions& options, const MeasureRules& rules,
                                        Progress& progress);
+
+// How long a first picture takes: the program is started anew for each variant, in their order. One whose label has "cold"
+// starts with empty folders for what is kept (ours, PoCL's, CUDA's), any other one with those of the variant before it. time_ms
+// is the part that compiles. Throws Cancelled.
+std::vector<BenchRecord> measure_start(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
+                                       const BenchCase& c, const BenchOptions& options, Progress& progress);
 
 }  // namespace clarity::bench

@@ -9,6 +9,7 @@
 #include "base/statistics.hpp"
 #include "bench/motion/motions.hpp"
 #include "device/cl_errors.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -66,7 +67,12 @@ Scene with_object(Scene scene) {
 
 MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device> device, const Scene& scene,
                            const Settings& settings, const View& view, Motion motion, Progress& progress)
-    : device_(std::move(device)), settings_(settings), view_(view), kind_(motion), kernels_(device_), frames_(device_) {
+    : device_(std::move(device)),
+      settings_(with_optics(settings, scene, view)),
+      view_(view),
+      kind_(motion),
+      kernels_(device_),
+      frames_(device_) {
     if (plays_clip()) rest_scene_ = std::make_shared<const Scene>(scene);
     scene_ = staged(scene);
     const bool waves = kind_ == Motion::wave_refitted || kind_ == Motion::wave_built;
@@ -74,7 +80,7 @@ MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device
     Preparer preparer(plugins, device_);
     prepared_ = preparer.prepare(scene_, settings_, progress);
     motion_ = std::make_unique<DeviceMover>(device_, scene_, prepared_->accel, prepared_->on_device, rest_scene_);
-    if (!motion_->cannot().empty()) throw Error(Exit::usage, motion_->cannot());
+    if (motion_->cannot()) throw Error(Exit::usage, motion_->cannot().text());
     if (builds() && !motion_->can_build()) throw Error(Exit::usage, "accel " + settings_.accel + " is not built by devices");
     const MovedOnDevice first = motion_->move(plays_clip() ? clip_pose(0)
                                               : waves      ? moved_pose(scene, "wave", 0.1)

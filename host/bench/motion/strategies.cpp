@@ -12,6 +12,7 @@
 #include "render/frame/preparer.hpp"
 #include "render/moving/follow/pose_follower.hpp"
 #include "render/moving/on_host/host_mover.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -84,7 +85,7 @@ class StrategiesCase : CaseRun {
             s.follower.built(from, scene, pose, s.accel, std::make_unique<HostMover>(scene, s.accel));
         }
         const double update_ms = ms_since(begin);
-        const auto prepared = preparer_.prepare(scene, settings_, progress, s.accel);
+        const auto prepared = preparer_.prepare(scene, with_optics(settings_, *scene, fixture.view()), progress, s.accel);
         s.last_trace_ms = trace_ms(*prepared);
         if (frame == 0) return;
         s.update_ms += update_ms;

@@ -21,11 +21,20 @@ std::string parts_text(const Json& parts) {
     return text;
 }
 
+// Errors by samples: "1 0.25; 4 0.125".
+std::string points_text(const Json& points) {
+    std::string text;
+    for (const Json& point : points)
+        text += (text.empty() ? "" : "; ") + point.at("samples").dump() + " " + point.at("rmse").dump();
+    return text;
+}
+
 // Values by their JSON pointers, "/run/clock_mhz/before".
 Json flat(const BenchReport& report, const BenchRecord& record) {
     Json json = record_json(report, record);
     json["kernels_ms"] = kernels_text(json["kernels_ms"]);
     for (const char* key : {"parts_ms", "within_ms"}) json[key] = parts_text(json[key]);
+    if (json["light"].is_object()) json["light"]["points"] = points_text(json["light"]["points"]);
     return json.flatten();
 }
 
@@ -37,6 +46,7 @@ std::vector<std::string> columns() {
     full.time_ms = full.wall_ms = {1, 1, 1, 1, 1, 1, 1, 1};
     full.analysis.present = true;
     full.speedup = {"embree", 1, 1, 1};
+    full.light.sampler = "sobol";
     report.records.push_back(full);
     std::vector<std::string> paths;
     const Json json = flat(report, full);

@@ -50,12 +50,28 @@ struct Played {
     double to_best = 0;                                // total_ms divided by that of the best fixed rule
 };
 
+// How the picture of a path tracer gets better with its samples, and what its program takes.
+struct LightRun {
+    struct Point {
+        unsigned samples = 0;
+        double ms = 0;  // by the host's clock, of all samples so far
+        double rmse = 0, trimmed_rmse = 0, relmse = 0;
+    };
+    std::string sampler, strategy;  // "": no such picture was measured
+    std::string reference;          // file, or what was rendered for it
+    double msamples_per_s = 0;      // million paths a second, median wall time
+    double slope = 0;               // of log RMSE over log samples; -0.5 of independent samples
+    std::vector<Point> points;
+    unsigned state_bytes = 0;                // of a path, in one lane; 0: not known
+    int registers = -1, spilled_bytes = -1;  // of a work-item; -1: the driver does not tell
+};
+
 struct BenchRecord {
     // ---- what was measured
-    std::string suite;      // thesis | packets | accel | scale | cpu | devices | mpi | quick
+    std::string suite;      // thesis | packets | accel | scale | cpu | devices | mpi | light | quick
     std::string case_name;  // "bunny/primary"; rows of one case were measured interleaved, so that they can be compared
     std::string scene;      // "bunny"
-    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | picture | ranks
+    std::string measure;    // as BenchCase::measure (suite.hpp)
     std::string variant;    // identifies a row within its case and device: "now", "then", "bvh2", "4x4, lanes 16"
     std::string baseline;   // "" for our rows, else "embree packet16 high"
 
@@ -94,6 +110,7 @@ struct BenchRecord {
     Speedup speedup;
     Analysis analysis;
     Played animation;                                        // of suite policy
+    LightRun light;                                          // of suite light
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 
     Parts parts_ms;   // of ranks: they add up to the whole command

@@ -97,6 +97,38 @@ const Fields<Played>& played_fields() {
     return fields;
 }
 
+const Fields<LightRun>& light_fields() {
+    using Point = LightRun::Point;
+    static const Fields<Point> of_point = {plain("samples", &Point::samples), plain("ms", &Point::ms),
+                                           plain("rmse", &Point::rmse), plain("trimmed_rmse", &Point::trimmed_rmse),
+                                           plain("relmse", &Point::relmse)};
+    const auto if_told = [](const char* key, int LightRun::*member) {
+        Field<LightRun> field = plain(key, member);
+        field.write = [=](const LightRun& l) { return l.*member >= 0 ? Json(l.*member) : Json(); };
+        return field;
+    };
+    static const Fields<LightRun> fields = {plain("sampler", &LightRun::sampler),
+                                            plain("strategy", &LightRun::strategy),
+                                            plain("reference", &LightRun::reference),
+                                            unless_empty("msamples_per_s", &LightRun::msamples_per_s),
+                                            plain("slope", &LightRun::slope),
+                                            {"points",
+                                             [](const LightRun& l) {
+                                                 Json json = Json::array();
+                                                 for (const Point& point : l.points)
+                                                     json.push_back(write_fields(of_point, point));
+                                                 return json;
+                                             },
+                                             [](const Json& json, LightRun& l) {
+                                                 for (const Json& one : json)
+                                                     read_fields(one, of_point, l.points.emplace_back());
+                                             }},
+                                            unless_empty("state_bytes", &LightRun::state_bytes),
+                                            if_told("registers", &LightRun::registers),
+                                            if_told("spilled_bytes", &LightRun::spilled_bytes)};
+    return fields;
+}
+
 const Fields<BenchRecord>& rays_fields() {
     static const Fields<BenchRecord> fields = {plain("primary", &BenchRecord::rays_primary),
                                                plain("shadow", &BenchRecord::rays_shadow),
@@ -241,6 +273,7 @@ const Fields<BenchRecord>& record_fields() {
         count_of(unless_empty("sah_cost", &R::sah_cost, {"SAH", "SAH cost"})),
         nested<Speedup>("versus", &R::speedup, versus_fields, [](const Speedup& v) { return !v.baseline.empty(); }),
         nested<Played>("animation", &R::animation, played_fields, [](const Played& p) { return p.total_ms > 0; }),
+        nested<LightRun>("light", &R::light, light_fields, [](const LightRun& l) { return !l.sampler.empty(); }),
         count_of(nested<Analysis>("analysis", &R::analysis, analysis_fields, [](const Analysis& a) { return a.present; })),
         count_of(unless_empty("ranks", &R::ranks)),
         figure_of(unless_empty("efficiency", &R::efficiency)),

@@ -415,6 +415,42 @@ function scaleSection() {
     ];
 }
 
+function lightSection() {
+    const rows = records.filter(r => r.light && isOk(r));
+    const charts =
+        groups(rows, r => r.scene)
+            .flatMap(
+                scene => [['seconds', p => p.ms / 1000], ['samples a pixel', p => p.samples]].map(
+                    ([unit, x]) => curveChart(
+                        scene[0].scene, 'RMSE', unit,
+                        scene.map(
+                            r => ({label: label(r), color: color(r), points: r.light.points.map(p => ({x: x(p), y: p.rmse}))})))));
+    const told = n => n === null ? 'not told' : String(n);
+    const starts = records.filter(r => r.measure === 'start' && isOk(r));
+    return (rows.length > 0 || starts.length > 0) && [
+        el('p', {},
+           'Pictures by paths of light, and their errors against a reference. With independent random numbers RMSE falls with the ' +
+               'square root of the samples, a slope of \u22120.5; numbers that are spread evenly make it fall faster.'),
+        grid(charts),
+        rows.length > 0 &&
+            table(
+                ['scene', 'series', 'samples', 'RMSE', 'relMSE', 'slope', 'Msamples/s', 'bytes a path', 'registers', 'spilled bytes'], 2,
+                rows.map(r => {
+                    const l = r.light, last = l.points[l.points.length - 1];
+                    return [
+                        r.scene, label(r), String(last.samples), figure(last.rmse), figure(last.relmse), figure(l.slope),
+                        figureOrNothing(l.msamples_per_s), figureOrNothing(l.state_bytes), told(l.registers), told(l.spilled_bytes)
+                    ];
+                })),
+        starts.length > 0 &&
+            table(
+                ['scene', 'first picture', 'of that compiling, s', 'in all, s'], 2,
+                starts.map(
+                    r =>
+                        [r.scene, label(r), figure(times(r, 'time_ms').p50 / 1000), figure(times(r, 'wall_ms').p50 / 1000)]))
+    ];
+}
+
 function analysisSection() {
     const counted = groups(records.filter(r => r.analysis && isOk(r)), r => r.suite + '\n' + r.scene);
     const kind = r => ({primary: 'camera', reflection: 'mirrored'}[r.measure] || r.measure) + ' rays';
@@ -530,7 +566,7 @@ const kSections = [
     ['packets', 'Packets', 'Packets', packetsSection],
     ['structures', 'Structures and peers', 'Structures and peers', structuresSection],
     ['scale', 'How cost grows', 'How cost grows', scaleSection],
-    ['analysis', 'Why', 'Why: what the tracer did', analysisSection], ['left-out', 'Left out', 'Left out', leftOutSection],
+    ['light', 'Light', 'Paths of light', lightSection], ['analysis', 'Why', 'Why: what the tracer did', analysisSection], ['left-out', 'Left out', 'Left out', leftOutSection],
     ['machine', 'Machine and method', 'Machine and method', machineSection]
 ];
 const sections = kSections.map(([id, link, title, make]) => ({id, link, title, content: make()})).filter(s => s.content);

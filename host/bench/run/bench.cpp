@@ -29,6 +29,12 @@ std::string row_text(const BenchRecord& row) {
     if (row.measure == "dropped")
         std::snprintf(text, sizeof text, "%llu of %llu rays dropped", static_cast<unsigned long long>(row.rays_dropped),
                       static_cast<unsigned long long>(row.rays_dropped + row.rays_secondary));
+    else if (row.measure == "start")
+        std::snprintf(text, sizeof text, "%.2f s, %.2f s of them compiling", row.wall_ms.median / 1000,
+                      row.time_ms.median / 1000);
+    else if (!row.light.points.empty())
+        std::snprintf(text, sizeof text, "%.3f Msamples/s, RMSE %.4g at %u samples", row.light.msamples_per_s,
+                      row.light.points.back().rmse, row.light.points.back().samples);
     else if (row.time_ms.n == 0)
         std::snprintf(text, sizeof text, "counted");
     else if (is_build(row))
@@ -45,6 +51,11 @@ std::string row_text(const BenchRecord& row) {
     if (row.time_ms.n > 0)
         std::snprintf(spread, sizeof spread, "  (n %u, spread %.1f %%)", row.time_ms.n, 100 * row.time_ms.spread());
     return "  " + row.name() + ": " + text + spread;
+}
+
+// Whether other processes read the scene of a case.
+bool reads_itself(const BenchCase& c) {
+    return c.measure == "ranks" || c.measure == "start";
 }
 
 // Measures the cases in their order. Each case gets an equal share of the time which is left.
@@ -71,7 +82,7 @@ class Session {
             char stage[32];
             std::snprintf(stage, sizeof stage, "%zu/%zu ", i + 1, suite_.cases.size());
             progress_.stage(stage + c.suite + " " + c.name);
-            if (c.scene != loaded && c.measure != "ranks") {  // ranks load it themselves
+            if (c.scene != loaded && !reads_itself(c)) {
                 if (!load(c, report)) {
                     while (i + 1 < suite_.cases.size() && suite_.cases[i + 1].scene == c.scene) ++i;
                     continue;
@@ -105,6 +116,8 @@ class Session {
     // reason.
     std::vector<BenchRecord> measure(const BenchCase& c, const MeasureRules& rules) {
         try {
+            if (c.measure == "start")
+                return measure_start(suite_.scenes[c.scene].source, plugins_, request_, c, options_, progress_);
             if (c.measure == "ranks")
                 return measure_ranks(suite_.scenes[c.scene].source, plugins_, request_, c, options_, rules, progress_);
             return run_case({fixture_, plugins_, request_, c, rules, progress_});

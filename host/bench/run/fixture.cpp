@@ -9,6 +9,7 @@
 #include "base/numbers.hpp"
 #include "bench/run/machine.hpp"
 #include "bench/suites/subdivide.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -91,7 +92,8 @@ void Fixture::load(const SuiteScene& scene, int width, int height, Progress& pro
 const Fixture::Held& Fixture::prepare(size_t device, const Settings& settings, Progress& progress) {
     Held& held = held_[key_of(device, settings)];
     if (!held.frames) {
-        held.prepared = places_[device]->preparer.prepare(loaded_.scene, settings, progress);
+        held.prepared =
+            places_[device]->preparer.prepare(loaded_.scene, with_optics(settings, *loaded_.scene, view()), progress);
         held.frames = std::make_shared<FrameRenderer>(places_[device]->device);
         held.queries = std::make_shared<RayQueries>(places_[device]->device);
     }
@@ -108,7 +110,7 @@ std::shared_ptr<const MultiPrepared> Fixture::prepare_all(const Settings& settin
         for (const auto& place : places_) devices.push_back(place->device);
         together_ = std::make_unique<MultiPreparer>(plugins_, devices);
     }
-    return together_->prepare(loaded_.scene, settings, progress);
+    return together_->prepare(loaded_.scene, with_optics(settings, *loaded_.scene, view()), progress);
 }
 
 const RaySet& Fixture::rays(const std::string& kind, const Held& held) {

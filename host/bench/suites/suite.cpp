@@ -108,12 +108,22 @@ class Planner {
                 if (word == "views" || view.scene.name == word) views.push_back(view);
             return views;
         }
-        const bool is_shared = word == "shared" || word == "dragon_871k";
-        const std::vector<BenchScene> scenes = is_shared          ? catalog_.shared()
-                                               : word == "thesis" ? catalog_.thesis()
-                                                                  : std::vector<BenchScene>{catalog_.project(word)};
-        for (const BenchScene& scene : scenes)
-            if (word != "dragon_871k" || scene.name == word || !scene.missing.empty()) views.push_back({scene, 0});
+        // One of the shared models; with "+ FILE", under the sky of that scene of the project.
+        static const std::vector<std::string> kOfShared = {"dragon_871k", "salle_de_bain + plaster_sky"};
+        const bool is_one = std::find(kOfShared.begin(), kOfShared.end(), word) != kOfShared.end();
+        const std::vector<BenchScene> scenes = word == "shared" || is_one ? catalog_.shared()
+                                               : word == "thesis"         ? catalog_.thesis()
+                                                                          : std::vector<BenchScene>{catalog_.project(word)};
+        const size_t plus = word.find(" + ");
+        for (BenchScene scene : scenes) {
+            if (is_one && scene.name != word.substr(0, plus) && scene.missing.empty()) continue;
+            if (plus != std::string::npos && scene.missing.empty()) {
+                const BenchScene sky = catalog_.project(word.substr(plus + 3));
+                scene.missing = sky.missing;
+                scene.files.insert(scene.files.end(), sky.files.begin(), sky.files.end());
+            }
+            views.push_back({scene, 0});
+        }
         return views;
     }
 
@@ -192,8 +202,11 @@ class Planner {
 
     // Sets what the user has not.
     void usual(Variant& variant, const char* key, const char* value) const {
-        const auto is_key = [&](const auto& pair) { return pair.first == key; };
-        if (std::none_of(request_.settings.begin(), request_.settings.end(), is_key)) variant.settings.emplace_back(key, value);
+        if (!sets(key)) variant.settings.emplace_back(key, value);
+    }
+    bool sets(const char* key) const {
+        return std::any_of(request_.settings.begin(), request_.settings.end(),
+                           [&](const auto& pair) { return pair.first == key; });
     }
 
     // Today's way and the thesis's, with a depth.
@@ -290,6 +303,34 @@ class Planner {
     // One picture by the ranks that mpirun starts.
     void mpi(size_t scene) { add_case(scene, "ranks", "ranks", pictures("1920x1080")); }
 
+    // Paths of light: errors over samples and seconds with either sampler, and the start of a program that nothing has
+    // compiled.
+    void light(size_t scene) {
+        std::vector<Variant> variants;
+        for (const Variant& structure : asked_or(""))
+            for (const char* sampler : {"independent", "sobol"}) {
+                Variant variant = structure;
+                const bool is_asked = sets("sampler");
+                const std::string what = is_asked ? "path" : sampler;
+                variant.label = variant.accel.empty() ? what : variant.accel + ", " + what;
+                variant.settings.emplace_back("tracer", "path");
+                usual(variant, "sampler", sampler);
+                usual(variant, "size", "256x256");
+                usual(variant, "spp", "64");
+                usual(variant, "depth", "8");
+                variants.push_back(variant);
+                if (is_asked) break;
+            }
+        add_case(scene, "light", "light", variants);
+        if (request_.files.empty() && !is_own(scene, "showpiece_sky")) return;
+        BenchCase& start = add_case(scene, "start", "start");
+        start.timing = Timing::counted_only;
+        for (const char* tracer : {"iterative", "path"})
+            for (const char* label : {"cold", "warm"})
+                start.variants.push_back(
+                    {std::string(tracer) + ", " + label, main_accel(), {{"tracer", tracer}, {"size", "64x64"}, {"spp", "1"}}});
+    }
+
     // Models whose vertices all move. Structures that do not refit say so in their rows.
     void moving(size_t scene) {
         for (const std::string& motion : motion_names()) {
@@ -360,6 +401,12 @@ const std::vector<Planner::Row>& Planner::rows() {
         {"cpu", 1800, 150, {"shared", "views"}, {}, &Planner::cpu},
         {"devices", 0, 90, {"thesis/aim_100k", "shared"}, {}, &Planner::devices},
         {"mpi", 0, 120, {"thesis/aim_100k", "shared"}, {}, &Planner::mpi},
+        {"light",
+         0,
+         300,
+         {"cornell", "spheres_sky", "veach", "showpiece_sky", "salle_de_bain + plaster_sky"},
+         {},
+         &Planner::light},
         {"moving", 0, 240, {"thesis/aim_100k", "shared"}, {}, &Planner::moving},
         {"policy", 0, 600, {"thesis/models/skull"}, {}, &Planner::policy},
         {"quick", 55, 0, {"thesis/2_two_spheres", "thesis/6_2406_triangles", "thesis/models/skull"}, {}, &Planner::quick}};

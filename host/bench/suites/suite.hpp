@@ -21,6 +21,7 @@ struct BenchRequest {
     uint64_t max_triangles = 10'000'000;                           // largest model of the suites scale and large
     double time_limit_s = 0;                                       // of the whole run; 0: the sum of the suites' own limits
     bool baselines = true;                                         // measure the baselines too
+    std::string reference;                                         // of suite light: a picture; "": one is rendered
 };
 
 struct SuiteScene {
@@ -45,7 +46,7 @@ enum class Timing { timed, counted_only };
 struct BenchCase {
     std::string suite, name;
     std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | picture |
-                          // ranks | moving | refit | rebuild | object | clip | play
+                          // ranks | light | start | moving | refit | rebuild | object | clip | play
     size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene

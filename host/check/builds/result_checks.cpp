@@ -249,6 +249,12 @@ std::string cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& p
     constexpr rt_u32 kLeast = 60;                  // primitives of a group
     for (rt_u32 g = 0; g < scene.groups.size(); ++g) {
         if (scene.groups[g].count < kLeast) continue;
+        const auto says = [g](const PosedCosts& pose) { return pose.costs[g] >= 0; };
+        if (std::any_of(poses.begin(), poses.end(), [](const PosedCosts& pose) { return pose.costs[0] >= 0; }) &&
+            std::none_of(poses.begin(), poses.end(), says))
+            return "a refit reports the cost of the world, but never that of group " + std::to_string(g) + " of " +
+                   std::to_string(scene.groups[g].count) +
+                   " primitives: the host would never build its tree again, however slow it became";
         for (const PosedCosts& a : poses)
             for (const PosedCosts& b : poses) {
                 if (a.costs[g] < 0 || b.costs[g] < 0 || b.surfaces[g] == 0 || std::isinf(b.costs[g])) continue;

@@ -13,7 +13,8 @@ namespace clarity::check {
 
 const TestScene kMixedScene{"the mixed scene", mixed_scene, ray_sets, rippled},
     kRegularScene{"the scene of tessellations", regular_scene, regular_ray_sets, bent},
-    kFloorScene{"the floor", [](uint64_t) { return floor_scene(); }, floor_ray_sets};
+    kFloorScene{"the floor", [](uint64_t) { return floor_scene(); }, floor_ray_sets},
+    kSizesScene{"trees of all sizes", sizes_scene, each_ray_sets};
 
 namespace {
 

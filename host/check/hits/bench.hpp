@@ -28,7 +28,7 @@ struct TestScene {
     Scene (*moved)(Scene scene) = nullptr;  // in another pose
     double limit_s = kTraceLimit_s;         // for a build, for a set of rays, and for what 64 of them hit
 };
-extern const TestScene kMixedScene, kRegularScene, kFloorScene;
+extern const TestScene kMixedScene, kRegularScene, kFloorScene, kSizesScene;
 
 using OpenDevice = std::function<std::shared_ptr<Device>()>;
 

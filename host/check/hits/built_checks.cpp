@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <ctime>
+#include <functional>
+#include <set>
 
 #include "check/builds/parameter_tries.hpp"
 #include "check/hits/ray_maker.hpp"
@@ -12,7 +14,7 @@ namespace {
 
 constexpr size_t kBuiltRays = 400;  // of a set
 // Processor time for the compilation of kernels that differ in a define. What is cut is said.
-constexpr double kQuick_s = 8, kLong_s = 60;
+constexpr double kQuick_s = 6, kLong_s = 60;
 constexpr unsigned kLarge = 70000, kHuge = (1u << 20) + 4099;  // above 2^16 and 2^20
 
 double processor_s() {
@@ -27,7 +29,8 @@ BenchInput few(BenchInput input) {
 }
 
 // Traces the mixed scene as it is built in one way after another, first where the program is there already: that of the default
-// defines, with each number of lanes in turn. Each further set of defines is compiled with one number of lanes, again in turn.
+// defines, with each number of lanes in turn. Each further set of defines is compiled with one number of lanes, which follows
+// from its values: so all checks compile it once.
 struct Case {
     std::string what;  // "bvh2,max_leaf=1"
     BuiltAs as;
@@ -47,13 +50,19 @@ Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, con
         left.push_back({one.what, std::move(bench), std::move(defines)});
     }
     size_t traced = 0;
-    std::map<std::map<std::string, rt_u32>, size_t> programs;  // the turn of each
+    std::set<std::map<std::string, rt_u32>> programs;
+    const auto turn_of = [](const std::map<std::string, rt_u32>& defines) {
+        std::string text;
+        for (const auto& [name, value] : defines) text += name + "=" + std::to_string(value) + " ";
+        return std::hash<std::string>()(text);
+    };
     for (; !left.empty() && processor_s() - begin < most; ++traced) {
         auto next = std::find_if(left.begin(), left.end(),
                                  [&](const Tried& t) { return t.defines == usual || programs.count(t.defines) > 0; });
         if (next == left.end()) next = left.begin();
         Bench& bench = *next->bench;
-        bench.take_turn(next->defines == usual ? traced : programs.emplace(next->defines, programs.size()).first->second, step);
+        programs.insert(next->defines);
+        bench.take_turn(next->defines == usual ? traced : turn_of(next->defines), step);
         Outcome outcome =
             trace_sets(bench, {"hits.random", "hits.instances", "hits.primitives", "hits.nested"}, "with " + next->what, step);
         if (outcome.kind == Outcome::Kind::failed) return outcome;

@@ -92,7 +92,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
     const BenchInput input{plugin, layout, open, options};
     const rt_plugin& tracer = layout ? *layout : plugin;
     const auto bench = std::make_shared<Bench>(input), regular = std::make_shared<Bench>(input, kRegularScene),
-               floor = std::make_shared<Bench>(input, kFloorScene);
+               floor = std::make_shared<Bench>(input, kFloorScene), sizes = std::make_shared<Bench>(input, kSizesScene);
     std::vector<Check> checks = {
         {"hits.kernels", "the kernels compile for each number of lanes, and define no name of the host",
          [=, &tracer](const Step& step) { return compile(*bench, tracer, step); }},
@@ -101,7 +101,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
         {"hits.pushes", "the traversal asks RT_STACK_OK before each push",
          [=](const Step& step) { return pushes_check(input, step); }},
         {"hits.counts", "primitives are tested by the host", [=](const Step& step) { return counts_check(input, step); }}};
-    for (const auto& of : {bench, floor, regular})
+    for (const auto& of : {sizes, bench, floor, regular})
         for (const RaySet& set : of->test().rays(BuildScene(), 0, 0)) {
             const std::string name = set.name;
             if (set.strange)
@@ -110,6 +110,8 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
                 checks.push_back({name, set.tried, [=](const Step& step) { return trace_set(*of, name, step); }});
         }
     checks.push_back(planes_check(input));
+    const RaySet crowd = crowd_ray_sets(BuildScene(), 0).front();
+    checks.push_back({crowd.name, crowd.tried, [=](const Step& step) { return crowd_check(input, step); }});
     for (Check& check : built_checks(input)) checks.push_back(std::move(check));
     checks.push_back(device_hits_check(plugin, layout, open));
     return checks;

@@ -23,5 +23,9 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t see
 // Rays into regular_scene() and floor_scene().
 std::vector<RaySet> regular_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
 std::vector<RaySet> floor_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
+// Into sizes_scene(): a short one at each triangle.
+std::vector<RaySet> each_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
+// Into crowd_scene(): some thirty rays, because each tests all primitives.
+std::vector<RaySet> crowd_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
 
 }  // namespace clarity::check

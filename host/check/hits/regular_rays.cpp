@@ -6,6 +6,7 @@
 #include "check/hits/ray_maker.hpp"
 #include "check/hits/ray_sets.hpp"
 #include "check/regular_scenes.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity::check {
 namespace {
@@ -184,6 +185,49 @@ std::vector<RaySet> floor_ray_sets(const BuildScene& scene, size_t count, uint64
     }
     sets.push_back(std::move(set));
     return sets;
+}
+
+std::vector<RaySet> each_ray_sets(const BuildScene& scene, size_t count, uint64_t) {
+    RaySet set{"hits.each",
+               "a short ray at each triangle of trees of 1 to 20, and of 300, also if their boxes have one centre",
+               {},
+               false,
+               "a leaf's last primitive, a small tree or a kind of leaf is left out"};
+    for (size_t i = 0; count > 0 && i <= scene.instances.size(); ++i) {  // the last one stands for the world
+        const bool world = i == scene.instances.size();
+        if (!world && scene.instances[i].hidden != 0) continue;
+        const rt_group& group = scene.groups[world ? 0 : scene.group_of_instance[i]];
+        const Affine m = world ? kIdentity : scene.world_from_object[i];
+        for (rt_u32 p = group.first; p < group.first + group.count; ++p) {
+            const rt_u32 ref = scene.prims[p].ref;
+            if (RT_REF_KIND(ref) != RT_REF_TRIANGLE) continue;
+            const rt_packed_prim& t = scene.triangles[RT_REF_INDEX(ref)];
+            const auto a = transform_point(m, t.a), b = transform_point(m, t.b), c = transform_point(m, t.c);
+            const Vec at = {a[0], a[1], a[2]}, ab = Vec{b[0], b[1], b[2]} - at, ac = Vec{c[0], c[1], c[2]} - at;
+            const Vec n = (p % 2 ? 1 : -1) * normalized(cross(ab, ac)), from = at + (1.0 / 3) * (ab + ac) - 0.01 * n;
+            rt_ray ray{{}, 0, {}, 0.02f};
+            for (size_t k = 0; k < 3; ++k)
+                ray.origin[k] = static_cast<float>(from[k]), ray.direction[k] = static_cast<float>(n[k]);
+            set.rays.push_back(ray);
+        }
+    }
+    return {set};
+}
+
+std::vector<RaySet> crowd_ray_sets(const BuildScene&, size_t count, uint64_t seed) {
+    RayMaker make(11, seed);
+    RaySet set{"hits.crowd",
+               "rays that enter the boxes of all primitives, of tens of thousands if the structure names each once",
+               {},
+               false,
+               "a ray gave up after a number of steps, or what the stack had no room for was left out"};
+    for (size_t i = 0; i < std::min<size_t>(count, 32); ++i) {
+        const Point d = make.direction();
+        const float along = (d[0] + d[1] + d[2]) / 3;
+        const Point from = make.within({"", {0, 0, 0}, 0.1f});
+        set.rays.push_back(RayMaker::from_to(from, {from[0] + d[0] - along, from[1] + d[1] - along, from[2] + d[2] - along}));
+    }
+    return {set};
 }
 
 }  // namespace clarity::check

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <regex>
 
+#include "check/regular_scenes.hpp"
 #include "device/kernel_files.hpp"
 #include "render/tracers/rays/ray_text.hpp"
 
@@ -61,6 +62,19 @@ BenchInput few_rays(BenchInput input) {
     return input;
 }
 
+const TestScene kCrowd{"60000 triangles whose boxes overlap", [](uint64_t) { return crowd_scene(60000); }, crowd_ray_sets},
+    kSmallCrowd{"400 triangles whose boxes overlap", [](uint64_t) { return crowd_scene(400); }, crowd_ray_sets};
+
+// The large one for trees. In a grid or a kd-tree each cell names each primitive of a crowd.
+const TestScene& crowd_of(const BenchInput& input, const Step& step) {
+    constexpr uint64_t kMost = 512;  // bytes a primitive, of a structure that names it once
+    Bench small(input, kSmallCrowd);
+    const AccelData& accel = *small.scene(step).accel();
+    uint64_t bytes = accel.leaf_count * sizeof(rt_packed_prim);
+    for (const AccelData::Slot& slot : accel.slots) bytes += slot.memory.bytes();
+    return bytes > kMost * small.scene(step).build_scene().prims.size() ? kSmallCrowd : kCrowd;
+}
+
 }  // namespace
 
 Outcome stack_check(Bench& mixed, Bench& regular, const Step& step) {
@@ -101,8 +115,10 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     // After each push that was granted, one more path down the tree may be walked. Without pushes the longest path of any ray
     // tests kLeast primitives or more; twice as many are allowed, because the first path of a ray is not its longest.
     constexpr rt_u32 kGranted = 12, kLeast = 4;
+    // The crowd's trees are deep everywhere: it shows who asks only while the stack is short.
     const Row rows[] = {{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
-                        {kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"}};
+                        {kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"},
+                        {crowd_of(input, step), {"hits.crowd"}, 0.5, "at many triangles whose boxes overlap"}};
     const auto effort = [&](const Row& row, const std::map<std::string, rt_u32>& defines) {
         Bench bench(few_rays(input), row.scene, {{}, 0, defines, Moves::none});
         return effort_of(bench, row.sets, step);
@@ -144,6 +160,11 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
         "the traversal has a stack, `" + stack +
         "`, but it never asked RT_STACK_OK: a stack that is too small would be written beyond its end, and nothing "
         "would say so. Ask before each push");
+}
+
+Outcome crowd_check(const BenchInput& input, const Step& step) {
+    Bench crowd(few_rays(input), crowd_of(input, step));
+    return trace_set(crowd, "hits.crowd", step);
 }
 
 Outcome counts_check(const BenchInput& input, const Step& step) {

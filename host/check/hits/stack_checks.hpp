@@ -8,6 +8,8 @@ namespace clarity::check {
 Outcome stack_check(Bench& mixed, Bench& regular, const Step& step);
 // What asks RT_STACK_OK before each push finds next to nothing once that is always refused.
 Outcome pushes_check(const BenchInput& input, const Step& step);
+// Rays that meet the boxes of all primitives go on to the end.
+Outcome crowd_check(const BenchInput& input, const Step& step);
 // Every hit was tested by the host's function.
 Outcome counts_check(const BenchInput& input, const Step& step);
 

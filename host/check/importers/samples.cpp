@@ -40,20 +40,25 @@ class TruthReader {
         // Where faces with many corners are cut in another way, the area of a fan may be all that is known.
         if (const nlohmann::json* fan = held_.area ? nullptr : find(json_, "area_fan")) held_.area = number(*fan, "area_fan");
         // A file without triangles has no box.
-        if (const nlohmann::json* box = held_.triangles == 0.0 ? nullptr : find(json_, "bbox")) {
-            if (!box->is_array() || box->size() != 2) wrong("bbox", "the least and the greatest corner");
-            held_.bounds = {vector(box->at(0), "bbox"), vector(box->at(1), "bbox")};
-        }
+        if (const nlohmann::json* box = held_.triangles == 0.0 ? nullptr : find(json_, "bbox")) held_.bounds = box_of(*box);
         if (const nlohmann::json* corners = find(json_, "corners")) {
             if (!corners->is_array()) wrong("corners", "a list of objects {\"at\": [x, y, z], ...}");
             for (const nlohmann::json& corner : *corners) held_.corners.push_back(corner_of(corner));
         }
+        if (const nlohmann::json* counts = find(json_, "material_triangles")) {
+            if (!counts->is_object()) wrong("material_triangles", "an object {\"NAME\": triangles, ...}");
+            for (const auto& [name, count] : counts->items()) held_.material_triangles[name] = number(count, name);
+        }
+        if (const nlohmann::json* list = find(json_, "instances")) {
+            if (!list->is_array()) wrong("instances", "a list of objects {\"name\": NAME, ...}");
+            for (const nlohmann::json& one : *list) held_.placed.push_back(placed_of(one));
+        }
         if (held_.keys.empty())
-            throw Error(
-                Exit::usage,
-                path_ +
-                    ": states nothing about the file; it needs one of the keys triangles, area, bbox, instance_count, "
-                    "material_count, flat, volume and corners, such as {\"triangles\": 12, \"bbox\": [[0, 0, 0], [1, 1, 1]]}");
+            throw Error(Exit::usage,
+                        path_ +
+                            ": states nothing about the file; it needs one of the keys triangles, area, bbox, instance_count, "
+                            "material_count, flat, volume, corners, material_triangles and instances, such as {\"triangles\": "
+                            "12, \"bbox\": [[0, 0, 0], [1, 1, 1]]}");
         return std::move(held_);
     }
 
@@ -76,14 +81,31 @@ class TruthReader {
         if (!value.is_array() || value.size() != 3) wrong(key, "of three numbers, [x, y, z]");
         return {number(value.at(0), key), number(value.at(1), key), number(value.at(2), key)};
     }
-    Contents::Corner corner_of(const nlohmann::json& json) {
-        Contents::Corner corner;
-        const nlohmann::json* at = json.is_object() ? find(json, "at") : nullptr;
-        if (!at) wrong("corners", "a list of objects {\"at\": [x, y, z], ...}");
+    std::array<Vec, 2> box_of(const nlohmann::json& box) const {
+        if (!box.is_array() || box.size() != 2) wrong("bbox", "the least and the greatest corner");
+        return {vector(box.at(0), "bbox"), vector(box.at(1), "bbox")};
+    }
+    // An object of a list, which has the first of these keys and no other ones.
+    void expect_keys(const nlohmann::json& json, const char* list, const std::vector<std::string>& keys) const {
+        std::string names;
+        for (const std::string& key : keys) names += (names.empty() ? "" : ", ") + key;
+        if (!json.is_object() || !json.contains(keys.front())) wrong(list, "of objects with the key " + keys.front());
         for (const auto& [key, value] : json.items())
-            if (key != "at" && key != "normal" && key != "facing" && key != "uv")
-                wrong("corners", "of objects with the keys at, normal, facing and uv, not '" + key + "'");
-        corner.at = vector(*at, "at");
+            if (std::find(keys.begin(), keys.end(), key) == keys.end())
+                wrong(list, "of objects with the keys " + names + ", not '" + key + "'");
+    }
+    Contents::Placed placed_of(const nlohmann::json& json) {
+        expect_keys(json, "instances", {"name", "triangles", "bbox"});
+        if (!json["name"].is_string()) wrong("name", "a text");
+        Contents::Placed placed{json["name"], {}, {}};
+        if (const auto* triangles = find(json, "triangles")) placed.triangles = number(*triangles, "triangles");
+        if (const auto* box = find(json, "bbox")) placed.bounds = box_of(*box);
+        return placed;
+    }
+    Contents::Corner corner_of(const nlohmann::json& json) {
+        expect_keys(json, "corners", {"at", "normal", "facing", "uv"});
+        Contents::Corner corner;
+        corner.at = vector(json["at"], "at");
         if (const auto* normal = find(json, "normal")) corner.normal = vector(*normal, "normal");
         if (const auto* facing = find(json, "facing")) corner.facing = vector(*facing, "facing");
         if (const auto* uv = find(json, "uv")) {

@@ -1,6 +1,7 @@
 // samples.hpp -- the files on which an importer is tried, and what independent programs read from them.
 #pragma once
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,14 @@ struct Contents {
         std::optional<std::array<double, 2>> uv;
     };
     std::vector<Corner> corners;
+    std::map<std::string, double> material_triangles;  // by the material's name
+    // One of these must have it all.
+    struct Placed {
+        std::string name;
+        std::optional<double> triangles;
+        std::optional<std::array<Vec, 2>> bounds;
+    };
+    std::vector<Placed> placed;
     std::string keys;         // those that are there: "triangles, area"
     bool undeformed = false;  // it is of meshes as they are stored, without what skins and morphs do
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <map>
 
 #include "base/numbers.hpp"
 #include "import/scene_digest.hpp"
@@ -138,6 +139,68 @@ std::string difference_of_volume(const Scene& scene, double expected) {
            (turned ? ": its triangles wind the other way round" : "");
 }
 
+// Whether a box is as expected; then nothing, else what it is. off: of the scene's origin.
+std::string difference_of_box(const Bounds& bounds, const std::array<double, 3>& off, const std::array<Vec, 2>& expected) {
+    const auto& [lo, hi] = expected;
+    double size = 0;
+    for (size_t k = 0; k < 3; ++k) size = std::max(size, hi[k] - lo[k]);
+    for (size_t k = 0; k < 3; ++k) {
+        const double least = bounds.min[k] + off[k], most = bounds.max[k] + off[k];
+        if (!(std::fabs(least - lo[k]) <= kRoom * size && std::fabs(most - hi[k]) <= kRoom * size))
+            return std::string("goes from ") + text_of(least) + " to " + text_of(most) + " along " + "xyz"[k] + ", not from " +
+                   exact_text(lo[k]) + " to " + exact_text(hi[k]);
+    }
+    return {};
+}
+
+std::string difference_of_materials(const Scene& scene, const Contents& truth) {
+    std::map<std::string, double> there;
+    for (const Instance& instance : scene.instances) {
+        if (!instance.visible) continue;
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        for (size_t t = 0; t < mesh.triangle_count; ++t) {
+            const rt_u32 own = scene.triangle_materials[mesh.first_triangle + t];
+            ++there[scene.materials[instance.material == RT_NONE ? own : instance.material].name];
+        }
+    }
+    for (const auto& [name, count] : truth.material_triangles)
+        if (there[name] != count) {
+            std::string all;
+            for (const auto& [other, n] : there)
+                if (n > 0) all += (all.empty() ? "" : ", ") + exact_text(n) + " of '" + other + "'";
+            return "has " + exact_text(there[name]) + " triangles of the material '" + name + "', not " + exact_text(count) +
+                   ": there are " + all;
+        }
+    return {};
+}
+
+std::string difference_of_instances(const Scene& scene, const Contents& truth) {
+    for (const Contents::Placed& wanted : truth.placed) {
+        std::string why = "has no instance with the name '" + wanted.name + "'";
+        for (size_t i = 0; i < std::min(scene.instances.size(), kMostShown); ++i)
+            why += (i ? ", '" : ": its first ones are '") + scene.instances[i].name + "'";
+        for (const Instance& instance : scene.instances) {
+            if (instance.name != wanted.name) continue;
+            const Mesh& mesh = scene.meshes[instance.mesh];
+            if (wanted.triangles && mesh.triangle_count != *wanted.triangles) {
+                why = "has an instance '" + wanted.name + "' of " + std::to_string(mesh.triangle_count) + " triangles, not " +
+                      exact_text(*wanted.triangles);
+                continue;
+            }
+            Bounds box;
+            for (size_t i = 0; i < 3 * size_t(mesh.triangle_count); ++i)
+                box.add(transform_point(instance.world_from_object,
+                                        &scene.positions[3 * size_t(scene.triangles[3 * mesh.first_triangle + i])])
+                            .data());
+            why = wanted.bounds ? difference_of_box(box, scene.origin, *wanted.bounds) : "";
+            if (why.empty()) break;
+            why = "has an instance '" + wanted.name + "' that " + why;
+        }
+        if (!why.empty()) return why;
+    }
+    return {};
+}
+
 std::string name_of_vertex(const Scene& scene, size_t vertex) {
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         const Mesh& mesh = scene.meshes[i];
@@ -172,20 +235,10 @@ std::string difference(const Scene& scene, const Contents& truth) {
     const double area = scene.surface_area();
     if (truth.area && !(std::fabs(area - *truth.area) <= kRoom * *truth.area))
         return "has a surface of " + exact_text(area) + ", not " + exact_text(*truth.area);
-    if (truth.bounds) {
-        const auto& [lo, hi] = *truth.bounds;
-        const Bounds bounds = scene.bounds();
-        double size = 0;
-        for (size_t k = 0; k < 3; ++k) size = std::max(size, hi[k] - lo[k]);
-        for (size_t k = 0; k < 3; ++k) {
-            const double least = bounds.min[k] + scene.origin[k], most = bounds.max[k] + scene.origin[k];
-            if (!(std::fabs(least - lo[k]) <= kRoom * size && std::fabs(most - hi[k]) <= kRoom * size))
-                return std::string("goes from ") + exact_text(static_cast<float>(least)) + " to " +
-                       exact_text(static_cast<float>(most)) + " along " + "xyz"[k] + ", not from " + exact_text(lo[k]) +
-                       " to " + exact_text(hi[k]);
-        }
-    }
-    if (truth.volume) why = difference_of_volume(scene, *truth.volume);
+    if (truth.bounds) why = difference_of_box(scene.bounds(), scene.origin, *truth.bounds);
+    if (why.empty()) why = difference_of_materials(scene, truth);
+    if (why.empty()) why = difference_of_instances(scene, truth);
+    if (why.empty() && truth.volume) why = difference_of_volume(scene, *truth.volume);
     return why.empty() ? difference_of_corners(scene, truth) : why;
 }
 

@@ -87,14 +87,17 @@ Outcome met_again(ShapeBench& bench, const Step& step) {
         for (size_t i = 0; i < part.touches.size(); ++i) {
             const Touch& touch = part.touches[i];
             if (!touch.is_smooth || touch.cosine < 0.3) continue;
-            for (int k = 0; k < 4; ++k) {
+            for (int k = 0; k < 8; ++k) {
                 Vec way = k == 0   ? normalized(to_vec(touch.ray.direction))
                           : k == 1 ? -1.0 * normalized(to_vec(touch.ray.direction))
                                    : random_direction(random);
+                if (k == 4)  // nearly along the surface: at a silhouette
+                    way = normalized(normalized(cross(touch.across, way)) + (i % 2 ? 0.12 : -0.2) * touch.across);
+                if (k > 4) way = {}, way[size_t(k) - 5] = i % 2 ? 1 : -1;  // exactly along an axis
                 const double cosine = std::fabs(dot(way, touch.across));
-                if (cosine < 0.3) continue;
+                if (cosine < (k == 4 ? 0.1 : 0.3)) continue;
                 const double away = (0.05 + 1.2 * std::uniform_real_distribution<double>(0, 1)(random)) * double(subject.size);
-                rt_ray ray = ray_of(touch.at - away * way, std::exp2(k - 2) * way);
+                rt_ray ray = ray_of(touch.at - away * way, std::exp2(k % 4 - 2) * way);
                 const Vec d = to_vec(ray.direction);
                 const double t = dot(touch.at - to_vec(ray.origin), d) / dot(d, d), about = slack / (cosine * length(d));
                 ray.t_min = static_cast<float>(t - about);

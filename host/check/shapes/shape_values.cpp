@@ -38,6 +38,7 @@ class Draw {
     }
     ShapeValues values() {
         ShapeValues values;
+        point_.clear();
         for (rt_u32 i = 0; i < primitive_.key_count; ++i) {
             const rt_key& key = primitive_.keys[i];
             ShapeValues::Key drawn;
@@ -76,8 +77,16 @@ class Draw {
                 const double most = std::min(key.max, key.min + 8);
                 return {within(key, std::floor(key.min + (most - key.min + 1) * double(share()) * 0.999))};
             }
-            case RT_KEY_POINT:
-                return {around(key, key.def[0], 1), around(key, key.def[1], 1), around(key, key.def[2], 1)};
+            case RT_KEY_POINT: {
+                std::vector<float> point;
+                for (const double middle : key.def) point.push_back(around(key, middle, 1));
+                if (!point_.empty() && share() < 0.25f) {  // from the point before along an axis
+                    const auto axis = static_cast<size_t>(share() * 2.99f);
+                    for (size_t k = 0; k < 3; ++k)
+                        if (k != axis) point[k] = within(key, double(point_[k]));
+                }
+                return point_ = point;
+            }
             case RT_KEY_VECTOR:
                 if (share() < 0.25f) {  // along an axis
                     std::vector<float> along(3, within(key, 0));
@@ -120,6 +129,7 @@ class Draw {
     const rt_primitive& primitive_;
     std::mt19937& random_;
     bool needs_list_ = false;
+    std::vector<float> point_;  // the last one of these values
 };
 
 }  // namespace

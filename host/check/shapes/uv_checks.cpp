@@ -16,6 +16,7 @@ constexpr int kPathSteps = 16, kHalvings = 10, kLoopPoints = 24, kDescents = 40;
 constexpr size_t kMostPaths = 160, kMostSeams = 8, kMostPoles = 12;  // of a part
 constexpr double kJump = 0.03, kJumpLeft = 0.01;  // between two samples; between two that are next to each other
 constexpr double kSameSheet = 0.9;                // cosine between normals of neighbours
+constexpr double kSmooth = 0.999;                 // the same of those that are next to each other
 constexpr char kNames[] = "uv";
 
 // A point of the surface.
@@ -200,6 +201,10 @@ std::vector<Pair> steep_pairs(Surface& surface, const std::vector<Spot>& spots, 
         }
         pairs = std::move(closer);
     }
+    // So close to each other, normals differ at an edge alone, however blunt it is. There coordinates may jump.
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
+                               [](const Pair& pair) { return dot(pair.a.normal, pair.b.normal) < kSmooth; }),
+                pairs.end());
     return pairs;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "cli/render/render_progress.hpp"
 #include "render/frame/frame_stats.hpp"
 
@@ -46,7 +47,8 @@ FrameStats PictureTracer::trace_samples(const Picture& picture, unsigned first, 
 }
 
 PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& pass, Progress& progress) {
-    if (pass.counts) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
+    if (pass.counts)
+        stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.not_finite = stats_.overflowed = 0;
     const auto all = unsigned(settings_.spp);
     double device_ms = 0, wall_ms = 0;
     std::vector<DeviceShare> devices;
@@ -72,6 +74,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
             stats_.shadow += frame.shadow;
             stats_.secondary += frame.secondary;
             stats_.dropped += frame.dropped;
+            stats_.not_finite += frame.not_finite;
             stats_.overflowed += frame.overflowed;
         }
         sample += next;
@@ -83,6 +86,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         }
     }
     stats_.shares = devices;
+    if (pass.counts && stats_.not_finite > 0) log(LogLevel::error, not_finite_text(stats_.not_finite));
     if (pass.timed) {
         stats_.frame_ms.push_back(device_ms);
         stats_.wall_ms.push_back(wall_ms);

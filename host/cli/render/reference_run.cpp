@@ -1,7 +1,5 @@
 #include "cli/render/reference_run.hpp"
 
-#include <cmath>
-
 #include "base/error.hpp"
 #include "base/pictures/picture_read.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
@@ -26,13 +24,9 @@ void ReferenceRun::offer(MultiFrameRenderer& frames, unsigned samples, bool fini
 }
 
 double ReferenceRun::slope() const {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const Point& point : points_) {
-        if (!(point.errors.rmse > 0)) continue;
-        const double of_samples = std::log(double(point.samples)), of_error = std::log(point.errors.rmse);
-        n += 1, x += of_samples, y += of_error, xx += of_samples * of_samples, xy += of_samples * of_error;
-    }
-    return n < 2 ? NAN : (n * xy - x * y) / (n * xx - x * x);
+    std::vector<std::pair<unsigned, double>> errors;
+    for (const Point& point : points_) errors.emplace_back(point.samples, point.errors.rmse);
+    return error_slope(errors);
 }
 
 }  // namespace clarity

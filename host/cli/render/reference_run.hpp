@@ -26,8 +26,6 @@ class ReferenceRun {
     void offer(MultiFrameRenderer& frames, unsigned samples, bool finished);
     const std::vector<Point>& points() const { return points_; }
     const std::string& file() const { return file_; }
-    // The exponent of the samples by which RMSE falls, -0.5 of independent samples: a line through the logarithms. NaN if there
-    // are fewer than two points.
     double slope() const;
 
  private:

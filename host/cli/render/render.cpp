@@ -37,6 +37,7 @@
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "render/view/size_note.hpp"
+#include "render/view/view_optics.hpp"
 
 namespace clarity {
 namespace {
@@ -274,6 +275,7 @@ class RenderJob {
         blur_.reset();
         MovedStructure shared;
         if (mpi_) shared.accel = share_structure(progress);
+        words_.settings.optics = optics_of(*scene_.scene(), scene_.view(), settings_);
         prepared_ = preparer_->prepare(scene_.scene(), settings_, progress, shared);
         stats_.prepared = prepared_->first();
         blur_ = scene_.blur(prepared_, *preparer_);

@@ -84,7 +84,8 @@ void gather_frame_times(RenderStats& stats, Ranks& ranks) {
         stats.ranks[r].frame_ms = device_ms[r];
         stats.ranks[r].wall_ms = wall_ms[r];
     }
-    for (uint64_t* const count : {&stats.primary, &stats.shadow, &stats.secondary, &stats.dropped, &stats.overflowed}) {
+    for (uint64_t* const count :
+         {&stats.primary, &stats.shadow, &stats.secondary, &stats.dropped, &stats.not_finite, &stats.overflowed}) {
         double sum = 0;
         for (const double of_rank : ranks.gather(double(*count))) sum += of_rank;
         *count = static_cast<uint64_t>(sum);
@@ -160,6 +161,7 @@ std::string stats_json(const RenderStats& stats) {
     json["rays"] = {{"primary", stats.primary}, {"shadow", stats.shadow}, {"secondary", stats.secondary}};
     json["mrays_per_s"] = rounded(mrays_per_s(stats));
     json["dropped_rays"] = stats.dropped;
+    json["samples_not_finite"] = stats.not_finite;
     json["stack_overflows"] = stats.overflowed;
     json["nodes"] = uint64_t(accel.stat("nodes"));
     json["accel_bytes"] = accel.bytes;

@@ -31,8 +31,8 @@ struct RenderStats {
     // from then on until the first one had the picture.
     std::vector<RankTimes> ranks;  // empty: one process renders
     double share_ms = 0, wait_to_trace_ms = 0, wait_traced_ms = 0, collect_ms = 0;
-    std::shared_ptr<ReferenceRun> reference;                                       // null: there is none to compare with
-    uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, overflowed = 0;  // of one frame
+    std::shared_ptr<ReferenceRun> reference;  // null: there is none to compare with
+    uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, not_finite = 0, overflowed = 0;  // of one frame
 };
 
 // Waits until all ranks can trace, so that this wait is no part of a picture's time, and fills in stats.ranks.

@@ -69,6 +69,16 @@ PictureErrors picture_errors(const FloatImage& test, const FloatImage& reference
     return out;
 }
 
+double error_slope(const std::vector<std::pair<unsigned, double>>& points) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (const auto& [samples, rmse] : points) {
+        if (!(rmse > 0)) continue;
+        const double of_samples = std::log(double(samples)), of_error = std::log(rmse);
+        n += 1, x += of_samples, y += of_error, xx += of_samples * of_samples, xy += of_samples * of_error;
+    }
+    return n < 2 ? std::nan("") : (n * xy - x * y) / (n * xx - x * x);
+}
+
 ByteImage signed_error_picture(const FloatImage& test, const FloatImage& reference, double& full) {
     check_sizes(test, reference);
     const size_t pixels = size_t(test.width) * test.height;

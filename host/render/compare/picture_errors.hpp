@@ -1,6 +1,8 @@
 // picture_errors.hpp -- figures of how much a picture differs from a reference.
 #pragma once
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "render/film/image_io.hpp"
 
@@ -22,6 +24,10 @@ struct PictureErrors {
 
 // Both pictures have 3 channels. Throws Error(failed) if their sizes differ.
 PictureErrors picture_errors(const FloatImage& test, const FloatImage& reference);
+
+// The exponent of the samples by which RMSE falls, -0.5 of independent samples: a line through the logarithms of (samples,
+// RMSE). NaN if there are fewer than two points.
+double error_slope(const std::vector<std::pair<unsigned, double>>& points);
 
 // The signed error (mean of the channels) as colours: red where the picture is brighter than the reference, blue where it is
 // darker, white where they are equal, black where a value is not finite. `full`: the error of the full colour; 99 % of pixels

@@ -50,19 +50,27 @@ double flux_of_sky(const rt_lighting& sky, const SkyTable& picture) {
     return 4 * kPi * mean(sky.sky_color);
 }
 
+const rt_material& material_of(const Scene& scene, const View& view, size_t i) {
+    return view.materials.empty() ? scene.materials[i].values : view.materials[i];
+}
+
 // Collects the emissive primitives, by ascending numbers.
 class Collector {
  public:
-    Collector(const Scene& scene, const AccelData& accel, const View& view, EmitterTable& out, std::vector<double>& powers)
-        : scene_(scene), accel_(accel), view_(view), out_(out), powers_(powers) {
+    Collector(const Scene& scene, const AccelData& accel, const MovedPrims* moved, const View& view, EmitterTable& out,
+              std::vector<double>& powers)
+        : scene_(scene),
+          accel_(accel),
+          leaves_(moved ? moved->leaves.data() : static_cast<const rt_packed_prim*>(accel.leaves.data())),
+          instances_(moved ? moved->instances : accel.instances),
+          view_(view),
+          out_(out),
+          powers_(powers) {
         for (size_t i = 0; i < scene.materials.size(); ++i) emits_.push_back(mean(material(i).emission) > 0);
     }
 
-    // Also where only rays that hit it find what emits.
-    bool any_emits() const { return std::find(emits_.begin(), emits_.end(), true) != emits_.end(); }
-
     void collect() {
-        if (any_emits()) {
+        if (std::find(emits_.begin(), emits_.end(), true) != emits_.end()) {
             add_triangles();
             add_spheres();
             add_polygons();
@@ -74,10 +82,8 @@ class Collector {
     }
 
  private:
-    const rt_material& material(size_t i) const {
-        return view_.materials.empty() ? scene_.materials[i].values : view_.materials[i];
-    }
-    const rt_packed_prim& leaf(rt_u32 at) const { return static_cast<const rt_packed_prim*>(accel_.leaves.data())[at]; }
+    const rt_material& material(size_t i) const { return material_of(scene_, view_, i); }
+    const rt_packed_prim& leaf(rt_u32 at) const { return leaves_[at]; }
 
     // For each primitive of a kind that emits, by its ref: a leaf that holds it. Of a primitive that was cut there are several,
     // all alike. instances: primitives of an instance whose own material emits count, too.
@@ -133,27 +139,32 @@ class Collector {
 
     void add_triangles() {
         const BuildScene& build = accel_.scene;
-        const bool by_instance = std::any_of(accel_.instances.begin(), accel_.instances.end(),
+        const bool by_instance = std::any_of(instances_.begin(), instances_.end(),
                                              [&](const rt_instance& i) { return i.material != RT_NONE && emits_[i.material]; });
         const std::vector<rt_u32> leaves = leaves_of(RT_REF_TRIANGLE, build.attribute_triangle.size(), by_instance);
         std::vector<Found> found;
         const auto add_group = [&](rt_u32 group, rt_u32 instance) {
             const rt_u32 first = build.first_ref_of_group[group],
                          end = group == 0 ? rt_u32(leaves.size()) : first + build.groups[group].count;
-            const rt_instance* const placed = instance == RT_NONE ? nullptr : &accel_.instances[instance];
-            const Affine* const world = placed ? &build.world_from_object[instance] : nullptr;
+            const rt_instance* const placed = instance == RT_NONE ? nullptr : &instances_[instance];
+            Affine world = kIdentity;
+            if (placed) {
+                Affine inverse;
+                std::copy_n(placed->object_from_world, 12, inverse.begin());
+                invert(inverse, world);
+            }
             for (rt_u32 ref = first; ref < end; ++ref) {
                 if (leaves[ref] == RT_NONE) continue;
                 const rt_packed_prim& prim = leaf(leaves[ref]);
                 const rt_u32 of = placed && placed->material != RT_NONE ? placed->material : prim.material;
                 if (!emits_[of]) continue;
-                found.push_back(
-                    {(placed ? placed->first_prim : 0) + prim.prim, leaves[ref], instance, of, triangle_area(prim, world)});
+                found.push_back({(placed ? placed->first_prim : 0) + prim.prim, leaves[ref], instance, of,
+                                 triangle_area(prim, placed ? &world : nullptr)});
             }
         };
         add_group(0, RT_NONE);
-        for (rt_u32 i = 0; i < accel_.instances.size(); ++i)
-            if (!accel_.instances[i].hidden) add_group(build.group_of_instance[i], i);
+        for (rt_u32 i = 0; i < instances_.size(); ++i)
+            if (!instances_[i].hidden) add_group(build.group_of_instance[i], i);
         std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.prim < b.prim; });
         for (const Found& f : found) add(f.at, f.instance, f.prim, f.material, f.area);
     }
@@ -183,6 +194,8 @@ class Collector {
 
     const Scene& scene_;
     const AccelData& accel_;
+    const rt_packed_prim* const leaves_;
+    const std::vector<rt_instance>& instances_;
     const View& view_;
     EmitterTable& out_;
     std::vector<double>& powers_;
@@ -197,8 +210,14 @@ const std::vector<const char*>& emitter_headers() {
     return headers;
 }
 
+bool has_emitting_surfaces(const Scene& scene, const View& view) {
+    for (size_t i = 0; i < scene.materials.size(); ++i)
+        if (mean(material_of(scene, view, i).emission) > 0) return true;
+    return false;
+}
+
 EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
-                                bool knows_leaves) {
+                                const MovedPrims* moved) {
     EmitterTable out;
     std::vector<double> powers;
     const double radius = scene_radius(accel.scene.bounds);
@@ -220,10 +239,9 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         out.emitters.push_back(emitter);
         powers.push_back(flux * kPi * radius * radius);
     }
-    Collector collector(scene, accel, view, out, powers);
-    if (knows_leaves) collector.collect();
+    Collector(scene, accel, moved, view, out, powers).collect();
     // A file that says what lies behind its objects says what lights them. Without a word of it, lights that stand in stay.
-    const bool lit = scene.sky.values.kind != RT_NONE || collector.any_emits() ||
+    const bool lit = scene.sky.values.kind != RT_NONE || has_emitting_surfaces(scene, view) ||
                      (scene.background != Scene{}.background && out.lighting.sky_emitter != RT_NONE);
     for (size_t i = 0; lit && i < view.lights.size(); ++i)
         if (view.lights[i].flags & RT_LIGHT_STAND_IN) powers[i] = 0;

@@ -22,11 +22,17 @@ struct EmitterTable {
 // Headers below cl/ of kernels with kPicksLights, in their order. Before them come sampling/math.h and sampling/warps.h.
 const std::vector<const char*>& emitter_headers();
 
-// The emitters of a view. accel: where the scene's primitives are now; only positions in leaf order must be those of the
-// device.
-// sky: of scene.sky. knows_leaves: whether the device has the leaves in the order of accel. Where a device built a tree anew,
-// the host does not know it, and emissive primitives are left to rays that hit them.
+// What a device has moved, as it is there.
+struct MovedPrims {
+    std::vector<rt_packed_prim> leaves;
+    std::vector<rt_instance> instances;
+};
+
+// The emitters of a view. accel: where the scene's primitives are now. sky: of scene.sky. moved: leaves and instances in place
+// of those of accel; nullptr: nothing has moved on the device.
 EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
-                                bool knows_leaves = true);
+                                const MovedPrims* moved = nullptr);
+// Whether a surface emits, so that the table depends on where primitives are.
+bool has_emitting_surfaces(const Scene& scene, const View& view);
 
 }  // namespace clarity

@@ -125,6 +125,7 @@ struct FrameRenderer::Impl {
             tracer = open_tracer(device, prepared.program);
         }
         program = prepared.program;
+        if (bound != prepared.on_device) view.forget_emitters();  // a structure that moves may be in buffers of an earlier pose
         bound = prepared.on_device;
         bound_moves = prepared.is_moved;
         debug = prepared.settings.debug;
@@ -186,7 +187,8 @@ struct FrameRenderer::Impl {
         }
         view.write(queue, *prepared.scene, *prepared.on_device, frames, view_of, table);
         if (program->row.has(kPicksLights))
-            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of, !prepared.is_moved);
+            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of,
+                                prepared.is_moved ? prepared.on_device.get() : nullptr);
 
         const auto go_on = [&progress = picture.progress] {
             if (progress.cancelled()) throw Cancelled();
@@ -221,7 +223,7 @@ struct FrameRenderer::Impl {
         const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
         stats.shadow = counts.shadow;
         stats.secondary = counts.secondary;
-        stats.dropped = counts.dropped;
+        (sums_samples ? stats.not_finite : stats.dropped) = counts.dropped;
         stats.overflowed = counts.overflowed;
     }
     // Debug programs that trace only camera rays have no ray counters, so they count full stacks separately.
@@ -249,6 +251,9 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
     Impl& im = *impl_;
     if (im.device->loss()->lost())
         throw Error(Exit::failed, im.device->info().name + " has failed before: it has to be opened anew");
+    if (!prepared.knows(view))
+        throw Error(Exit::failed, "tracing: the view has kinds of lights or surfaces that the kernels were not compiled for: " +
+                                      std::string("prepare the scene with the view's optics in the settings"));
     return wrap_cl_errors(*im.device, "tracing", [&] {
         const Impl::Picture picture{prepared, settings, view, shared, progress};
         im.begin(picture);

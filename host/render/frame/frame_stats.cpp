@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/plural.hpp"
+
 namespace clarity {
 namespace {
 
@@ -14,11 +16,19 @@ KernelTime& time_of(std::vector<KernelTime>& times, const std::string& name) {
 
 }  // namespace
 
+std::string not_finite_text(uint64_t samples) {
+    return "tracing: " + plural(samples, "sample is", "samples are") +
+           " not a finite number, and so are their pixels: a number of the scene is too large, or a kernel has a fault. Look "
+           "for "
+           "huge radiances and scales; `--only-paths` shows which light and which event they come from";
+}
+
 void add_rays(FrameStats& sum, const FrameStats& more) {
     sum.primary += more.primary;
     sum.shadow += more.shadow;
     sum.secondary += more.secondary;
     sum.dropped += more.dropped;
+    sum.not_finite += more.not_finite;
     sum.overflowed += more.overflowed;
     sum.launches += more.launches;
 }

@@ -23,6 +23,7 @@ struct FrameStats {
     double wall_ms = 0;    // the same by the host's clock, including waiting
     uint64_t primary = 0, shadow = 0, secondary = 0,
              dropped = 0;     // rays of these samples; all but primary are 0 unless counted
+    uint64_t not_finite = 0;  // samples of `path` that are no number or infinite, unless not counted
     uint64_t overflowed = 0;  // traversal stacks that were full (debug programs only)
     unsigned samples = 0;     // in the film now
     unsigned launches = 0;    // launches that traced these samples
@@ -31,6 +32,9 @@ struct FrameStats {
     // One for each device if several share the picture. The times above are then those of the slowest device.
     std::vector<DeviceShare> devices;
 };
+
+// What to tell a user of a picture with such samples.
+std::string not_finite_text(uint64_t samples);
 
 // Adds ray counts and launches only.
 void add_rays(FrameStats& sum, const FrameStats& more);

@@ -20,6 +20,7 @@ enum : unsigned {
     kCountsRays = 32,     // traces more than camera rays: it has `counters`, and the `distances` of the camera rays
     kLayers = 64,         // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
     kPicksLights = 128,   // has the table of emitters and the sky: cl/shading/emitters.h
+    kWhitted = 512,       // lights with cl/shading/shading.h
     kSumsSamples = 256    // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
 };
 
@@ -36,6 +37,12 @@ struct KernelRow {
     unsigned rays_per_item = 0;  // for kernels that trace a warp's rays together
     bool has(unsigned trait) const { return (traits & trait) != 0; }
 };
+
+// Of the optics of a scene, those that the kernel is compiled for.
+inline Optics optics_known(const KernelRow& row, const Optics& optics) {
+    if (row.has(kPicksLights)) return optics;
+    return row.has(kWhitted) ? optics.for_whitted() : Optics{};
+}
 
 // Planes of the film of colours that a kernel traces into.
 inline unsigned film_planes(const KernelRow& row) {

@@ -4,7 +4,6 @@
 #include "device/kernel_files.hpp"
 
 namespace clarity {
-namespace {
 
 // A picture's kernel contains two traversals and shading. Without a limit it takes 145 to 160 registers a work-item, so that 12
 // warps run on a multiprocessor of an H200. With 128 registers 16 warps run, and frames are 1.02 to 1.16 times as fast. Limits
@@ -12,8 +11,6 @@ namespace {
 std::string options_for(const DeviceInfo& info, const KernelSource& source) {
     return source.options + (source.limit_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
 }
-
-}  // namespace
 
 TraceProgram::TraceProgram(const KernelSource& source, cl::Program compiled)
     : row(*source.row),

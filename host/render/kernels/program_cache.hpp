@@ -32,6 +32,9 @@ class TraceProgram {
     bool debug_;
 };
 
+// The options with which a kernel is compiled for a device.
+std::string options_for(const DeviceInfo& info, const KernelSource& source);
+
 // The programs most recently used on one device. Switching a setting back compiles nothing.
 class ProgramCache {
  public:

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "render/view/view_optics.hpp"
+
 namespace clarity {
 
 static_assert(RT_WRAP_REPEAT == 0 && RT_WRAP_CLAMP == 1 && RT_WRAP_MIRROR == 2, "cl/shading/material.h has these numbers");
 
-SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
+SceneFeatures features_of(const Scene& scene, const BuildScene& build, const Optics& more) {
     SceneFeatures f;
     f.instances = !build.instances.empty();
     f.spheres = !build.spheres.empty();
@@ -21,6 +23,7 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
     f.sky_picture = scene.sky.values.kind == RT_SKY_PICTURE;
     f.colors = !scene.colors.empty() && !build.attribute_triangle.empty();
     f.uvs = !scene.uvs.empty() && !build.attribute_triangle.empty();
+    f.optics = optics_of(scene) | more;
     return f;
 }
 

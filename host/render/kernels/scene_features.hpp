@@ -1,6 +1,8 @@
-// scene_features.hpp -- which kinds of primitives and attributes a scene has. Kernels contain no code for the others.
+// scene_features.hpp -- which kinds of primitives, attributes, lights and surfaces a scene has. Kernels contain no code for the
+// others.
 #pragma once
 #include "render/accel/build_scene.hpp"
+#include "render/settings/optics.hpp"
 
 namespace clarity {
 
@@ -10,7 +12,9 @@ struct SceneFeatures {
     bool sky_picture = false;
     bool colors = false;  // vertices have colours
     bool wraps = false;   // a texture is clamped or mirrored somewhere; otherwise all repeat
+    Optics optics;
 };
-SceneFeatures features_of(const Scene& scene, const BuildScene& build);
+// more: what views have that the scene's own has not.
+SceneFeatures features_of(const Scene& scene, const BuildScene& build, const Optics& more = {});
 
 }  // namespace clarity

@@ -6,6 +6,7 @@
 #include "render/kernels/kernel_source.hpp"
 #include "render/kernels/layout.hpp"
 #include "render/settings/settings.hpp"
+#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -25,6 +26,8 @@ struct Prepared {
     Layout layout;                         // follows from these settings on this device
     double compile_ms = 0, upload_ms = 0;  // 0 if the result is shared with an earlier Prepared
     bool compile_cached = false;           // the program was compiled for an earlier Prepared
+    // Whether the kernels know all lights and surfaces of a view. Else prepare() with optics_of() the view in the settings.
+    bool knows(const View& view) const;
 };
 
 // Returns the source of a kernel. The scene, accel, settings and layout must be set; the program need not.

@@ -36,13 +36,12 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
 }
 
 void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
-                                 const View& view, bool knows_leaves) {
+                                 const View& view, const DeviceScene* moved) {
     const auto same = [](const auto& a, const auto& b) {
         return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
     };
-    if (emitters_.get()() && emitters_of_.knows_leaves == knows_leaves && emitters_of_.accel.lock() == accel &&
-        same(emitters_of_.lights, view.lights) && same(emitters_of_.materials, view.materials) &&
-        emitters_of_.background == view.background &&
+    if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
+        same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background &&
         std::memcmp(&emitters_of_.sky, &scene.sky.values, sizeof(SkyValues)) == 0 && sky_of_.shares(scene.sky.texels))
         return;
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
@@ -58,11 +57,22 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
         upload(sky_texels_, sky_of_);
         upload(sky_picks_, sky_.picks);
     }
-    const EmitterTable table = make_emitter_table(scene, *accel, view, sky_, knows_leaves);
+    MovedPrims prims;
+    if (moved && !has_emitting_surfaces(scene, view)) moved = nullptr;
+    if (moved) {
+        const auto read = [&](const cl::Buffer& from, auto& to, size_t count) {
+            to.resize(count);
+            if (count > 0) queue.enqueueReadBuffer(from, CL_TRUE, 0, count * sizeof to[0], to.data());
+        };
+        const DeviceScene::Moving buffers = moved->moving();
+        read(buffers.leaves, prims.leaves, accel->leaf_count);
+        read(buffers.instances, prims.instances, accel->instances.size());
+    }
+    const EmitterTable table = make_emitter_table(scene, *accel, view, sky_, moved ? &prims : nullptr);
     upload(emitters_, table.emitters);
     upload(emitter_runs_, table.runs);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    emitters_of_ = {accel, view.lights, view.materials, view.background, scene.sky.values, knows_leaves};
+    emitters_of_ = {accel, view.lights, view.materials, view.background, scene.sky.values};
 }
 
 void UploadedBuffer::write(cl::CommandQueue& queue, const void* data, size_t bytes) {

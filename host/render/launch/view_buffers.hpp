@@ -36,9 +36,11 @@ class ViewBuffers {
     void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
                const View& view, const std::vector<rt_u32>& rows = {});
     // Uploads the table of emitters, for kernels with kPicksLights. The view is that of write(). Makes the table only if the
-    // structure, the lights or the materials have changed. knows_leaves: see make_emitter_table().
+    // structure, the lights or the materials have changed, or after forget_emitters(). moved: the buffers of a structure that
+    // was moved on the device, of which surfaces that emit are read back; nullptr: it is where accel has it.
     void write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
-                        const View& view, bool knows_leaves = true);
+                        const View& view, const DeviceScene* moved = nullptr);
+    void forget_emitters() { emitters_of_ = {}; }
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets `frame` and the scene's arguments of the kernel.
     void bind(const DeviceScene& scene, KernelArguments& kernel) const;
@@ -51,7 +53,6 @@ class ViewBuffers {
         std::vector<rt_material> materials;
         std::array<float, 3> background{};
         SkyValues sky;
-        bool knows_leaves = true;
     };
     UploadedBuffer frame_, lights_, materials_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
     EmittersOf emitters_of_;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "render/settings/optics.hpp"
+
 namespace clarity {
 
 // What the host must redo after a change of this setting, cheapest first. display: only how a traced film is shown. samples:
@@ -55,6 +57,8 @@ struct Settings {
     double scale_max = 0;         // value at the upper end of false colours; 0: the largest of the picture
     // What only kernels read, by its key; without those that have their default. See number_of() and kernel_numbers().
     std::map<std::string, double> numbers = {};
+    // Not for users: what views may have that the scene's own has not, so that kernels know it, too (optics_of()).
+    Optics optics = {};
 };
 
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.

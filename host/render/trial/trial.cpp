@@ -116,7 +116,7 @@ TrialJob job_of(const Prepared& prepared, const DeviceInfo& info, const KernelRo
         const std::string library = library_of(plugin->id);
         if (!library.empty()) job.libraries[library] = original_of(library);
     }
-    job.features = features_of(*prepared.scene, accel.scene);
+    job.features = features_of(*prepared.scene, accel.scene, prepared.settings.optics);
     job.shapes = sample_shapes(*prepared.scene);
     job.settings.accel = accel.plugin->id;
     job.settings.accel_params = accel.params;

@@ -83,11 +83,12 @@ TEST_F(ReportShown, EveryThesisChartWithItsAxisEnd) {
     for (const char* end :
          {"ends at 40 fps", "ends at 100 fps", "ends at 35 fps", "ends at 14 fps", "ends at 7 fps", "ends at 0.3 fps"})
         EXPECT_GE(count_of(page, end), 1u) << end;
-    for (const char* id : {"thesis", "packets", "structures", "scale", "analysis", "left-out", "machine"}) {
+    for (const char* id : {"thesis", "packets", "structures", "scale", "light", "analysis", "left-out", "machine"}) {
         EXPECT_EQ(count_of(page, std::string("<h2 id=\"") + id + "\""), 1u) << id;
         EXPECT_EQ(count_of(page, std::string("href=\"#") + id + "\""), 1u) << id;
     }
-    EXPECT_EQ(count_of(page, "<canvas"), 5u) << "a chart of curves for each kind of rays, and for builds";
+    EXPECT_EQ(count_of(page, "<canvas"), 5u + 2)
+        << "a chart of curves for each kind of rays, and for builds; two of errors of light";
     for (const char* name : {"p50", "p95", "p99", "undefined", "NaN"})
         EXPECT_EQ(count_of(page, name) > 0, name[0] == 'p') << name;
     // Test 6 at 4 steps, computed by hand: 6 * 1.6^5 ms a step, all in 2 % and 0.3 ms more. The bar shows three digits.
@@ -170,6 +171,15 @@ TEST_F(ReportShown, NamesWithMarkupAsText) {
     EXPECT_GT(count_of(page, "a\"b'c&amp;d&lt;e&gt;"), 0u);
     EXPECT_EQ(page.find('\x1b'), std::string::npos);
     EXPECT_EQ(count_of(page, "<h2 id=\"machine\">"), 1u) << "the page is whole";
+}
+
+TEST_F(ReportShown, ErrorsOfLightOverSecondsAndSamples) {
+    const std::string page = shown(sample_report());
+    EXPECT_EQ(count_of(page, "RMSE over seconds: "), 1u);
+    EXPECT_EQ(count_of(page, "RMSE over samples a pixel: independent, CPU 0.300 at 1.00"), 1u) << "the whole curve as text";
+    EXPECT_GE(count_of(page, "-0.717"), 1u);
+    EXPECT_GE(count_of(page, "not told"), 4u) << "registers and spills of two rows";
+    EXPECT_EQ(count_of(page, "path, cold"), 2u) << "in its table and in that of all rows";
 }
 
 TEST_F(ReportShown, NanAndInfinityAreNoNumbers) {

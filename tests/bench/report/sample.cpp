@@ -148,6 +148,27 @@ void add_structures(BenchReport& report, const char* suite, const std::string& s
     }
 }
 
+void add_light(BenchReport& report) {
+    for (const char* sampler : {"independent", "sobol"}) {
+        BenchRecord r = record_on(kWhere[0], "light", "veach", "light");
+        r.variant = sampler;
+        r.time_ms = r.wall_ms = around(900);
+        r.light = {sampler, "mis", "1024 samples of another seed", 1.165, sampler[0] == 'i' ? -.503 : -.717, {}, 116, -1, -1};
+        for (unsigned samples = 1; samples <= 64; samples *= 4) {
+            const double rmse = .3 * std::pow(samples, r.light.slope);
+            r.light.points.push_back({samples, 56. * samples, rmse, rmse * .9, rmse * rmse});
+        }
+        report.records.push_back(r);
+    }
+    for (const char* label : {"path, cold", "path, warm"}) {
+        BenchRecord r = record_on(kWhere[0], "light", "veach", "start");
+        r.variant = label;
+        r.time_ms = around(label[6] == 'c' ? 8200 : 140);
+        r.wall_ms = around(label[6] == 'c' ? 8700 : 640);
+        report.records.push_back(r);
+    }
+}
+
 }  // namespace
 
 BenchReport sample_report() {
@@ -169,6 +190,7 @@ BenchReport sample_report() {
     add_structures(report, "accel", "bunny", 69451);
     for (uint64_t triangles = 1488; triangles < 12000000; triangles *= 3)
         add_structures(report, "scale", "spot_x" + std::to_string(triangles / 372), triangles);
+    add_light(report);
     report.notes = {"shared models were not found in /nowhere; CLARITY_SHARED should name their folder"};
     return report;
 }

@@ -180,18 +180,6 @@ TEST(Lights, NothingIsInfiniteNearLights) {
         }
 }
 
-// Where a device has put the leaves in another order, surfaces are found by rays alone.
-TEST(Lights, SurfacesOfUnknownLeavesAreNotDrawn) {
-    LightBench bench(full_scene(), full_view(), 8, false);
-    for (const LightDraw& draw : bench.draw({0.1f, 0.05f, -0.2f}, even_numbers(4096, 1))) ASSERT_NE(draw.number, 0x40000000);
-    size_t found = 0;
-    for (const LightDraw& ray : bench.find({0.1f, 0.05f, -0.2f}, even_numbers(4096, 1))) {
-        if (ray.found[0] < 2 || ray.found_pdf != 0) continue;
-        ++found;
-    }
-    EXPECT_GT(found, 200u);
-}
-
 TEST(Lights, WithoutAnyNothingIsDrawn) {
     LightBench bench(empty_scene(), dark_view());
     for (const LightDraw& draw : bench.draw({0, 0, 0}, even_numbers(64, 1))) {

@@ -148,20 +148,19 @@ Scene with_all_kinds(Scene scene) {
 struct LightBench::Impl {
     ScenePtr scene;
     View view;
-    bool knows_leaves = true;
     std::shared_ptr<Device> device;
     std::shared_ptr<const Prepared> prepared;
     std::shared_ptr<TraceProgram> program;
     ViewBuffers buffers;
 };
 
-LightBench::LightBench(const Scene& scene, const View& view, int lanes, bool knows_leaves) : impl_(std::make_unique<Impl>()) {
+LightBench::LightBench(const Scene& scene, const View& view, int lanes) : impl_(std::make_unique<Impl>()) {
     Impl& im = *impl_;
     im.scene = shared_scene(with_all_kinds(scene));
     im.view = view;
-    im.knows_leaves = knows_leaves;
     im.device = Workbench::get().shared_device();
     Settings settings = make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}});
+    settings.optics = {RT_LIGHTS_ALL, RT_LOBES_ALL};
     Progress progress;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
     auto accel = std::make_shared<AccelData>(build_accel(*im.scene, plugin, default_parameters(plugin), progress));
@@ -187,7 +186,7 @@ std::vector<LightDraw> LightBench::run(const Point& at, const Numbers& numbers, 
         Settings settings = im.prepared->settings;
         im.buffers.write(queue, *im.scene, *im.prepared->on_device,
                          {make_frame(im.view, settings, im.prepared->layout, *im.prepared->accel, 0)}, im.view);
-        im.buffers.write_emitters(queue, *im.scene, im.prepared->accel, im.view, im.knows_leaves);
+        im.buffers.write_emitters(queue, *im.scene, im.prepared->accel, im.view);
         const cl::Context& context = im.device->context();
         const cl::Buffer from(context, CL_MEM_READ_ONLY, in.size() * sizeof(float)),
             to(context, CL_MEM_READ_WRITE, out.size() * sizeof(float));

@@ -30,8 +30,7 @@ Numbers random_numbers(size_t count, unsigned seed);
 
 class LightBench {
  public:
-    // knows_leaves: see make_emitter_table().
-    LightBench(const Scene& scene, const View& view, int lanes = 8, bool knows_leaves = true);
+    LightBench(const Scene& scene, const View& view, int lanes = 8);
     ~LightBench();
     // Draws lights from a point.
     std::vector<LightDraw> draw(const Point& at, const Numbers& numbers);

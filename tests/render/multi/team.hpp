@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/view/view_optics.hpp"
 #include "support/scenes.hpp"
 
 namespace clarity::test {
@@ -19,7 +20,8 @@ struct Team {
 
     FrameStats trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample = 0,
                      unsigned samples = 1) {
-        return frames.trace(preparer.prepare(scene, settings, progress), settings, view, sample, true, progress, samples);
+        return frames.trace(preparer.prepare(scene, with_optics(settings, *scene, view), progress), settings, view, sample,
+                            true, progress, samples);
     }
 };
 

@@ -16,7 +16,7 @@ KernelRow row_of(const std::vector<const char*>& headers, unsigned traits, const
     row.entry = "trace_iterative";
     row.headers = headers;
     row.defines = defines;
-    row.traits = traits | kFrame | kCountsRays;
+    row.traits = traits | kFrame | kCountsRays | kWhitted;
     row.define = define_ray_slots;
     return row;
 }

@@ -133,7 +133,7 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.entry = "trace_wavefront";
         r.headers = {"shading/material.h", "shading/shading.h", "tracers/ray_step.h", "lanes/work_distribution.h",
                      "tracers/wavefront/wavefront_rays.h"};
-        r.traits = kLimitRegisters | kFrame | kCountsRays;
+        r.traits = kLimitRegisters | kFrame | kCountsRays | kWhitted;
         return r;
     }();
     return row;

@@ -30,7 +30,8 @@ LaneKernel& loader() {
         "READS);"
         "ctx.texels = (const global uint *)(given + 8 * READS + 4);"
         "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(7)); s.tex_u = in[1]; s.tex_v = in[2];"
-        "const rt_bsdf b = rt_bsdf_of(&ctx, &s, RT_MASK(in[3] > 0.5f), RT_ALL_LANES, rt_vec_of(in[4], in[5], in[6]));"
+        "const rt_bsdf b = rt_bsdf_of(&ctx, &s, RT_MASK(in[3] > 0.5f), rt_vfloat(1.0f), RT_ALL_LANES, rt_vec_of(in[4], in[5], "
+        "in[6]));"
         "out[0] = b.color.x; out[1] = b.color.y; out[2] = b.color.z; out[3] = b.diffuse; out[4] = b.mirror; out[5] = b.metal; "
         "out[6] = b.glass;"
         "out[7] = b.alpha; out[8] = b.eta; out[9] = rt_select(b.compensate, rt_vfloat(1.0f), rt_vfloat(0.0f));",

@@ -1,0 +1,77 @@
+#include "render/view/view_optics.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "render/settings/tracer_choice.hpp"
+
+namespace clarity {
+namespace {
+
+bool any(const rt_f32 (&color)[3]) {
+    return std::any_of(std::begin(color), std::end(color), [](float channel) { return channel > 0; });
+}
+
+void add(Optics& optics, const rt_light& light) {
+    optics.lights |= 1u << light.kind;
+    const bool fades = light.kind <= RT_LIGHT_SPOT && (light.flags & RT_LIGHT_FALLOFF);
+    if (fades) optics.lights |= RT_LIGHTS_FADE;
+}
+
+void add(Optics& optics, const rt_material& m) {
+    if (any(m.emission)) optics.lights |= 1u << RT_EMITTER_SURFACE;
+    switch (m.model) {
+        case RT_MODEL_WHITTED:
+            if (m.reflect > 0) optics.lobes |= RT_LOBE_MIRROR;
+            if (m.refract > 0) optics.lobes |= RT_LOBE_GLASS;
+            break;
+        case RT_MODEL_CONDUCTOR:
+            optics.lobes |= RT_LOBE_METAL;
+            break;
+        case RT_MODEL_DIELECTRIC:
+            optics.lobes |= RT_LOBE_GLASS;
+            if (m.roughness > 0) optics.lobes |= RT_LOBE_FROSTED;
+            break;
+    }
+    if ((optics.lobes & RT_LOBE_GLASS) && any(m.absorption)) optics.lobes |= RT_LOBE_ABSORBS;
+}
+
+Optics seen_by(const Settings& settings, const Optics& optics) {
+    return picture_of_tracer(settings.tracer) == kPathPicture ? optics : optics.for_whitted();
+}
+
+Optics sky_of(const Scene& scene, const std::array<float, 3>& background) {
+    const bool shines =
+        scene.sky.values.kind != RT_NONE || std::any_of(background.begin(), background.end(), [](float c) { return c > 0; });
+    return {shines ? 1u << RT_EMITTER_SKY : 0u, 0};
+}
+
+}  // namespace
+
+Optics optics_of(const Scene& scene) {
+    Optics optics = sky_of(scene, scene.background);
+    for (const Light& light : scene.lights) add(optics, light.values);
+    if (scene.lights.empty()) optics.lights |= 1u << RT_LIGHT_POINT;  // those that make_view() adds
+    for (const Material& material : scene.materials) add(optics, material.values);
+    return optics;
+}
+
+Optics optics_of(const Scene& scene, const View& view, const Settings& settings) {
+    Optics optics = sky_of(scene, view.background);
+    for (const rt_light& light : view.lights) add(optics, light);
+    for (const rt_material& material : view.materials) add(optics, material);
+    if (view.materials.empty())
+        for (const Material& material : scene.materials) add(optics, material.values);
+    return seen_by(settings, optics);
+}
+
+bool knows(const Settings& prepared, const Scene& scene, const View& view) {
+    return seen_by(prepared, optics_of(scene) | prepared.optics).covers(optics_of(scene, view, prepared));
+}
+
+Settings with_optics(Settings settings, const Scene& scene, const View& view) {
+    settings.optics = optics_of(scene, view, settings);
+    return settings;
+}
+
+}  // namespace clarity
