@@ -36,7 +36,7 @@ TEST(PathFaults, AreFound) {
          "PathSums.OfAM*"},
         {"a wrong digit of Sobol's", "sampling/sobol.h",
          "{0x00000001u, 0x00000003u, 0x00000005u, 0x0000000fu, 0x00000011u, 0x00000033u,",
-         "{0x00000001u, 0x00000003u, 0x00000005u, 0x0000000eu, 0x00000011u, 0x00000033u,", "PathSamplers.Sobol*"},
+         "{0x00000001u, 0x00000003u, 0x00000005u, 0x00000007u, 0x00000011u, 0x00000033u,", "PathSamplers.Sobol*"},
         {"a seed that counts for nothing", "sampling/dimensions.h", "rt_vuint(s->seed)", "rt_vuint(0u)", "PathSamplers.Seeds*"},
         {"a sine with a wrong digit", "sampling/math.h", "-1.666666664e-1f", "-1.666566664e-1f", "PathMath.Functions*"},
     };
