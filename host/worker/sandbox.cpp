@@ -70,8 +70,7 @@ void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders, con
     if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time");
     signal(SIGXFSZ, SIG_IGN);
     if (kind == WorkerKind::driver) {
-        const std::string call_note = detail::restrict_system_calls(kind);
-        if (!call_note.empty()) note("system calls are not restricted: " + call_note);
+        if (const Problem why = detail::restrict_system_calls(kind)) note("system calls are not restricted: " + why.text());
         return;
     }
     limit(RLIMIT_NOFILE, 64, 64, "the number of open files");
@@ -86,10 +85,9 @@ void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders, con
         }
     }
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) note("no_new_privs is not available");
-    const std::string file_note = detail::restrict_files(folders, files);
-    if (!file_note.empty()) note("reading is not restricted to the scene's folders: " + file_note);
-    const std::string call_note = detail::restrict_system_calls(kind);
-    if (!call_note.empty()) note("system calls are not restricted: " + call_note);
+    if (const Problem why = detail::restrict_files(folders, files))
+        note("reading is not restricted to the scene's folders: " + why.text());
+    if (const Problem why = detail::restrict_system_calls(kind)) note("system calls are not restricted: " + why.text());
 }
 
 void allow_writing_result() {
@@ -101,7 +99,7 @@ void allow_writing_result() {
 }
 
 #ifdef CLARITY_LANDLOCK
-std::string detail::restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files) {
+Problem detail::restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files) {
     const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (version < 1) return std::string("Landlock is not available: ") + std::strerror(errno);
     landlock_ruleset_attr ruleset{};
@@ -128,7 +126,7 @@ std::string detail::restrict_files(const std::vector<std::string>& folders, cons
     return why;
 }
 #else
-std::string detail::restrict_files(const std::vector<std::string>&, const std::vector<std::string>&) {
+Problem detail::restrict_files(const std::vector<std::string>&, const std::vector<std::string>&) {
     return "built without Landlock's header";
 }
 #endif

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
+
 namespace clarity::worker {
 
 // What a worker does, which decides what it may do.
@@ -32,9 +34,9 @@ void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders = {}
 void allow_writing_result();
 
 namespace detail {
-// Both return an empty text on success, otherwise why the kernel refused.
-std::string restrict_system_calls(WorkerKind kind);
-std::string restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files);
+// Both return nothing on success, otherwise why the kernel refused.
+Problem restrict_system_calls(WorkerKind kind);
+Problem restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files);
 }  // namespace detail
 
 }  // namespace clarity::worker

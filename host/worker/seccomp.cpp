@@ -98,7 +98,7 @@ class Filter {
 
 }  // namespace
 
-std::string detail::restrict_system_calls(WorkerKind kind) {
+Problem detail::restrict_system_calls(WorkerKind kind) {
     const auto note = [](int error) {
         return error == 0 ? std::string() : std::string("seccomp is not available: ") + std::strerror(error);
     };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/aligned_bytes.hpp"
+#include "base/problem.hpp"
 #include "bench/baselines/whitted.hpp"
 #include "bench/suites/ray_sets.hpp"
 
@@ -20,7 +21,7 @@ struct BaselineMesh {
 };
 BaselineMesh make_baseline_mesh(const Scene& scene);
 // Returns the reason why the baselines cannot trace this scene (it has other primitives than triangles), "" if they can.
-std::string baselines_cannot(const Scene& scene);
+Problem baselines_cannot(const Scene& scene);
 
 struct BaselineHit {
     float t;  // distance; +inf: nothing was hit. Any-hit query: 0 if something was hit

@@ -103,7 +103,7 @@ class MotionCase : CaseRun {
         mover->built = std::make_shared<const AccelData>(
             build_accel(*fixture.scene(), plugin, settings.accel_params, progress, fixture.target_of(plugin)));
         mover->accel = std::make_unique<HostMover>(fixture.scene(), mover->built);
-        if (!mover->accel->cannot().empty()) throw Error(Exit::usage, mover->accel->cannot());
+        if (mover->accel->cannot()) throw Error(Exit::usage, mover->accel->cannot().text());
         for (const Pose& pose : poses_) move(*mover, pose);
         return mover;
     }
@@ -164,7 +164,7 @@ class MotionCase : CaseRun {
         for (Instance& instance : apart->instances) instance.apart = true;
         state->prepared = Preparer(plugins, device).prepare(apart, settings, progress);
         state->motion = std::make_unique<DeviceMover>(device, apart, state->prepared->accel, state->prepared->on_device);
-        if (!state->motion->cannot().empty()) throw Error(Exit::usage, state->motion->cannot());
+        if (state->motion->cannot()) throw Error(Exit::usage, state->motion->cannot().text());
         for (const Pose& pose : poses_) {
             const MovedOnDevice moved = state->motion->move(pose);
             if (!moved.on_device) throw Error(Exit::failed, "the structure cannot follow: " + moved.why);
@@ -239,8 +239,7 @@ class MotionCase : CaseRun {
     }
 
     void add_baseline(const std::string& quality) {
-        if (fixture.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || !baselines_cannot(*fixture.scene()).empty())
-            return;
+        if (fixture.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || baselines_cannot(*fixture.scene())) return;
         Entry& entry = state_.add_entry();
         entry.row.baseline = entry.row.variant = "embree " + quality;
         describe_host(entry.row, fixture.baseline_threads());

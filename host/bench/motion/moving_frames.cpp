@@ -80,7 +80,7 @@ MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device
     Preparer preparer(plugins, device_);
     prepared_ = preparer.prepare(scene_, settings_, progress);
     motion_ = std::make_unique<DeviceMover>(device_, scene_, prepared_->accel, prepared_->on_device, rest_scene_);
-    if (!motion_->cannot().empty()) throw Error(Exit::usage, motion_->cannot());
+    if (motion_->cannot()) throw Error(Exit::usage, motion_->cannot().text());
     if (builds() && !motion_->can_build()) throw Error(Exit::usage, "accel " + settings_.accel + " is not built by devices");
     const MovedOnDevice first = motion_->move(plays_clip() ? clip_pose(0)
                                               : waves      ? moved_pose(scene, "wave", 0.1)

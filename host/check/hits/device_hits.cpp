@@ -81,7 +81,7 @@ Outcome trace_moved(const rt_plugin& plugin, const rt_plugin* layout, const std:
         step(std::string("preparing the scene, ") + form_text(form), kDeviceLimit_s);
         const auto prepared = scene.prepared(variant);
         DeviceMover motion(device, rest, scene.accel(), prepared->on_device, nullptr, form);
-        if (!motion.cannot().empty()) return Outcome::skipped(motion.cannot());
+        if (motion.cannot()) return Outcome::skipped(motion.cannot().text());
         using Update = DeviceMover::Update;
         struct Turn {
             const char* what;

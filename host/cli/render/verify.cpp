@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/files/temporary_folder.hpp"
 #include "base/printable.hpp"
+#include "base/problem.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/render/frame_record.hpp"
@@ -13,8 +14,7 @@
 namespace clarity {
 namespace {
 
-// What is wrong with a frame; empty: nothing.
-std::string difference(const PluginRegistry& plugins, const RenderOptions& asked, const std::string& path) {
+Problem difference(const PluginRegistry& plugins, const RenderOptions& asked, const std::string& path) {
     const FrameRecord record = read_record(path);
     const std::string picture = (std::filesystem::path(path).parent_path() / record.picture).string();
     const std::string found = digest_of_file(picture);
@@ -42,11 +42,11 @@ int run_verify(const PluginRegistry& plugins, const RenderOptions& options) {
     if (!options.output.empty()) throw Error(Exit::usage, "--verify writes no picture; leave --output out");
     int code = 0;
     for (const std::string& path : options.scene.files) {
-        const std::string why = difference(plugins, options, path);
+        const Problem why = difference(plugins, options, path);
         if (interrupted()) return static_cast<int>(Exit::interrupted);
-        print_text("%s: %s\n", path.c_str(), why.empty() ? "the same, bit for bit" : why.c_str());
+        print_text("%s: %s\n", path.c_str(), why ? why.text().c_str() : "the same, bit for bit");
         std::fflush(stdout);
-        if (!why.empty()) code = static_cast<int>(Exit::failed);
+        if (why) code = static_cast<int>(Exit::failed);
     }
     return code;
 }

@@ -1,7 +1,6 @@
 // pose_mover.hpp -- who moves a built structure to poses: HostMover, or DeviceMover on each of the devices that trace it.
 #pragma once
-#include <string>
-
+#include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "render/moving/moved_structure.hpp"
 #include "scene/motion/pose.hpp"
@@ -11,8 +10,8 @@ namespace clarity {
 class PoseMover {
  public:
     virtual ~PoseMover() = default;
-    // Why the structure can only be built anew; empty: it can follow poses.
-    virtual const std::string& cannot() const = 0;
+    // Why the structure can only be built anew; nothing: it can follow poses.
+    virtual const Problem& cannot() const = 0;
     virtual bool on_devices() const { return false; }
     // Whether move() can build trees, where they are traced; otherwise the caller builds.
     virtual bool can_build() const { return false; }

@@ -149,6 +149,7 @@ TEST_P(DeviceMoverTest, SaysWhenABuildIsNeeded) {
     const auto other = prepare_queries(device(), rings(), linear, {}, progress);
     EXPECT_NE(DeviceMover(Workbench::get().shared_device(), rings(), linear, other->on_device, nullptr, GetParam())
                   .cannot()
+                  .text()
                   .find("linear"),
               std::string::npos);
 }

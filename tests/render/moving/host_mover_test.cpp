@@ -301,7 +301,7 @@ TEST(HostMover, RefusesAMeshThatIsPlacedFlatAndRound) {
     const ScenePtr scene = shared_scene(std::move(pressed));
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
     HostMover moving(scene, build(scene, plugin));
-    EXPECT_NE(moving.cannot().find("`placed 3` has no volume"), std::string::npos) << moving.cannot();
+    EXPECT_NE(moving.cannot().text().find("`placed 3` has no volume"), std::string::npos) << moving.cannot();
     EXPECT_FALSE(moving.move(pose_of(*scene), progress).accel);
 
     Scene once = *rings();  // a mesh that is placed once may be pressed flat

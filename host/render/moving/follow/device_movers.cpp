@@ -12,7 +12,7 @@ class DeviceMovers : public PoseMover {
  public:
     explicit DeviceMovers(std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMover>>> movers)
         : movers_(std::move(movers)) {}
-    const std::string& cannot() const override { return movers_.front().second->cannot(); }
+    const Problem& cannot() const override { return movers_.front().second->cannot(); }
     bool on_devices() const override { return true; }
     bool can_build() const override { return movers_.front().second->can_build(); }
     bool can_deform() const override {
@@ -55,7 +55,7 @@ std::unique_ptr<PoseMover> make_device_mover(
     std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMover>>> movers;
     for (const auto& [device, on_device] : on_devices) {
         movers.emplace_back(device, std::make_unique<DeviceMover>(device, scene, built, on_device, rest));
-        *why = movers.back().second->cannot();
+        *why = movers.back().second->cannot().text();
         if (!why->empty()) return nullptr;
     }
     if (movers.empty()) return nullptr;

@@ -28,7 +28,7 @@ std::vector<Pose> poses_of(const Scene& rest, const std::string& clip) {
 double cost_in(const std::vector<Pose>& poses, const std::shared_ptr<const Scene>& scene,
                const std::shared_ptr<const AccelData>& built, Progress& progress) {
     HostMover moving(scene, built);
-    if (!moving.cannot().empty()) throw Error(Exit::failed, moving.cannot());
+    if (moving.cannot()) throw Error(Exit::failed, moving.cannot().text());
     double sum = 0;
     for (const Pose& pose : poses) {
         const MovedStructure moved = moving.move(pose, progress);

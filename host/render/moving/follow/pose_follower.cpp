@@ -34,7 +34,7 @@ PoseFollower::Way way_of(const std::string& poses) {
 Problem PoseFollower::why_not(const PosedFrom& from, const Pose& pose) const {
     if (!mover_) return "the first pose";
     if (!(from == from_)) return "another scene or clip";
-    if (!mover_->cannot().empty()) return mover_->cannot();
+    if (mover_->cannot()) return mover_->cannot();
     if (deforming_meshes(pose) != deformed_) return "other meshes deform";
     return {};
 }
@@ -59,7 +59,7 @@ void PoseFollower::build_beside(const PosedFrom& from, std::shared_ptr<const Sce
 }
 
 bool PoseFollower::wants_choice(const PosedFrom& from) const {
-    return !from.at_rest && mover_ && from == from_ && !beside_ && !(from == chosen_for_) && mover_->cannot().empty() &&
+    return !from.at_rest && mover_ && from == from_ && !beside_ && !(from == chosen_for_) && !mover_->cannot() &&
            !mover_->can_build();
 }
 

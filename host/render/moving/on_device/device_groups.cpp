@@ -21,7 +21,7 @@ DeviceGroups::DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const Ac
       builder_(device_build_of(*built_->plugin)),
       params_(built_->layout == built_->plugin ? built_->params : default_parameters(*built_->layout)) {
     cannot_ = find_groups();
-    if (!cannot_.empty()) return;
+    if (cannot_) return;
     place_trees();
     make_scratch();
     program_ = kernels.compile(kernel_text("rt_shared.h") + kernel_text("rt_types.h") + "#line 1 \"cl/build/move.cl\"\n" +
@@ -29,8 +29,8 @@ DeviceGroups::DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const Ac
                                "build/move.cl");
 }
 
-// Finds the nodes and leaves of each group. Returns why the structure cannot be refitted on the device; empty: it can.
-std::string DeviceGroups::find_groups() {
+// Finds the nodes and leaves of each group. Returns why the structure cannot be refitted on the device; nothing: it can.
+Problem DeviceGroups::find_groups() {
     const std::string name = std::string("accel ") + built_->layout->id;
     if (!layout_.refit || !layout_.ranges) return name + " does not offer a refit on the device";
     if (kernels_.device().info().cl_device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") == std::string::npos)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/device_build/build_kernels.hpp"
 #include "render/device_build/device_plan.hpp"
@@ -38,8 +39,8 @@ class DeviceGroups {
     DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built,
                  std::shared_ptr<const DeviceScene> on_device, const DevicePose& pose);
 
-    // Why the structure cannot be refitted on this device; empty: it can.
-    const std::string& cannot() const { return cannot_; }
+    // Why the structure cannot be refitted on this device; nothing: it can.
+    const Problem& cannot() const { return cannot_; }
     // Whether its trees can be built there, too: by the structure's own builder.
     bool can_build() const { return builder_.topology && layout_.pack && layout_.elements; }
     uint64_t primitives(rt_u32 group) const { return groups_[group].count; }
@@ -58,7 +59,7 @@ class DeviceGroups {
         rt_u32 first_leaf = 0;
         uint64_t count = 0;  // primitives
     };
-    std::string find_groups();
+    Problem find_groups();
     void place_trees();
     void make_scratch();
 
@@ -68,7 +69,7 @@ class DeviceGroups {
     const DevicePose& pose_;
     const rt_device_build layout_, builder_;  // builder_: without functions if the host builds for this layout itself
     const ParameterValues params_;
-    std::string cannot_;
+    Problem cannot_;
     std::vector<Group> groups_;
     cl::Program program_;                  // move.cl
     cl::Buffer ranges_;                    // rt_device_tree::ranges of the structure as it was built

@@ -46,7 +46,7 @@ DeviceMover::~DeviceMover() {
     }
 }
 
-const std::string& DeviceMover::cannot() const {
+const Problem& DeviceMover::cannot() const {
     return groups_->cannot();
 }
 
@@ -269,7 +269,7 @@ std::vector<MovedGroup> DeviceMover::moved_groups() const {
 MovedOnDevice DeviceMover::move(const Pose& pose, Update update) {
     const auto begin = std::chrono::steady_clock::now();
     MovedOnDevice result;
-    result.why = cannot();
+    result.why = cannot().text();
     if (!result.why.empty()) return result;
     return wrap_cl_errors(*device_, "moving the scene", [&] {
         if (!started_) start();

@@ -1,7 +1,7 @@
 // device_mover.hpp -- a structure on a device that follows the poses of its scene there.
 //
 //   DeviceMover motion(device, scene, structure, on_device, rest);   // of a finished build
-//   if (motion.cannot().empty()) {
+//   if (!motion.cannot()) {
 //       const MovedOnDevice moved = motion.move(evaluate_without_vertices(rest, clip, time));
 //       if (moved.on_device) draw it; else build a new one, for the reason moved.why
 //   }
@@ -47,9 +47,9 @@ class DeviceMover {
                 BuildForm form = BuildForm::automatic);
     ~DeviceMover();
 
-    // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; empty: it can follow
+    // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; nothing: it can follow
     // poses.
-    const std::string& cannot() const;
+    const Problem& cannot() const;
 
     // Moves the structure to a pose of the same scene, as HostMover::move(). The device makes the vertices that the pose
     // leaves out; others are sent. Throws Error(failed).

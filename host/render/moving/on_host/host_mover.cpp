@@ -62,7 +62,7 @@ void HostMover::find_flat_instances() {
         const Instance& instance = scene_->instances[i];
         if (!instance.visible || build.number_of_instance[i] != RT_NONE) continue;
         rt_u32& flat = flat_instance_[instance.mesh];
-        if (cannot_.empty() && (flat != RT_NONE || build.group_of_mesh[instance.mesh] != 0))
+        if (!cannot_ && (flat != RT_NONE || build.group_of_mesh[instance.mesh] != 0))
             cannot_ = name_of(instance, i) + " has no volume, and its mesh is placed elsewhere, too";
         flat = i;
     }
@@ -319,8 +319,8 @@ MovedStructure HostMover::refit_into_spare(Progress& progress) {
 MovedStructure HostMover::move(const Pose& pose, Progress& progress) {
     const auto begin = std::chrono::steady_clock::now();
     MovedStructure result;
-    if (!cannot_.empty()) {
-        result.why = cannot_;
+    if (cannot_) {
+        result.why = cannot_.text();
         return result;
     }
     if (!started_) start(progress);

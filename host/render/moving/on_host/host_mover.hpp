@@ -2,7 +2,7 @@
 // keeps its meshes and instances.
 //
 //   HostMover moving(scene, structure);               // of a finished build
-//   if (moving.cannot().empty()) {
+//   if (!moving.cannot()) {
 //       const MovedStructure moved = moving.move(evaluate(scene, clip, time), progress);
 //       if (moved.accel) draw it; else build a new one, for the reason moved.why
 //   }
@@ -34,8 +34,8 @@ class HostMover : public PoseMover {
     HostMover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built);
     ~HostMover() override;
 
-    // Why the structure can only be built anew: "accel linear does not offer `refit`"; empty: it can be refitted.
-    const std::string& cannot() const override { return cannot_; }
+    // Why the structure can only be built anew: "accel linear does not offer `refit`"; nothing: it can be refitted.
+    const Problem& cannot() const override { return cannot_; }
 
     // Moves the structure to a pose of the same scene: as evaluate() returns it for the scene that this one is a pose of, or
     // is. Meshes that the pose does not have are where the scene has them. Throws Error(failed) if the plugin fails, and
@@ -72,7 +72,7 @@ class HostMover : public PoseMover {
     const std::shared_ptr<const Scene> scene_;
     const std::shared_ptr<const AccelData> built_;
     const rt_refit plugin_;
-    std::string cannot_;
+    Problem cannot_;
     ParameterValues params_;
     std::vector<uint64_t> primitives_of_group_;
     UninitializedVector<rt_u32> corners_;

@@ -11,8 +11,8 @@ namespace {
 // Mesa's llvmpipe compiles a kernel when it is first launched with a size of work-group. Seconds; measured 20 to 90.
 constexpr double kLlvmpipeCompiles_s = 150;
 
-// Returns why there is no trial; empty: the kernels have passed. Throws Error if they have not.
-std::string try_kernels(const TrialJob& job) {
+// Returns why there is no trial; nothing: the kernels have passed. Throws Error if they have not.
+Problem try_kernels(const TrialJob& job) {
     std::vector<std::string> libraries;
     for (const auto& [loaded, original] : job.libraries) {
         if (loaded != original) note_private_copy(loaded, original);
@@ -36,7 +36,7 @@ std::string try_kernels(const TrialJob& job) {
 void trial_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<TrialJob>(arguments);
     worker::enter_sandbox(worker::WorkerKind::driver);
-    worker::answer(try_kernels(job));
+    worker::answer(try_kernels(job).text());
 }
 
 }  // namespace clarity

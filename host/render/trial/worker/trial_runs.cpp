@@ -53,8 +53,8 @@ cl::Buffer guarded_buffer(Device& device, std::list<GuardedBytes>& memory, const
 
 }  // namespace
 
-std::string try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, const std::shared_ptr<Device>& device,
-                               const TrialSteps& say_step) {
+Problem try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, const std::shared_ptr<Device>& device,
+                           const TrialSteps& say_step) {
     std::vector<ShapeKind> kinds;
     for (const TrialShape& shape : job.shapes) {
         const auto same = [&](const ShapeKind& kind) { return kind.id == shape.id; };
@@ -85,7 +85,7 @@ std::string try_on_small_scene(const TrialJob& job, const PluginRegistry& plugin
     return {};
 }
 
-std::string try_film_kernels(const std::shared_ptr<Device>& device, const TrialSteps& say_step) {
+Problem try_film_kernels(const std::shared_ptr<Device>& device, const TrialSteps& say_step) {
     say_step("compiling kernels", kCompileLimit_s);
     const auto begin = std::chrono::steady_clock::now();
     std::optional<FilmKernels> kernels;
@@ -127,7 +127,7 @@ std::string try_film_kernels(const std::shared_ptr<Device>& device, const TrialS
                 film.begin_sum(counters, kPixels, width);
                 film.end_sum(times.front());
             });
-        return std::string();
+        return Problem();
     });
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "base/problem.hpp"
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
 #include "render/trial/trial_job.hpp"
@@ -13,11 +14,11 @@ namespace clarity {
 // threads it may take.
 using TrialSteps = std::function<void(const std::string& step, double limit_s)>;
 
-// Runs kernels as the job says. Returns why there is no trial; empty: the kernels have passed. Throws Error if they have
+// Runs kernels as the job says. Returns why there is no trial; nothing: the kernels have passed. Throws Error if they have
 // not. job: of other kernels than the film's; its `settings` are those of the program that is tried.
-std::string try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, const std::shared_ptr<Device>& device,
-                               const TrialSteps& say_step);
+Problem try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, const std::shared_ptr<Device>& device,
+                           const TrialSteps& say_step);
 // The same for the kernels of the film.
-std::string try_film_kernels(const std::shared_ptr<Device>& device, const TrialSteps& say_step);
+Problem try_film_kernels(const std::shared_ptr<Device>& device, const TrialSteps& say_step);
 
 }  // namespace clarity
