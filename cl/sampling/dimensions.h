@@ -11,13 +11,15 @@
  *                3           Russian roulette
  *   2 + 2 event  0           pick of a light
  *                1, 2        point or direction of that light
- *                3           free */
+ *                3           free
+ *   beyond       0           whether a surface that is there in part stops the ray: a set for each that it meets before its next event */
 #ifndef RT_DIMENSIONS_H
 #define RT_DIMENSIONS_H
 
 #define RT_CAMERA_SET rt_vint(0)
 #define RT_SURFACE_SET(event) (rt_vint(1) + (event) * rt_vint(2))
 #define RT_LIGHT_SET(event) (rt_vint(2) + (event) * rt_vint(2))
+#define RT_CUTOUT_SET(event, step) (rt_vint(4096) + (event) * rt_vint(4096) + rt_vint((int)(step)))
 
 typedef struct rt_sampler {
     vint pixel;  /* its number in the picture */

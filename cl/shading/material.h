@@ -7,6 +7,9 @@ typedef struct rt_shade {
     rt_vec color; /* diffuse, texture included */
     rt_vec emission, specular;
     vfloat shininess, reflect, refract, ior;
+#ifdef RT_HAS_CUTOUTS
+    vfloat coverage; /* the share of the surface that is there */
+#endif
 } rt_shade;
 
 #if RT_HAS_TEXTURES
@@ -57,9 +60,9 @@ RT_INLINE void rt_wrapped_texels(vfloat x, vint size, uint mode, vint *here, vin
 }
 #endif
 
-/* Samples texture `index` at (u, v) in each of `lanes`: bilinear, and outside of its picture as its wrap modes say. Converts its
- * RGBA8 texels from sRGB to linear RGB. */
-RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, vfloat u, vfloat v)
+/* The four RGBA8 texels of texture `index` at (u, v) in each of `lanes`, and their weights: bilinear, and outside of its picture as
+ * its wrap modes say. */
+RT_INLINE void rt_load_texels(const rt_ctx *ctx, uint index, vmask lanes, vfloat u, vfloat v, vint *color, vfloat *weight)
 {
     const rt_texture texture = ctx->textures[index];
     const global uint *texels = ctx->texels + texture.first;
@@ -81,19 +84,41 @@ RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, v
     rt_texels(left, w, &x0, &x1);
     rt_texels(above, h, &y0, &y1);
 #endif
-    rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
     for (int k = 0; k < 4; ++k) {
         int texel[RT_LANES];
         rt_store(rt_select(lanes, (k & 2 ? y1 : y0) * w + (k & 1 ? x1 : x0), rt_vint(0)), texel);
         for (uint l = 0; l < RT_LANES; ++l) texel[l] = (int)texels[texel[l]];
-        const vint color = rt_load(texel);
-        const vfloat weight = (k & 1 ? fx : one - fx) * (k & 2 ? fy : one - fy);
-        sum.x += weight * rt_linear(color);
-        sum.y += weight * rt_linear(color >> rt_vint(8));
-        sum.z += weight * rt_linear(color >> rt_vint(16));
+        color[k] = rt_load(texel);
+        weight[k] = (k & 1 ? fx : one - fx) * (k & 2 ? fy : one - fy);
+    }
+}
+
+/* Samples a texture's colour. Its texels are converted from sRGB to linear RGB. */
+RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, vfloat u, vfloat v)
+{
+    vint color[4];
+    vfloat weight[4];
+    rt_load_texels(ctx, index, lanes, u, v, color, weight);
+    rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
+    for (int k = 0; k < 4; ++k) {
+        sum.x += weight[k] * rt_linear(color[k]);
+        sum.y += weight[k] * rt_linear(color[k] >> rt_vint(8));
+        sum.z += weight[k] * rt_linear(color[k] >> rt_vint(16));
     }
     return sum;
 }
+
+#ifdef RT_HAS_CUTOUTS
+/* Samples a texture's alpha, which is linear. */
+RT_INLINE vfloat rt_sample_alpha(const rt_ctx *ctx, uint index, vmask lanes, vfloat u, vfloat v)
+{
+    vint color[4];
+    vfloat weight[4], sum = rt_vfloat(0.0f);
+    rt_load_texels(ctx, index, lanes, u, v, color, weight);
+    for (int k = 0; k < 4; ++k) sum += weight[k] * rt_to_float((color[k] >> rt_vint(24)) & rt_vint(255));
+    return sum * rt_vfloat(1.0f / 255.0f);
+}
+#endif
 #endif
 
 /* The color of one material in the lanes `mine`, with its checkerboard and texture and the colours of vertices. */
@@ -114,6 +139,36 @@ RT_INLINE rt_vec rt_material_color(const rt_ctx *ctx, const global rt_material *
     return color;
 }
 
+#ifdef RT_HAS_CUTOUTS
+/* The share of a surface of material m that is there. */
+RT_INLINE vfloat rt_coverage_of(const rt_ctx *ctx, const global rt_material *m, const rt_surface *s, vmask lanes)
+{
+    vfloat alpha = rt_vfloat(m->opacity);
+#ifdef RT_HAS_COLORS
+    alpha *= s->alpha;
+#endif
+#if RT_HAS_TEXTURES
+    if (m->texture != RT_NONE) alpha *= rt_sample_alpha(ctx, m->texture, lanes, s->tex_u, s->tex_v);
+#endif
+    alpha = rt_min(alpha, rt_vfloat(1.0f)); /* weights of corners and texels add up to 1 but for rounding */
+    if (m->alpha == RT_ALPHA_MASK) alpha = rt_select(RT_MASK(alpha < rt_vfloat(m->cutoff)), rt_vfloat(0.0f), rt_vfloat(1.0f));
+    return alpha;
+}
+
+/* The share of the surface that is there, of the lanes in `bits`; 1 in others. */
+RT_INLINE vfloat rt_coverage(const rt_ctx *ctx, const rt_surface *s, uint bits)
+{
+    vfloat out = rt_vfloat(1.0f);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(s->material, bits); rt_next_group(&g, &id, &mine);) {
+        const global rt_material *m = ctx->materials + id;
+        if (m->alpha != RT_ALPHA_OPAQUE) out = rt_select(mine, rt_coverage_of(ctx, m, s, mine), out);
+    }
+    return out;
+}
+#endif
+
 /* Returns the materials of the lanes in `bits`. Lanes that have the same material are handled together. at: the hit points,
  * world; the checkerboard needs them. */
 RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uint bits, rt_vec at)
@@ -122,6 +177,9 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
     out.color = out.emission = out.specular = rt_splat(0.0f, 0.0f, 0.0f);
     out.reflect = out.refract = rt_vfloat(0.0f);
     out.shininess = out.ior = rt_vfloat(1.0f);
+#ifdef RT_HAS_CUTOUTS
+    out.coverage = rt_coverage(ctx, s, bits);
+#endif
     int id;
     vmask mine;
     for (rt_groups g = rt_group_lanes(s->material, bits); rt_next_group(&g, &id, &mine);) {

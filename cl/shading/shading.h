@@ -36,6 +36,13 @@ RT_INLINE vfloat rt_light_strength(const global rt_light *light, rt_vec at, rt_v
     return side * rt_max(two_sided ? fabs(cosine) : cosine, zero) / rt_max(squared + side, least);
 }
 
+/* The share of light that a surface sends back which is there in part. */
+#ifdef RT_HAS_CUTOUTS
+#define RT_COVERED(shade, light) rt_scale((shade)->coverage, light)
+#else
+#define RT_COVERED(shade, light) (light)
+#endif
+
 /* Computes the light that the points of `count` blocks send back along their rays: emission, ambient light, and every light that
  * is not in shadow. rays, hits: room for the shadow rays. sent: written for blocks in which something was hit. */
 RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame, const rt_point *points, const rt_shade *materials,
@@ -52,6 +59,10 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
         vfloat cosines[RT_STREAM];
         uint asked[RT_STREAM], any_asked = 0;
         RT_RECORD(vfloat distances[RT_STREAM])
+#ifdef RT_HAS_CUTOUTS
+        vmask wanted[RT_STREAM];
+        vfloat reach[RT_STREAM];
+#endif
         RT_FOR_EACH_PACKET(b, count) {
             const rt_point *p = points + b;
             rt_rays *shadow = rays + b;
@@ -73,6 +84,10 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             const vmask lit = p->hits & RT_MASK(cosines[b] > zero) & RT_MASK(rt_dot(p->geometric, towards) > zero);
             asked[b] = rt_bits(lit);
             any_asked |= asked[b];
+#ifdef RT_HAS_CUTOUTS
+            wanted[b] = lit;
+            reach[b] = distance;
+#endif
             shadow->ox = above.x;
             shadow->oy = above.y;
             shadow->oz = above.z;
@@ -102,7 +117,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             if (asked[b] == 0u) continue;
             const rt_point *p = points + b;
             const rt_shade *m = materials + b;
-            const vmask lit = RT_MASK(hits[b].t >= zero);
+            vmask lit = RT_MASK(hits[b].t >= zero);
             const rt_vec towards = rt_vec_of(rays[b].dx, rays[b].dy, rays[b].dz);
             vfloat highlight = zero;
             if (rt_any(p->hits & RT_MASK(rt_largest(m->specular) > zero))) {
@@ -110,6 +125,14 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
                 highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
             }
             rt_vec color = rt_spread(light->color);
+#ifdef RT_HAS_CUTOUTS
+            const vmask occluded = wanted[b] & ~lit;
+            if (rt_any(occluded)) {
+                const vfloat through = rt_light_through(ctx, frame, rays + b, occluded, reach[b], &tally->dropped);
+                color = rt_scale(rt_select(occluded, through, one), color);
+                lit |= occluded & RT_MASK(through > zero);
+            }
+#endif
             if (RT_MAY_SHINE(~RT_LIGHTS_PLAIN) && (light->kind > RT_LIGHT_DIRECTIONAL || light->flags != 0u))
                 color = rt_scale(rt_light_strength(light, rt_vec_of(rays[b].ox, rays[b].oy, rays[b].oz), towards), color);
             diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
@@ -119,13 +142,17 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
         }
     }
     RT_FOR_EACH_PACKET(b, count)
-        if (rt_any(points[b].hits)) sent[b] = rt_add(materials[b].emission, rt_reflected_light(materials + b, diffuse[b], shine[b]));
+        if (rt_any(points[b].hits))
+            sent[b] = RT_COVERED(materials + b, rt_add(materials[b].emission, rt_reflected_light(materials + b, diffuse[b], shine[b])));
 }
 
 /* The shares of the light that come by the mirrored and by the refracted ray. */
 typedef struct rt_split {
     vfloat mirrored, refracted;
     vfloat eta, cos_out; /* of the refracted ray, by Snell's law: sin out = eta sin in */
+#ifdef RT_HAS_CUTOUTS
+    vfloat tinted;       /* of `refracted` the share that the surface's colour tints; the rest passes beside the surface */
+#endif
 } rt_split;
 
 /* Computes the shares by Fresnel's equations for unpolarised light. A refracted sine above 1 means total internal reflection. */
@@ -142,7 +169,27 @@ RT_INLINE rt_split rt_fresnel(const rt_point *p, const rt_shade *m)
     const vmask glass = RT_MASK(m->refract > zero);
     s.mirrored = m->reflect + rt_select(glass, m->refract * fresnel, zero);
     s.refracted = rt_select(glass, m->refract * (one - fresnel), zero);
+#ifdef RT_HAS_CUTOUTS
+    /* What is there in part shows what is behind it: light goes straight on, also that which glass would bend. */
+    const vmask partly = RT_MASK(m->coverage < one);
+    s.mirrored *= m->coverage;
+    s.tinted = s.refracted * m->coverage;
+    s.refracted = s.tinted + (one - m->coverage);
+    s.eta = rt_select(partly, one, s.eta);
+    s.cos_out = rt_select(partly, p->cos_in, s.cos_out);
+#endif
     return s;
+}
+
+/* The weight of the refracted ray. */
+RT_INLINE rt_vec rt_refracted_weight(const rt_split *s, const rt_shade *m, rt_vec weight)
+{
+#ifdef RT_HAS_CUTOUTS
+    /* In this order glass that is there as a whole has the same bits as in scenes without cut-outs. */
+    return rt_along(s->refracted - s->tinted, weight, rt_scale(s->tinted, rt_mul(m->color, weight)));
+#else
+    return rt_scale(s->refracted, rt_mul(m->color, weight));
+#endif
 }
 
 /* The same. *mirrored, *refracted: the lanes in which that ray has a weight above min_weight. weight: of the ray that arrived. */

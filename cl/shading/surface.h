@@ -49,6 +49,9 @@ typedef struct rt_surface {
     vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
 #ifdef RT_HAS_COLORS
     rt_vec color;        /* of the vertices, linear; 1 where there are none */
+#ifdef RT_HAS_CUTOUTS
+    vfloat alpha;        /* likewise */
+#endif
 #endif
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;         /* twice the triangle's area; infinite for other kinds of primitives */
@@ -143,6 +146,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #ifdef RT_HAS_COLORS
     rt_vec corner_color[3];
     for (uint i = 0; i < 3u; ++i) corner_color[i] = rt_splat(1.0f, 1.0f, 1.0f);
+#ifdef RT_HAS_CUTOUTS
+    vfloat corner_alpha[3] = {rt_vfloat(1.0f), rt_vfloat(1.0f), rt_vfloat(1.0f)};
+#endif
 #endif
 #if RT_HAS_TEXTURES
     vmask planar = rt_vint(0);
@@ -215,6 +221,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #ifdef RT_HAS_COLORS
                 corner_color[i] = rt_choose(mine, rt_spread(ctx->colors + 4u * (size_t)tri->v[i]), corner_color[i]);
+#ifdef RT_HAS_CUTOUTS
+                corner_alpha[i] = rt_select(mine, rt_vfloat(ctx->colors[4u * (size_t)tri->v[i] + 3u]), corner_alpha[i]);
+#endif
 #endif
             }
         }
@@ -235,6 +244,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #ifdef RT_HAS_COLORS
     s.color = rt_along(u, corner_color[0], rt_along(v, corner_color[1], rt_scale(w, corner_color[2])));
+#ifdef RT_HAS_CUTOUTS
+    s.alpha = fma(u, corner_alpha[0], fma(v, corner_alpha[1], w * corner_alpha[2]));
+#endif
 #endif
 #if RT_HAS_SPHERES && RT_HAS_TEXTURES
     /* Longitude and latitude, poles on Y. Lanes are computed one by one, because a library's vector functions need not agree with

@@ -34,7 +34,7 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
         rt_vec bounced = point.incoming, bent = bounced;
         if (rt_any(mirrored)) bounced = rt_mirror_direction(&point);
         if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
-        const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, *weight));
+        const rt_vec through = rt_refracted_weight(&split, &material, *weight);
         if (*splits != 0u) {
             deferred->origin = rt_along(point.inward, point.geometric, point.at);
             deferred->direction = bent;

@@ -1,4 +1,5 @@
 // clarity info: shows what the importer read from a file, in the file's units and axes.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -84,6 +85,11 @@ Json clip_json(const ClipInfo& clip) {
             {"morphs", clip.morphs}};
 }
 
+uint64_t materials_with_alpha(const Scene& scene) {
+    return static_cast<uint64_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
+                                               [](const Material& m) { return m.values.alpha != RT_ALPHA_OPAQUE; }));
+}
+
 Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, const std::vector<std::string>& files) {
     Json json;
     json["files"] = files;
@@ -100,6 +106,7 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["shapes"] = Json::object();
     for (const auto& [id, count] : shape_counts(scene)) json["shapes"][id] = count;
     json["materials"] = scene.materials.size();
+    json["materials_with_alpha"] = materials_with_alpha(scene);
     json["textures"] = scene.textures.size();
     json["lights"] = scene.lights.size();
     json["light_kinds"] = Json::object();
@@ -108,7 +115,7 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["emissive"] = {
         {"triangles", emissive.triangles},           {"spheres", emissive.spheres}, {"polygons", emissive.polygons},
         {"by_rays_alone", emissive.by_rays_alone()}, {"planes", emissive.planes},   {"shapes", emissive.shapes},
-        {"bent_polygons", emissive.bent_polygons}};
+        {"bent_polygons", emissive.bent_polygons},   {"cut_out", emissive.cut_out}};
     json["sky"] = sky_text(scene.sky);
     json["cameras"] = scene.cameras.size();
     const Bounds bounds = scene.bounds();
@@ -165,7 +172,8 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     std::string kinds;
     for (const auto& [id, count] : shape_counts(scene)) kinds += ", " + grouped(count) + ' ' + id;
     count_row("shapes", scene.shapes.size(), kinds);
-    count_row("materials", scene.materials.size());
+    const uint64_t clear = materials_with_alpha(scene);
+    count_row("materials", scene.materials.size(), clear > 0 ? ", of " + grouped(clear) + " alpha counts" : "");
     count_row("textures", scene.textures.size());
     kinds.clear();
     for (const auto& [kind, count] : light_counts(scene)) kinds += ", " + grouped(count) + ' ' + kind;
@@ -180,6 +188,7 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     add_apart(emissive.planes, "plane", "planes");
     add_apart(emissive.shapes, "shape", "shapes");
     add_apart(emissive.bent_polygons, "polygon that is not convex", "polygons that are not convex");
+    add_apart(emissive.cut_out, "surface that is cut out", "surfaces that are cut out");
     if (!apart.empty()) row("emissive too", apart + ": `path` finds their light only where a ray hits them by chance");
     if (scene.sky.values.kind != RT_NONE) row("sky", sky_text(scene.sky));
     count_row("cameras", scene.cameras.size());

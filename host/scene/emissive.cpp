@@ -29,32 +29,39 @@ bool is_convex(const float* corners, size_t count) {
 }
 
 EmissiveCounts count_emissive(const Scene& scene) {
-    std::vector<bool> emits;
-    for (const Material& material : scene.materials)
+    std::vector<bool> emits, is_cut_out;
+    for (const Material& material : scene.materials) {
         emits.push_back(std::any_of(std::begin(material.values.emission), std::end(material.values.emission),
                                     [](float channel) { return channel > 0; }));
-    EmissiveCounts counts;
-    std::vector<uint64_t> of_mesh;  // triangles whose own material emits
-    for (const Mesh& mesh : scene.meshes) {
-        of_mesh.push_back(0);
-        for (rt_u32 i = 0; i < mesh.triangle_count; ++i)
-            of_mesh.back() += emits[scene.triangle_materials[mesh.first_triangle + i]];
+        is_cut_out.push_back(material.values.alpha != RT_ALPHA_OPAQUE);
     }
+    EmissiveCounts counts;
+    const auto count = [&](rt_u32 material, uint64_t number, uint64_t& whole) {
+        if (emits[material]) (is_cut_out[material] ? counts.cut_out : whole) += number;
+    };
+    std::vector<EmissiveCounts> of_mesh(scene.meshes.size());  // of triangles with a material of their own
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        for (rt_u32 i = 0; i < scene.meshes[m].triangle_count; ++i) {
+            const rt_u32 material = scene.triangle_materials[scene.meshes[m].first_triangle + i];
+            if (emits[material]) ++(is_cut_out[material] ? of_mesh[m].cut_out : of_mesh[m].triangles);
+        }
     for (const Instance& instance : scene.instances) {
         if (!instance.visible) continue;
-        if (instance.material == RT_NONE)
-            counts.triangles += of_mesh[instance.mesh];
-        else if (emits[instance.material])
-            counts.triangles += scene.meshes[instance.mesh].triangle_count;
+        if (instance.material != RT_NONE) {
+            count(instance.material, scene.meshes[instance.mesh].triangle_count, counts.triangles);
+        } else {
+            counts.triangles += of_mesh[instance.mesh].triangles;
+            counts.cut_out += of_mesh[instance.mesh].cut_out;
+        }
     }
-    for (const Sphere& sphere : scene.spheres) counts.spheres += emits[sphere.material];
+    for (const Sphere& sphere : scene.spheres) count(sphere.material, 1, counts.spheres);
     for (const Polygon& polygon : scene.polygons) {
         if (!emits[polygon.material]) continue;
         const float* const corners = &scene.polygon_corners[3 * size_t(polygon.first_corner)];
-        ++(is_convex(corners, polygon.corner_count) ? counts.polygons : counts.bent_polygons);
+        count(polygon.material, 1, is_convex(corners, polygon.corner_count) ? counts.polygons : counts.bent_polygons);
     }
-    for (const Plane& plane : scene.planes) counts.planes += emits[plane.material];
-    for (const Shape& shape : scene.shapes) counts.shapes += emits[shape.material];
+    for (const Plane& plane : scene.planes) count(plane.material, 1, counts.planes);
+    for (const Shape& shape : scene.shapes) count(shape.material, 1, counts.shapes);
     return counts;
 }
 

@@ -11,8 +11,8 @@ struct Scene;
 struct EmissiveCounts {
     uint64_t triangles = 0, spheres = 0, polygons = 0;
     // Found by rays alone that happen to hit them.
-    uint64_t planes = 0, shapes = 0, bent_polygons = 0;
-    uint64_t by_rays_alone() const { return planes + shapes + bent_polygons; }
+    uint64_t planes = 0, shapes = 0, bent_polygons = 0, cut_out = 0;
+    uint64_t by_rays_alone() const { return planes + shapes + bent_polygons + cut_out; }
 };
 EmissiveCounts count_emissive(const Scene& scene);
 

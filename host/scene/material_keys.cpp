@@ -10,6 +10,7 @@ namespace {
 using M = rt_material;
 
 constexpr const char* kModels[] = {"whitted", "lambert", "conductor", "dielectric", nullptr};
+constexpr const char* kAlphas[] = {"opaque", "mask", "blend", nullptr};
 
 // More than a surface can send back, but files have such colours. A colour of 8 bits a channel is beyond it.
 constexpr double kMostColor = 100;
@@ -45,6 +46,12 @@ std::vector<Key> make_keys() {
               "light of its own, a radiance. With `path` it lights other surfaces"),
         shown(color_key("absorption", offsetof(M, absorption), kMostNumber, 0), "Absorption", "r g b",
               "inside of a dielectric, per unit of length: light falls by exp(-absorption length)"),
+        shown(word_key("alpha", offsetof(M, alpha), 0, kAlphas), "Alpha", "whether alpha counts",
+              "that is `opacity` times the alpha of texture and vertices. `mask`: where it is below `cutoff` there is no "
+              "surface. "
+              "`blend`: it is the share of the surface that is there"),
+        shown(number_key("opacity", offsetof(M, opacity), 0, 1, 1), "Opacity", "for `mask` and `blend`"),
+        shown(number_key("cutoff", offsetof(M, cutoff), 0, 2, 0.5f), "Cutoff", "of `mask`", "above 1 nothing is left"),
         shown(flag_key("compensate", offsetof(M, flags), RT_MATERIAL_SINGLE_SCATTER, true), "Compensate",
               "whether light that is scattered several times between facets is kept", "of conductors and rough dielectrics"),
         shown(flag_key("one_sided", offsetof(M, flags), RT_MATERIAL_ONE_SIDED), "One-sided",

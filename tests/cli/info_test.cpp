@@ -60,7 +60,8 @@ TEST(Info, LightsAreCountedByKind) {
     const std::string scene = scratch.write("lit.scene",
                                             "light point position 0 9 0\nlight point position 1 9 0\n"
                                             "light rect center 0 3 0 u 1 0 0 v 0 0 1\n"
-                                            "material glow emission 1 1 1\n"
+                                            "material glow emission 1 1 1\nmaterial leaf emission 1 1 1 alpha mask\n"
+                                            "sphere center 9 0 0 material leaf\n"
                                             "plane normal 0 1 0 offset -2 material glow\nsphere radius 1 material glow\n"
                                             "polygon vertices 0 0 0  2 0 0  2 2 0  1 .5 0 material glow\n"
                                             "polygon vertices 0 0 9  2 0 9  2 2 9  1 .5 9 material glow\n");
@@ -70,10 +71,12 @@ TEST(Info, LightsAreCountedByKind) {
     EXPECT_EQ(info["emissive"]["spheres"], 1);
     EXPECT_EQ(info["emissive"]["planes"], 1);
     EXPECT_EQ(info["emissive"]["bent_polygons"], 2);
-    EXPECT_EQ(info["emissive"]["by_rays_alone"], 3);
+    EXPECT_EQ(info["emissive"]["cut_out"], 1);
+    EXPECT_EQ(info["emissive"]["by_rays_alone"], 4);
+    EXPECT_EQ(info["materials_with_alpha"], 1);
     const std::string text = run_program({"info", scene}).out;
     EXPECT_NE(text.find("3, 2 point, 1 rect\n"), std::string::npos) << text;
-    EXPECT_NE(text.find("1 plane, 2 polygons that are not convex: "), std::string::npos) << text;
+    EXPECT_NE(text.find("1 plane, 2 polygons that are not convex, 1 surface that is cut out: "), std::string::npos) << text;
 }
 
 TEST(Info, SeveralFilesAreOneScene) {

@@ -185,8 +185,10 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
         std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
         status_item(text, colors::kDim, "samples a pixel so far; more are added while the camera rests");
         if (const uint64_t dropped = picture->main.stats.dropped; dropped > 0)
-            status_item(count_text(static_cast<double>(dropped)) + " " + noun(dropped, "ray") + " dropped", colors::kAmber,
-                        "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");
+            status_item(
+                count_text(static_cast<double>(dropped)) + " " + noun(dropped, "ray") + " dropped", colors::kAmber,
+                "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab; or they met more than "
+                "1024 surfaces that are cut out, one behind the other");
         if (const uint64_t broken = picture->main.stats.not_finite; broken > 0)
             status_item(count_text(static_cast<double>(broken)) + " " + noun(broken, "sample") + " not finite", colors::kAmber,
                         "they are no number, or infinite: the log says more");

@@ -56,9 +56,14 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
         }
         rt_trace_stream_closest(&ctx, frame, rays, hits, count);
         RT_FOR_EACH_PACKET(b, count) {
-            RT_COUNT_OVERFLOW(hits + b)
             vint in_x, in_y;
-            const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));
+            const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
+            const uint bits = rt_bits(active);
+#ifdef RT_HAS_CUTOUTS
+            uint dropped; /* counted by pictures of colours */
+            rt_pass_cutouts(&ctx, frame, 0, rt_vint(0), rays + b, hits + b, active, &dropped);
+#endif
+            RT_COUNT_OVERFLOW(hits + b)
             if (bits != 0u) rt_store_aov(&ctx, frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b, hits + b, bits, film);
         }
     }

@@ -38,7 +38,7 @@ RT_INLINE void rt_record_spawned(rt_recorder *rec, const constant rt_frame *fram
                            rt_along(p->outward, p->geometric, p->at), rt_mirror_direction(p), rt_scale(split.mirrored, weight));
     rt_record_kind(rec, next, capacity, count, RT_RAY_REFRACTED, any_refract, rt_bits(refracted),
                    rt_along(p->inward, p->geometric, p->at), rt_refracted_direction(p, &split),
-                   rt_scale(split.refracted, rt_mul(m->color, weight)));
+                   rt_refracted_weight(&split, m, weight));
 }
 
 RT_INLINE void rt_fill_records(rt_recorder *rec, const rt_hits *hit, vint prim, vint material, rt_vec light)
@@ -74,7 +74,7 @@ RT_INLINE void rt_record_hits(rt_recorder *rec, const rt_ctx *ctx, const constan
     const rt_point point = rt_point_of(ray, &surface, hits);
     const rt_shade material = rt_load_materials(ctx, &surface, rt_bits(hits), point.at);
     const rt_vec ambient = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]), none = rt_splat(0.0f, 0.0f, 0.0f);
-    const rt_vec light = rt_add(material.emission, rt_reflected_light(&material, ambient, none));
+    const rt_vec light = RT_COVERED(&material, rt_add(material.emission, rt_reflected_light(&material, ambient, none)));
     rt_fill_records(rec, hit, surface.prim, surface.material, rt_choose(hits, light, behind));
     rec->too_deep = rec->generation == frame->depth;
     if (rec->too_deep) rt_record_spawned(rec, frame, next, 0u, 0u, &point, &material, weight);

@@ -25,7 +25,7 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
     if (refract_bits != 0u) {
         const uint first = count;
         count = rt_append(next, capacity, count, refract_bits, rt_along(p->inward, p->geometric, p->at), rt_refracted_direction(p, &split),
-                          rt_scale(split.refracted, rt_mul(m->color, weight)), pixel, &tally->dropped);
+                          rt_refracted_weight(&split, m, weight), pixel, &tally->dropped);
         RT_KEEP_AREA(next, first, count, p, refract_bits)
     }
     return count;
@@ -121,6 +121,10 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                 RT_RECORD(rt_record_rays(&tally->recorder, generation, current, base, rays + b, pixels_of[b], rt_bits(active[b]), weights[b]))
             }
             rt_trace_stream_closest(ctx, frame, rays, hits, stream);
+#ifdef RT_HAS_CUTOUTS
+            RT_FOR_EACH_PACKET(b, stream)
+                rt_pass_cutouts(ctx, frame, 0, rt_vint(0), rays + b, hits + b, active[b], &tally->dropped);
+#endif
 
             rt_point points[RT_STREAM];
             rt_shade materials[RT_STREAM];

@@ -29,6 +29,9 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
         rt_prepare(&ray, 1u);
         rt_clear_hits(&hit, -1);
         rt_trace_closest(ctx, frame, &ray, &hit);
+#ifdef RT_HAS_CUTOUTS
+        rt_pass_cutouts(ctx, frame, 0, 0, &ray, &hit, -1, &tally->dropped);
+#endif
         RT_TALLY_OVERFLOW(tally, &hit)
         if (generation == 0u && frame->sample == 0u) *distance = hit.t;
 

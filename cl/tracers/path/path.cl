@@ -15,7 +15,7 @@ trace_path(const constant rt_frame *frame, const uint first_group, global float4
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
-        rt_tally tally = {0, 0, 0};
+        rt_tally tally = {0, 0, 0, 0};
         uint not_finite = 0;
         rt_path paths = rt_no_paths(frame);
         for (uint next = 0;;) {

@@ -5,9 +5,10 @@
 #ifndef RT_PATH_SCATTER_H
 #define RT_PATH_SCATTER_H
 
-/* Numbers of a work-item's rays: shadow rays, rays after the camera's, and full traversal stacks. */
+/* Numbers of a work-item's rays: shadow rays, rays after the camera's, rays that surfaces stop though they are cut out (which nobody is
+ * told: see RT_MOST_PASSED), and full traversal stacks. */
 typedef struct rt_tally {
-    uint shadow, secondary, overflow;
+    uint shadow, secondary, dropped, overflow;
 } rt_tally;
 
 /* Where a path meets a surface, and how the surface scatters there. */
@@ -156,7 +157,15 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
         tally->shadow += popcount(bits);
         RT_TALLY_OVERFLOW(tally, &hit)
     }
-    const vmask lit = asked & RT_MASK(hit.t >= zero);
+    vmask lit = asked & RT_MASK(hit.t >= zero);
+#ifdef RT_HAS_CUTOUTS
+    const vmask occluded = asked & ~lit;
+    if (rt_any(occluded)) {
+        const vfloat through = rt_light_through(ctx, frame, &ray, occluded, s.distance, &tally->dropped);
+        light = rt_choose(occluded, rt_scale(through, light), light);
+        lit |= occluded & RT_MASK(through > zero);
+    }
+#endif
     if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
     const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
@@ -214,6 +223,10 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
 #endif
     rt_clear_hits(&hit, p->alive);
     rt_trace_closest(ctx, frame, &ray, &hit);
+#ifdef RT_HAS_CUTOUTS
+    const rt_sampler chances = rt_sampler_of(frame, p);
+    rt_pass_cutouts(ctx, frame, &chances, p->event, &ray, &hit, p->alive, &tally->dropped);
+#endif
     RT_TALLY_OVERFLOW(tally, &hit)
     if (frame->sample == 0u) {
         const uint first = bits & rt_bits(RT_MASK(p->event == rt_vint(0)) & RT_MASK(p->sample == rt_vint(0)));

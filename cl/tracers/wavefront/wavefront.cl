@@ -94,6 +94,9 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 rt_prepare(&ray, bits);
                 rt_clear_hits(&hit, active);
                 rt_trace_closest(&ctx, frame, &ray, &hit);
+#ifdef RT_HAS_CUTOUTS
+                rt_pass_cutouts(&ctx, frame, 0, rt_vint(0), &ray, &hit, active, &tally.dropped);
+#endif
                 RT_TALLY_OVERFLOW(&tally, &hit)
                 if (level == 0u && step == 0u && frame->sample == 0u) {
                     const uint packet = unit / RT_BLOCKS(frame);

@@ -66,7 +66,9 @@ class Collector {
           view_(view),
           out_(out),
           powers_(powers) {
-        for (size_t i = 0; i < scene.materials.size(); ++i) emits_.push_back(mean(material(i).emission) > 0);
+        // Where a surface is cut out a light would be drawn in vain: rays that hit it find its light.
+        for (size_t i = 0; i < scene.materials.size(); ++i)
+            emits_.push_back(mean(material(i).emission) > 0 && material(i).alpha == RT_ALPHA_OPAQUE);
     }
 
     void collect() {
@@ -199,7 +201,7 @@ class Collector {
     const View& view_;
     EmitterTable& out_;
     std::vector<double>& powers_;
-    std::vector<bool> emits_;
+    std::vector<bool> emits_;  // so that light is drawn from it
 };
 
 }  // namespace

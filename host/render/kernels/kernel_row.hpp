@@ -41,7 +41,7 @@ struct KernelRow {
 // Of the optics of a scene, those that the kernel is compiled for.
 inline Optics optics_known(const KernelRow& row, const Optics& optics) {
     if (row.has(kPicksLights)) return optics;
-    return row.has(kWhitted) ? optics.for_whitted() : Optics{};
+    return row.has(kWhitted) ? optics.for_whitted() : Optics{0, 0, optics.cutouts};
 }
 
 // Planes of the film of colours that a kernel traces into.

@@ -41,6 +41,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     const Optics optics = optics_known(row, features.optics);
     if (row.has(kPicksLights | kWhitted)) out.define_uint("RT_LIGHTS", optics.lights);
     if (row.has(kPicksLights)) out.define_uint("RT_LOBES", optics.lobes);
+    if (optics.cutouts) out.define_int("RT_HAS_CUTOUTS", 1);
 }
 
 // Writes the beginning of every kernel: types, lanes, the structure's types, the buffers, and shapes. Returns the names of the

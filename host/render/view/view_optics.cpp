@@ -33,6 +33,7 @@ void add(Optics& optics, const rt_material& m) {
             if (m.roughness > 0) optics.lobes |= RT_LOBE_FROSTED;
             break;
     }
+    if (m.alpha != RT_ALPHA_OPAQUE) optics.cutouts = 1;
     if ((optics.lobes & RT_LOBE_GLASS) && any(m.absorption)) optics.lobes |= RT_LOBE_ABSORBS;
 }
 
@@ -43,7 +44,7 @@ Optics seen_by(const Settings& settings, const Optics& optics) {
 Optics sky_of(const Scene& scene, const std::array<float, 3>& background) {
     const bool shines =
         scene.sky.values.kind != RT_NONE || std::any_of(background.begin(), background.end(), [](float c) { return c > 0; });
-    return {shines ? 1u << RT_EMITTER_SKY : 0u, 0};
+    return {shines ? 1u << RT_EMITTER_SKY : 0u, 0, 0};
 }
 
 }  // namespace

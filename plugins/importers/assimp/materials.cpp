@@ -74,8 +74,10 @@ rt_u32 MaterialTable::id(unsigned material) {
     } else {
         apply_phong(m, out);
     }
+    importers::AlphaKeys alpha;
     importers::apply_transparency(number(m, AI_MATKEY_OPACITY, 1), number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0),
-                                  number(m, AI_MATKEY_REFRACTI, 0), out);
+                                  number(m, AI_MATKEY_REFRACTI, 0), alpha, out);
+    alpha.give(out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
 }
 

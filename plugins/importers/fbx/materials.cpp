@@ -11,7 +11,7 @@ Vec3 color(const Properties& p, const char* name, const char* oldest, const Vec3
     return p.has(name) ? p.vector(name, otherwise) : p.vector(oldest, otherwise);
 }
 
-void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
+void read_phong(const Properties& p, bool has_texture, AlphaKeys& alpha, rt_material_desc& out) {
     // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
     const Vec3 diffuse = has_texture ? Vec3{1, 1, 1} : color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8});
     store_color(diffuse, has_texture ? 1 : p.number("DiffuseFactor", 1), 1, out.color);
@@ -25,7 +25,7 @@ void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
     // the factor alone means nothing. Source: FBX SDK help, "FbxSurfaceLambert".
     const Vec3 clear = p.vector("TransparentColor", {});
     const double share = (clear[0] + clear[1] + clear[2]) / 3 * p.number("TransparencyFactor", 1);
-    apply_transparency(p.number("Opacity", 1 - share), 0, 0, out);
+    apply_transparency(p.number("Opacity", 1 - share), 0, 0, alpha, out);
 }
 
 // Whether a texture's picture is placed by more than texture coordinates. Source of the names: FBX SDK help, "FbxTexture" and
@@ -60,7 +60,17 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     rt_material_desc out = rt::material(name.empty() ? nullptr : name.c_str());
     const uint32_t found = texture(material, model);
     out.texture = found == kNoObject ? RT_NONE : picture(found);
-    read_phong(context_.properties(material), out.texture != RT_NONE, out);
+    AlphaKeys alpha;
+    read_phong(context_.properties(material), out.texture != RT_NONE, alpha, out);
+    // A texture of the transparency replaces its value. Programs connect the picture of the colour again where its alpha
+    // counts.
+    const uint32_t clear = transparency(material);
+    if (clear != kNoObject && found != kNoObject &&
+        (clear == found || (!file_of(clear).empty() && file_of(clear) == file_of(found))))
+        alpha.set(AlphaKeys::blend, 1);
+    else if (clear != kNoObject)
+        ++transparencies_;
+    alpha.give(out);
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
 }
 
@@ -79,6 +89,19 @@ uint32_t Materials::texture(uint32_t material, uint32_t model) const {
     }
     for (const uint32_t found : objects.below(model, "Texture")) return found;
     return kNoObject;
+}
+
+uint32_t Materials::transparency(uint32_t material) const {
+    for (const Link* link : context_.objects.below(material)) {
+        const bool is_clear = link->property == "TransparentColor" || link->property == "TransparencyFactor";
+        if (is_clear && context_.objects[link->from].kind == "Texture") return link->from;
+    }
+    return kNoObject;
+}
+
+std::string_view Materials::file_of(uint32_t texture) const {
+    const Node* node = context_.objects[texture].node;
+    return context_.document.text(context_.document.child(node, "RelativeFilename"), 0);
 }
 
 // A texture's picture is in the Content of the Video that hangs from it, or in a file. Source: Blender developer blog.
@@ -112,6 +135,9 @@ rt_u32 Materials::picture(uint32_t texture) {
 }
 
 void Materials::report() const {
+    if (transparencies_ > 0)
+        context_.warn("pictures of the transparency of " + std::to_string(transparencies_) +
+                      " materials are left out: they are not those of the colour");
     if (transformed_ == 0) return;
     context_.warn("the transforms of " + std::to_string(transformed_) +
                   " textures are left out: their pictures lie as the texture coordinates say");

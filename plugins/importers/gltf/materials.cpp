@@ -19,6 +19,17 @@ Value color_texture(const Value& material) {
     return material.object("pbrMetallicRoughness").object("baseColorTexture");
 }
 
+// Specification, section 3.9.4.
+void read_alpha(const Value& material, double opacity, importers::AlphaKeys& alpha) {
+    const std::string mode = material.text("alphaMode", "OPAQUE");
+    if (mode == "MASK")
+        alpha.set(importers::AlphaKeys::mask, opacity, material.number("alphaCutoff", 0.5));
+    else if (mode == "BLEND")
+        alpha.set(importers::AlphaKeys::blend, opacity);
+    else if (mode != "OPAQUE")
+        material["alphaMode"].refuse("'OPAQUE', 'MASK' or 'BLEND'");
+}
+
 // Paths out of the folder are passed on as they are: the host finds pictures by their names alone, too.
 std::string image_path(const Value& uri, const std::string& folder) {
     try {
@@ -56,6 +67,7 @@ rt_u32 Materials::add(const Value& material) {
     const std::string name = material.name();
     rt_material_desc out = rt::material(name.c_str());
     std::array<double, 4> base = {1, 1, 1, 1};
+    importers::AlphaKeys alpha;
     const auto group = [&](const auto& read) { spared(sink_, "the material keeps the default there", read); };
     importers::store_color(base, 1, 1, out.color);
     group([&] {
@@ -84,27 +96,12 @@ rt_u32 Materials::add(const Value& material) {
     });
     group([&] {
         const Value extensions = material.object("extensions");
-        const double opacity = material.text("alphaMode", "OPAQUE") == "BLEND" ? base[3] : 1;
         const double transmission = extensions.object("KHR_materials_transmission").number("transmissionFactor", 0);
-        importers::apply_transparency(opacity, transmission, extensions.object("KHR_materials_ior").number("ior", 0), out);
-        warn_of_alpha(material, out, base[3]);
+        importers::apply_transparency(1, transmission, extensions.object("KHR_materials_ior").number("ior", 0), alpha, out);
     });
+    group([&] { read_alpha(material, base[3], alpha); });
+    alpha.give(out);
     return rt::id(sink_.material(sink_.ctx, &out));
-}
-
-// The host takes one opacity for a whole material. What a texture has of it is lost.
-void Materials::warn_of_alpha(const Value& material, const rt_material_desc& out, double opacity) const {
-    const std::string mode = material.text("alphaMode", "OPAQUE");
-    const bool has_texture = out.texture != RT_NONE;
-    if (mode == "MASK" && (has_texture || opacity < material.number("alphaCutoff", 0.5)))
-        rt::warn(sink_, material.path() + ".alphaMode: MASK is not read: what its alpha cuts out is shown");
-    else if (mode == "BLEND" && has_texture)
-        rt::warn(sink_, material.path() +
-                            ".alphaMode: BLEND is not read for the alpha of its texture: what that makes "
-                            "transparent is shown");
-    else if (mode != "MASK" && mode != "BLEND" && mode != "OPAQUE")
-        rt::warn(sink_, material.path() + ".alphaMode: found " + in_quotes(mode) +
-                            ", expected 'OPAQUE', 'MASK' or 'BLEND'; it counts as opaque");
 }
 
 TextureMapping Materials::mapping(const Value& primitive) const {

@@ -28,7 +28,6 @@ class Materials {
 
  private:
     rt_u32 add(const Value& material);
-    void warn_of_alpha(const Value& material, const rt_material_desc& out, double opacity) const;
     rt_u32 texture(const Value& info);
     rt_u32 wrap_mode(const Value& sampler, const char* key) const;
     rt_u32 add_image(const Value& image, rt_u32 wrap_u, rt_u32 wrap_v);

@@ -13,7 +13,7 @@ struct Statements {
     float exponent = 1, ior = 1, dissolve = 1;
     bool has_diffuse = false, has_dissolve = false;
     int illumination = -1;
-    ObjTexture texture;
+    ObjTexture texture, dissolve_map;
 };
 
 // Options of maps, from Wavefront's appendix B1, "MTL material format". `least` to `most` values follow; `unless` is the value
@@ -173,9 +173,13 @@ ObjMaterial finish(const Statements& s) {
     }
     if (!s.texture.names.empty() && (!s.has_diffuse || largest(out.color) == 0)) std::fill(out.color, out.color + 3, 1.0f);
     out.shininess = std::clamp(s.exponent, 1.0f, 10000.0f);
-    out.refract = std::clamp(1 - s.dissolve, 0.0f, 1.0f);
     out.ior = 1;
+    // `d` is the share of the surface that is there, unless it is glass. A map_d that names the picture of map_Kd means its
+    // alpha.
+    const bool is_cut = !s.dissolve_map.names.empty();
+    if (!is_glass && (s.dissolve < 1 || is_cut)) m.alpha.set(importers::AlphaKeys::blend, s.dissolve);
     if (is_glass) {
+        out.refract = std::clamp(1 - s.dissolve, 0.0f, 1.0f);
         out.ior = s.ior > 1 ? std::min(s.ior, 10.0f) : 1.5f;
         if (!s.has_dissolve || s.dissolve >= 1) {
             // Glass without an opacity is clear. Its hue is that of the transmission filter; the filter's strength is ignored,
@@ -191,6 +195,10 @@ ObjMaterial finish(const Statements& s) {
 
 void Reader::close() {
     if (!is_open_) return;
+    if (!statements_.dissolve_map.names.empty() && statements_.dissolve_map.names != statements_.texture.names) {
+        leave_out("map_d");
+        statements_.dissolve_map = {};
+    }
     ObjMaterial material = finish(statements_);
     material.folder = folder_;
     library_.materials[name_] = std::move(material);
@@ -211,7 +219,7 @@ void Reader::statement(std::string_view word, std::string_view line) {
     if (is_word(word, "map_kd")) {
         map(word, line, s.texture);
     } else if (is_word(word, "map_d")) {
-        leave_out(word);
+        map(word, line, s.dissolve_map);
     } else if (is_word(word.substr(0, 4), "map_") || is_word(word, "bump") || is_word(word, "disp") || is_word(word, "decal") ||
                is_word(word, "refl") || is_word(word, "norm")) {
         map(word, line, ignored);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../common/materials.hpp"
 #include "rt_plugin.h"
 
 namespace openmesh_import {
@@ -18,7 +19,8 @@ struct ObjTexture {
     bool moves() const { return scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0; }
 };
 struct ObjMaterial {
-    rt_material_desc values{};  // without name and texture
+    rt_material_desc values{};  // without name, texture and alpha
+    importers::AlphaKeys alpha;
     ObjTexture texture;
     std::string folder;  // of its library, relative to that of the OBJ file, with a slash at its end; or empty
 };

@@ -112,6 +112,7 @@ rt_u32 ObjLibraries::id(const std::string& name, const ObjMaterial* material) {
     desc.struct_bytes = sizeof desc;
     desc.name = name.c_str();
     if (!material->texture.names.empty()) desc.texture = texture(*material);
+    material->alpha.give(desc);
     return ids_[material] = rt::id(source_.sink.material(source_.sink.ctx, &desc));
 }
 

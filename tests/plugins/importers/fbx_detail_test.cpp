@@ -83,6 +83,32 @@ TEST_P(FbxDetailForm, TakesWrapModesOfTextures) {
     EXPECT_EQ(wraps_of({mode("WrapModeU", 1), mode("WrapModeV", 0)}), Modes(RT_WRAP_CLAMP, RT_WRAP_REPEAT));
 }
 
+TEST_P(FbxDetailForm, TakesTheAlphaOfThePictureOfTheColour) {
+    folder_.write("dot.ppm", "P6 1 1 255\nabc");
+    const auto with = [&](const std::vector<FbxNode>& properties, const std::vector<FbxNode>& links) {
+        std::vector<FbxNode> objects = {geometry(1, {uv_set(0, "plain", 0)}), model(2, "A"), material(3)};
+        objects.back().children.push_back(node("Properties70", {}, properties));
+        for (const int64_t id : {5, 6}) {
+            objects.push_back(texture(id, {}));
+            objects.back().children.push_back(node("FileName", {text("dot.ppm")}));
+        }
+        std::vector<FbxNode> all = {link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor")};
+        all.insert(all.end(), links.begin(), links.end());
+        return import(objects, all);
+    };
+    EXPECT_EQ(with({}, {}).materials.back().values.alpha, RT_ALPHA_OPAQUE);
+    const rt_material half =
+        with({property("TransparentColor", {1, 1, 1}), property("TransparencyFactor", {0.5})}, {}).materials.back().values;
+    EXPECT_EQ(half.alpha, RT_ALPHA_BLEND);
+    EXPECT_EQ(half.opacity, 0.5f);
+    EXPECT_EQ(half.refract, 0);
+    const rt_material cut = with({}, {link(5, 3, "TransparentColor")}).materials.back().values;
+    EXPECT_EQ(cut.alpha, RT_ALPHA_BLEND);
+    EXPECT_EQ(cut.opacity, 1);
+    EXPECT_TRUE(
+        warns_of(with({}, {link(6, 3, "TransparentColor")}), "pictures of the transparency of 1 materials are left out"));
+}
+
 // Two triangles that meet at a right angle along the edge from vertex 0 to vertex 1.
 FbxNode roof(const std::string& mapping, const Indices& smoothing) {
     return node("Geometry", {whole(1), text("Geometry::Roof"), text("Mesh")},

@@ -193,14 +193,28 @@ TEST_F(GltfParts, AStrideOfZeroIsPacked) {
     EXPECT_EQ(scene.warnings.size(), 4u) << "one for each view";
 }
 
-TEST_F(GltfParts, ThatAreNotReadYetAreNamed) {
-    spared("materials[0].alphaMode: MASK is not read", [](Model& m) { m["materials"][0]["alphaMode"] = "MASK"; });
-    spared("materials[0].alphaMode: BLEND is not read for the alpha of its texture",
-           [](Model& m) { m["materials"][0]["alphaMode"] = "BLEND"; });
+TEST_F(GltfParts, AlphaCountsAsItsModeSays) {
+    const auto read = [&](const std::function<void(json&)>& edit) {
+        Model model = rich();
+        edit(model["materials"][0]);
+        model["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.75};
+        const Scene scene = import(model);
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.at(0);
+        return scene.materials.back().values;
+    };
+    EXPECT_EQ(read([](json&) {}).alpha, RT_ALPHA_OPAQUE);
+    EXPECT_EQ(read([](json& m) { m["alphaMode"] = "OPAQUE"; }).alpha, RT_ALPHA_OPAQUE);
+    const rt_material mask = read([](json& m) { m["alphaMode"] = "MASK"; });
+    EXPECT_EQ(mask.alpha, RT_ALPHA_MASK);
+    EXPECT_EQ(mask.opacity, 0.75f);
+    EXPECT_EQ(mask.cutoff, 0.5f);
+    EXPECT_EQ(read([](json& m) { m["alphaMode"] = "MASK", m["alphaCutoff"] = 0.25; }).cutoff, 0.25f);
+    EXPECT_GT(read([](json& m) { m["alphaMode"] = "MASK", m["alphaCutoff"] = 7; }).cutoff, 1) << "nothing is left";
+    const rt_material blend = read([](json& m) { m["alphaMode"] = "BLEND"; });
+    EXPECT_EQ(blend.alpha, RT_ALPHA_BLEND);
+    EXPECT_EQ(blend.opacity, 0.75f);
+    EXPECT_EQ(blend.refract, 0);
     spared("materials[0].alphaMode: found 'GLASS'", [](Model& m) { m["materials"][0]["alphaMode"] = "GLASS"; });
-    Model opaque = rich();
-    opaque["materials"][0]["alphaMode"] = "OPAQUE";
-    EXPECT_TRUE(import(opaque).warnings.empty());
 }
 
 // Specification, section 3.7.2.1: floats or shares of an integer's range, with or without alpha, linear, limited to 0..1.

@@ -365,7 +365,30 @@ TEST_F(MeshFiles, MtlOptionsAreObeyedOrNamed) {
     EXPECT_TRUE(warns(with_map("bump -bm 0.5 four.ppm"), "bump -bm"));
     const Scene halo = with_map("d -halo 0.25");
     EXPECT_TRUE(warns(halo, "d -halo"));
-    EXPECT_FLOAT_EQ(halo.materials.back().values.refract, 0.75f);
+    EXPECT_EQ(halo.materials.back().values.alpha, RT_ALPHA_BLEND);
+    EXPECT_FLOAT_EQ(halo.materials.back().values.opacity, 0.25f);
+}
+
+// Without glass (illum 4, 6, 7, 9) `d` is the share that is there. A map_d of the same picture means its alpha.
+TEST_F(MeshFiles, MtlSaysHowMuchIsThere) {
+    folder_.write("four.ppm", picture());
+    const auto read = [&](const std::string& statements) {
+        folder_.write("m.mtl", "newmtl a\n" + statements + "\n");
+        return import("a.obj", "mtllib m.mtl\nusemtl a\n" + kSquare);
+    };
+    const auto values = [&](const std::string& statements) { return read(statements).materials.back().values; };
+    EXPECT_EQ(values("d 1").alpha, RT_ALPHA_OPAQUE);
+    EXPECT_EQ(values("Tr 0.75").alpha, RT_ALPHA_BLEND);
+    EXPECT_FLOAT_EQ(values("Tr 0.75").opacity, 0.25f);
+    EXPECT_EQ(values("illum 6\nNi 1.4\nd 0.25").alpha, RT_ALPHA_OPAQUE);
+    EXPECT_FLOAT_EQ(values("illum 6\nNi 1.4\nd 0.25").refract, 0.75f);
+    const Scene cut = read("map_Kd four.ppm\nmap_d four.ppm");
+    EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
+    EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
+    EXPECT_EQ(cut.materials.back().values.opacity, 1);
+    const Scene other = read("map_Kd four.ppm\nmap_d hole.ppm");
+    EXPECT_TRUE(warns(other, "map_d"));
+    EXPECT_EQ(other.materials.back().values.alpha, RT_ALPHA_OPAQUE);
 }
 
 TEST_F(MeshFiles, MtlMovesTheUvsOfItsOwnFaces) {

@@ -80,8 +80,9 @@ TEST(ObjModel, ReadsMaterials) {
     EXPECT_FLOAT_EQ(glass.color[0], 0.5f);
     EXPECT_FLOAT_EQ(glass.color[1], 1);
     const rt_material foil = material_named(scene, "foil").values;
-    EXPECT_FLOAT_EQ(foil.refract, 0.75f);
-    EXPECT_FLOAT_EQ(foil.ior, 1);
+    EXPECT_EQ(foil.refract, 0);
+    EXPECT_EQ(foil.alpha, RT_ALPHA_BLEND);
+    EXPECT_FLOAT_EQ(foil.opacity, 0.25f);
 }
 
 TEST(ObjModel, KeepsAttributesPerCorner) {
@@ -251,7 +252,8 @@ TEST(FbxModel, GivesEachNodeItsOwnMaterials) {
     EXPECT_FLOAT_EQ(material_named(scene, "Green").values.specular[0], 0.5f);
     EXPECT_FLOAT_EQ(material_named(scene, "Green").values.shininess, 30);
     EXPECT_FLOAT_EQ(material_named(scene, "Blue").values.color[2], 1);
-    EXPECT_FLOAT_EQ(material_named(scene, "Blue").values.refract, 0.75f);
+    EXPECT_EQ(material_named(scene, "Blue").values.alpha, RT_ALPHA_BLEND);
+    EXPECT_FLOAT_EQ(material_named(scene, "Blue").values.opacity, 0.25f);
 }
 
 // box.dae with a texture, some text in its element and in its sampler, and further effects.
@@ -360,7 +362,8 @@ TEST(GltfModel, KeepsInstancesMaterialsAndCamera) {
     expect_bounds(scene.bounds(), {-2, 0, 0}, {1, 1, 3});
     const rt_material steel = material_named(scene, "steel").values;
     EXPECT_FLOAT_EQ(steel.reflect, 0.75f);
-    EXPECT_EQ(steel.refract, 0);  // alpha counts only if alphaMode says so
+    EXPECT_EQ(steel.refract, 0);
+    EXPECT_EQ(steel.alpha, RT_ALPHA_OPAQUE);  // alpha counts only if alphaMode says so
     EXPECT_EQ(scene.unit_scale, 1);
     // (0, 1) in glTF is the bottom left of the picture, which is (0, 0) here.
     for (size_t v = 0; v < scene.positions.size() / 3; ++v) {

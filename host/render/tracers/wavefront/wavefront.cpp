@@ -17,9 +17,9 @@ constexpr unsigned kQueueShare = 8;
 constexpr uint64_t kCpuBytes = 64 << 20;
 constexpr uint64_t kMostCounted = 1u << 30;  // a uint counts them, including those that find no room
 
-// Whether a ray may split in two: some material of the view is transparent, or of the scene if the view has none.
+// Whether a ray may split in two: one sees through some material of the view, or of the scene if the view has none.
 bool refracts(const Scene& scene, const std::vector<rt_material>& materials) {
-    const auto clear = [](const rt_material& material) { return material.refract > 0; };
+    const auto clear = [](const rt_material& m) { return m.refract > 0 || m.alpha == RT_ALPHA_BLEND; };
     if (!materials.empty()) return std::any_of(materials.begin(), materials.end(), clear);
     return std::any_of(scene.materials.begin(), scene.materials.end(),
                        [&](const Material& material) { return clear(material.values); });
@@ -131,8 +131,8 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.what = "tracer wavefront";
         r.file = "tracers/wavefront/wavefront.cl";
         r.entry = "trace_wavefront";
-        r.headers = {"shading/material.h", "shading/shading.h", "tracers/ray_step.h", "lanes/work_distribution.h",
-                     "tracers/wavefront/wavefront_rays.h"};
+        r.headers = {"shading/material.h", "shading/cutouts.h",         "shading/shading.h",
+                     "tracers/ray_step.h", "lanes/work_distribution.h", "tracers/wavefront/wavefront_rays.h"};
         r.traits = kLimitRegisters | kFrame | kCountsRays | kWhitted;
         return r;
     }();

@@ -100,6 +100,11 @@ Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& k
     add_floor(scene, kTextured);
     if (!features.normals) scene.normals = {};
     if (!features.uvs && !features.textures) scene.uvs = {};
+    if (features.optics.cutouts) {
+        scene.materials[kMatt].values.alpha = RT_ALPHA_BLEND;
+        scene.materials[kMatt].values.opacity = 0.5f;
+        scene.materials[kTextured].values.alpha = RT_ALPHA_MASK;
+    }
     if (features.colors)  // dim towards the last vertex
         for (rt_u32 v = 0; v < scene.vertex_count(); ++v)
             for (const float c : {1.0f, 1.0f - float(v) / scene.vertex_count(), 0.5f, 1.0f}) scene.colors.push_back(c);
