@@ -26,6 +26,7 @@ FLAGS = ("two_sided", "one_sided", "compensate", "visible", "off")
 WORDS = ("material", "model", "name", "falloff")
 IGNORED = ("ambient", "background", "animate")  # of the Whitted tracers, or without a meaning at rest
 SEGMENTS = (192, 96)  # of spheres, around and from pole to pole
+LAMP_SEGMENTS = (48, 24)  # of lamps: Cycles 3.4 sums the areas of all triangles as floats, in which many small ones get lost
 
 
 def die(text):
@@ -205,9 +206,9 @@ class Scene:
         self.scene.collection.objects.link(thing)
         return thing
 
-    def sphere(self, center, radius, material):
+    def sphere(self, center, radius, material, segments=SEGMENTS):
         """A smooth ball of quads, as large as the sphere in the mean of its corners and its faces' middles."""
-        around, down = SEGMENTS
+        around, down = segments
         theta = np.linspace(0, math.pi, down + 1)[1:-1, None]
         phi = np.linspace(0, 2 * math.pi, around, endpoint=False)[None, :]
         ring = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta) + 0 * phi, np.sin(theta) * np.sin(phi)], -1).reshape(-1, 3)
@@ -295,7 +296,7 @@ class Scene:
         material, tree, out = self.shader()
         tree.links.new(self.emits(tree, keys.get("radiance", (1, 1, 1)), not keys.get("two_sided", False)), out.inputs[0])
         if kind == "sphere":
-            self.sphere(center, keys.get("radius", 1.0), material)
+            self.sphere(center, keys.get("radius", 1.0), material, LAMP_SEGMENTS)
         elif kind == "rect":
             u, v = np.array(keys.get("u", (1, 0, 0))), np.array(keys.get("v", (0, 0, 1)))
             self.mesh([center - u - v, center + u - v, center + u + v, center - u + v], [(0, 1, 2, 3)], material)
