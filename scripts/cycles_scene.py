@@ -1,13 +1,12 @@
 """Renders a text scene of Clarity with Cycles; scripts/cycles_compare starts it within Blender:
 
-blender -b --factory-startup -t 2 -P cycles_scene.py -- SCENE OUT W H BOUNCES SEED meshes|points SPP...
+blender -b --factory-startup -t 2 -P cycles_scene.py -- SCENE OUT W H BOUNCES SEED SPP...
 
 Reads what both programs can show by the same numbers: cameras, polygons, triangles, spheres, lamps with a size, skies, the models
 lambert, conductor (Fresnel 1) and dielectric, and files that are loaded. Anything else is an error. For each SPP it writes OUT.SPP.pfm
 and a line "CPU spp seconds" (processor time of rendering). Everything of Cycles that makes pictures biased is off.
 
-Lamps that are balls become `meshes` that emit, which is right but noisy where they differ in size, since Cycles 3.4 draws triangles by
-their area; or `points`, its own lamps with a radius, which are discs that face what they light.
+Lamps become meshes that emit: Cycles 3.4 draws its own round lamps as discs that face what they light.
 """
 import gzip
 import math
@@ -93,8 +92,7 @@ TO_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
 
 
 class Scene:
-    def __init__(self, lamps_are_points):
-        self.lamps_are_points = lamps_are_points
+    def __init__(self):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.scene = bpy.context.scene
         self.camera = None
@@ -283,16 +281,6 @@ class Scene:
 
     def lamp(self, kind, keys, where):
         center = np.array(keys.get("center", (0, 10, 0)))
-        if kind == "sphere" and self.lamps_are_points:
-            radius, radiance = keys.get("radius", 1.0), np.array(keys.get("radiance", (1, 1, 1)))
-            data = bpy.data.lights.new("lamp", "POINT")
-            data.shadow_soft_size = radius
-            data.energy = 4 * math.pi ** 2 * radius ** 2 * radiance.max()  # the power of a ball of that radiance
-            data.color = radiance / radiance.max()
-            lamp = bpy.data.objects.new("lamp", data)
-            lamp.location = blender_axes(center)
-            self.scene.collection.objects.link(lamp)
-            return
         material, tree, out = self.shader()
         tree.links.new(self.emits(tree, keys.get("radiance", (1, 1, 1)), not keys.get("two_sided", False)), out.inputs[0])
         if kind == "sphere":
@@ -424,9 +412,8 @@ def exr_as_pfm(picture, out):
 def main():
     arguments = sys.argv[sys.argv.index("--") + 1:]
     path, out = arguments[:2]
-    width, height, bounces, seed = (int(a) for a in arguments[2:6])
-    samples = [int(a) for a in arguments[7:]]
-    built = Scene(arguments[6] == "points")
+    width, height, bounces, seed, *samples = (int(a) for a in arguments[2:])
+    built = Scene()
     built.read(path)
     built.finish()
     scene = built.scene
