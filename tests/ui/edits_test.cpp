@@ -95,7 +95,7 @@ TEST_F(Edits, NewKindsOfLightsAndSurfacesAreShown) {
     ASSERT_EQ(window->command("set spp 4"), "");
     window->settle();
     Pixels last = window->picture();
-    for (const char* edit : {"material.1.model conductor", "light.0 rect,0,3,4,1,0,0,0,0,1,9,9,9,true", "background 0,0,0",
+    for (const char* edit : {"material.1.model conductor", "light.0 rect,0,3,4,1,0,0,0,0,1,9,9,9", "background 0,0,0",
                              "material.2.emission 2,1,0"}) {
         ASSERT_EQ(window->command("edit " + std::string(edit)), "");
         window->settle();
