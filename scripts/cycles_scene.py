@@ -1,13 +1,12 @@
 """Renders a text scene of Clarity with Cycles; scripts/cycles_compare starts it within Blender:
 
-blender -b --factory-startup -t 2 -P cycles_scene.py -- SCENE OUT W H BOUNCES SEED meshes|points SPP...
+blender -b --factory-startup -t 2 -P cycles_scene.py -- SCENE OUT W H BOUNCES SEED SPP...
 
 Reads what both programs can show by the same numbers: cameras, polygons, triangles, spheres, lamps with a size, skies, the models
 lambert, conductor (Fresnel 1) and dielectric, and files that are loaded. Anything else is an error. For each SPP it writes OUT.SPP.pfm
 and a line "CPU spp seconds" (processor time of rendering). Everything of Cycles that makes pictures biased is off.
 
-Lamps that are balls become `meshes` that emit, which is right but noisy where they differ in size, since Cycles 3.4 draws triangles by
-their area; or `points`, its own lamps with a radius, which are discs that face what they light.
+Lamps become meshes that emit: Cycles 3.4 draws its own round lamps as discs that face what they light.
 """
 import gzip
 import math
@@ -26,6 +25,7 @@ FLAGS = ("two_sided", "one_sided", "compensate", "visible", "off")
 WORDS = ("material", "model", "name", "falloff")
 IGNORED = ("ambient", "background", "animate")  # of the Whitted tracers, or without a meaning at rest
 SEGMENTS = (192, 96)  # of spheres, around and from pole to pole
+LAMP_SEGMENTS = (48, 24)  # of lamps: Cycles 3.4 sums the areas of all triangles as floats, in which many small ones get lost
 
 
 def die(text):
@@ -92,8 +92,7 @@ TO_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
 
 
 class Scene:
-    def __init__(self, lamps_are_points):
-        self.lamps_are_points = lamps_are_points
+    def __init__(self):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.scene = bpy.context.scene
         self.camera = None
@@ -205,9 +204,9 @@ class Scene:
         self.scene.collection.objects.link(thing)
         return thing
 
-    def sphere(self, center, radius, material):
+    def sphere(self, center, radius, material, segments=SEGMENTS):
         """A smooth ball of quads, as large as the sphere in the mean of its corners and its faces' middles."""
-        around, down = SEGMENTS
+        around, down = segments
         theta = np.linspace(0, math.pi, down + 1)[1:-1, None]
         phi = np.linspace(0, 2 * math.pi, around, endpoint=False)[None, :]
         ring = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta) + 0 * phi, np.sin(theta) * np.sin(phi)], -1).reshape(-1, 3)
@@ -282,20 +281,10 @@ class Scene:
 
     def lamp(self, kind, keys, where):
         center = np.array(keys.get("center", (0, 10, 0)))
-        if kind == "sphere" and self.lamps_are_points:
-            radius, radiance = keys.get("radius", 1.0), np.array(keys.get("radiance", (1, 1, 1)))
-            data = bpy.data.lights.new("lamp", "POINT")
-            data.shadow_soft_size = radius
-            data.energy = 4 * math.pi ** 2 * radius ** 2 * radiance.max()  # the power of a ball of that radiance
-            data.color = radiance / radiance.max()
-            lamp = bpy.data.objects.new("lamp", data)
-            lamp.location = blender_axes(center)
-            self.scene.collection.objects.link(lamp)
-            return
         material, tree, out = self.shader()
         tree.links.new(self.emits(tree, keys.get("radiance", (1, 1, 1)), not keys.get("two_sided", False)), out.inputs[0])
         if kind == "sphere":
-            self.sphere(center, keys.get("radius", 1.0), material)
+            self.sphere(center, keys.get("radius", 1.0), material, LAMP_SEGMENTS)
         elif kind == "rect":
             u, v = np.array(keys.get("u", (1, 0, 0))), np.array(keys.get("v", (0, 0, 1)))
             self.mesh([center - u - v, center + u - v, center + u + v, center - u + v], [(0, 1, 2, 3)], material)
@@ -423,9 +412,8 @@ def exr_as_pfm(picture, out):
 def main():
     arguments = sys.argv[sys.argv.index("--") + 1:]
     path, out = arguments[:2]
-    width, height, bounces, seed = (int(a) for a in arguments[2:6])
-    samples = [int(a) for a in arguments[7:]]
-    built = Scene(arguments[6] == "points")
+    width, height, bounces, seed, *samples = (int(a) for a in arguments[2:])
+    built = Scene()
     built.read(path)
     built.finish()
     scene = built.scene

@@ -90,6 +90,7 @@ TEST_F(Edits, AHandleMovesTheSelectedObject) {
 
 // Kernels are compiled for the lights and surfaces that a scene has. Others, which an edit brings, are compiled then.
 TEST_F(Edits, NewKindsOfLightsAndSurfacesAreShown) {
+    ASSERT_EQ(window->command("tab Render"), "");  // with the rows of path, among them that of the seed
     ASSERT_EQ(window->command("set tracer path"), "");
     ASSERT_EQ(window->command("set spp 4"), "");
     window->settle();

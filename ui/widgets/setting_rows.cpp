@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -48,7 +49,9 @@ bool whole_slider(const char* id_text, int& value, int min, int max, bool at_onc
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
     draw_slider_bar(shown, min, max, wide);
     const BareFrames bare;
-    const bool edited = ImGui::SliderInt(id_text, &shown, min, max, "%d", flags);
+    // ImGui ends the program for a slider with a wider range.
+    constexpr int kMost = std::numeric_limits<int>::max() / 2;
+    const bool edited = ImGui::SliderInt(id_text, &shown, std::max(min, -kMost), std::min(max, kMost), "%d", flags);
     return settled(id, edited, at_once, shown, value, &PendingEdit::whole);
 }
 

@@ -34,6 +34,10 @@ TEST(PathFaults, AreFound) {
          "PathMath.Warps*"},
         {"sums drift", "tracers/path/sum.h", "const float4 total = rough + lost;", "const float4 total = rough;",
          "PathSums.OfAM*"},
+        {"a wrong digit of Sobol's", "sampling/sobol.h",
+         "{0x00000001u, 0x00000003u, 0x00000005u, 0x0000000fu, 0x00000011u, 0x00000033u,",
+         "{0x00000001u, 0x00000003u, 0x00000005u, 0x00000007u, 0x00000011u, 0x00000033u,", "PathSamplers.Sobol*"},
+        {"a seed that counts for nothing", "sampling/dimensions.h", "rt_vuint(s->seed)", "rt_vuint(0u)", "PathSamplers.Seeds*"},
         {"a sine with a wrong digit", "sampling/math.h", "-1.666666664e-1f", "-1.666566664e-1f", "PathMath.Functions*"},
     };
     for (const PlantedFault& fault : faults) EXPECT_EQ(why_not_found(fault), "") << fault.name;
