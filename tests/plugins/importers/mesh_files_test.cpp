@@ -374,7 +374,7 @@ TEST_F(MeshFiles, MtlSaysHowMuchIsThere) {
     folder_.write("four.ppm", picture());
     const auto read = [&](const std::string& statements) {
         folder_.write("m.mtl", "newmtl a\n" + statements + "\n");
-        return import("a.obj", "mtllib m.mtl\nusemtl a\n" + kSquare);
+        return import("a.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3 4\n");
     };
     const auto values = [&](const std::string& statements) { return read(statements).materials.back().values; };
     EXPECT_EQ(values("d 1").alpha, RT_ALPHA_OPAQUE);
