@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <string>
 
@@ -182,8 +183,10 @@ TEST(Trust, IsEarnedAndCanBeRefused) {
     setenv("XDG_CACHE_HOME", cache.c_str(), 1);
     const fs::path program = std::getenv("CLARITY_WORKER");
     const std::string own = (program.parent_path() / "../lib/clarity/plugins/accel/linear.so").string();
-    const std::string other = cache + "/bad_packer.so";  // a copy, because other tests may have made the library proven
+    // A copy with another content, because other tests may have made the library proven.
+    const std::string other = cache + "/bad_packer.so";
     fs::copy_file(std::string(BAD_PLUGINS) + "/bad_packer.so", other);
+    std::ofstream(other, std::ios::app) << ' ';
     EXPECT_EQ(clarity::trust_of(own), Trust::own);
     EXPECT_EQ(clarity::trust_of(other), Trust::none);
     clarity::remember_library(other);

@@ -121,7 +121,7 @@ TEST_F(Paths, ComeNearAReference) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const auto reference = nlohmann::json::parse(result.out).at("reference");
     const auto& points = reference.at("points");
-    ASSERT_GE(points.size(), 4u);
+    ASSERT_EQ(points.size(), 8u) << "2, 4 .. 256 samples";
     EXPECT_EQ(points.back().at("samples"), 256);
     EXPECT_NEAR(points.back().at("mean_ratio"), 1, 0.05);
     EXPECT_LT(points.back().at("rmse"), points.front().at("rmse").get<double>() / 3);

@@ -80,6 +80,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         sample += next;
         if (pass.between && sample < all) pass.between(sample);
         next = batch(wall_ms, sample - pass.first, all - sample);
+        if (pass.at_most_doubles) next = std::min(next, sample - pass.first);
         if (ranks_ && pass.between) {  // all ranks save the same samples
             const std::vector<double> of_ranks = ranks_->gather(next);
             next = unsigned(*std::min_element(of_ranks.begin(), of_ranks.end()));

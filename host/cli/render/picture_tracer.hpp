@@ -23,6 +23,7 @@ class PictureTracer {
         unsigned first = 0;                                  // sample; those before it are in the film
         bool counts = true, timed = true;                    // whether the statistics get its rays, and its times
         double from = 0, share = 1;                          // of the progress
+        bool at_most_doubles = false;                        // whether `between` is called at each doubling of the samples
         std::function<void(unsigned samples)> between = {};  // if set, called after each batch, when the film is exact
     };
     struct Traced {

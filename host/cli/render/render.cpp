@@ -364,6 +364,7 @@ class RenderJob {
                                      double from, double share, Progress& progress) {
         PictureTracer::Pass pass;
         pass.counts = counts, pass.timed = timed, pass.from = from, pass.share = share;
+        pass.at_most_doubles = stats_.reference != nullptr;
         if (checkpoint.saves() || stats_.reference)
             pass.between = [&](unsigned samples) {
                 if (checkpoint.saves()) checkpoint.offer(frames, samples);

@@ -56,12 +56,14 @@ RT_INLINE void cone_surface(const global float *numbers, const global float *mor
     const vfloat away = sqrt(rt_dot(from_axis, from_axis)), radius = fma(growth, z, rt_vfloat(numbers[7]));
     const vmask side = RT_MASK(u < rt_vfloat(0.5f)), first = RT_MASK(u < rt_vfloat(1.5f));
     const rt_vec cap = rt_scale(rt_select(first, rt_vfloat(-1.0f), rt_vfloat(1.0f)), axis);
-    const rt_vec slope = rt_along(-growth, axis, rt_scale(rt_vfloat(1.0f) / rt_max(away, rt_vfloat(1e-30f)), from_axis));
+    /* A point of a very thin one may be rounded onto the axis, where every direction across it is a normal. */
+    rt_vec x, y;
+    rt_across(numbers + 3, &x, &y);
+    const rt_vec outward = rt_choose(RT_MASK(away > rt_vfloat(1e-30f)), rt_scale(rt_vfloat(1.0f) / rt_max(away, rt_vfloat(1e-30f)), from_axis), x);
+    const rt_vec slope = rt_along(-growth, axis, outward);
     s->normal = rt_choose(side, slope, cap);
     s->height = rt_select(side, (away - radius) / sqrt(fma(growth, growth, rt_vfloat(1.0f))), rt_select(first, -z, z - length));
     if (!s->wants_uv) return;
-    rt_vec x, y;
-    rt_across(numbers + 3, &x, &y);
     s->tex_u = rt_turns(rt_dot(from_axis, x), rt_dot(from_axis, y));
     s->tex_v = rt_select(side, z / length, away / rt_max(radius, rt_vfloat(1e-30f)));
 }

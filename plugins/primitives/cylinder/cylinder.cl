@@ -45,11 +45,12 @@ RT_INLINE void cylinder_surface(const global float *numbers, const global float 
     const vfloat away = sqrt(rt_dot(from_axis, from_axis));
     const vmask side = RT_MASK(u < rt_vfloat(0.5f)), first = RT_MASK(u < rt_vfloat(1.5f));
     const rt_vec cap = rt_scale(rt_select(first, rt_vfloat(-1.0f), rt_vfloat(1.0f)), axis);
-    s->normal = rt_choose(side, from_axis, cap);
-    s->height = rt_select(side, away - rt_vfloat(numbers[7]), rt_select(first, -z, z - length));
-    if (!s->wants_uv) return;
+    /* A point of a very thin one may be rounded onto the axis, where every direction across it is a normal. */
     rt_vec x, y;
     rt_across(numbers + 3, &x, &y);
+    s->normal = rt_choose(side, rt_choose(RT_MASK(away > rt_vfloat(0.0f)), from_axis, x), cap);
+    s->height = rt_select(side, away - rt_vfloat(numbers[7]), rt_select(first, -z, z - length));
+    if (!s->wants_uv) return;
     s->tex_u = rt_turns(rt_dot(from_axis, x), rt_dot(from_axis, y));
     s->tex_v = rt_select(side, z / length, away / rt_vfloat(numbers[7]));
 }

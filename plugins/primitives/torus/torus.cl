@@ -115,8 +115,11 @@ RT_INLINE void torus_surface(const global float *numbers, const global float *mo
     const vfloat z = rt_dot(from, axis), ring = rt_vfloat(numbers[6]);
     const rt_vec flat = rt_along(-z, axis, from);
     const vfloat across = rt_max(sqrt(rt_dot(flat, flat)), rt_vfloat(1e-30f));
-    s->normal = rt_along(-ring / across, flat, from);
-    s->height = sqrt(rt_dot(s->normal, s->normal)) - rt_vfloat(numbers[7]);
+    const rt_vec of_tube = rt_along(-ring / across, flat, from);
+    const vfloat away = sqrt(rt_dot(of_tube, of_tube));
+    /* A point of a very thin tube may be rounded onto its middle, where the axis is as good as other normals. */
+    s->normal = rt_choose(RT_MASK(away > rt_vfloat(0.0f)), of_tube, axis);
+    s->height = away - rt_vfloat(numbers[7]);
     if (!s->wants_uv) return;
     rt_vec x, y;
     rt_across(numbers + 3, &x, &y);
