@@ -138,9 +138,15 @@ RT_INLINE rt_groups rt_group_lanes(vint numbers, uint bits)
 RT_INLINE bool rt_next_group(rt_groups *g, int *id, vmask *mine)
 {
     if (g->left == 0u) return false;
+#if RT_LANES == 1
+    *id = g->numbers;
+    *mine = RT_MASK(g->numbers == g->numbers);
+    g->left = 0u;
+#else
     *id = g->of[rt_lowest(g->left)];
     *mine = RT_MASK(g->numbers == rt_vint(*id));
     g->left &= ~rt_bits(*mine);
+#endif
     return true;
 }
 
