@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <random>
@@ -120,6 +121,7 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
     input_->params = params;
     const rt_build_input input = input_->table();
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t worked = std::clock();
     try {
         services.check(static_cast<int>(Exit::failed), [&] {
             const ScopedFpMode floats;
@@ -130,7 +132,8 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
     } catch (const Error& e) {
         run.why = e.what();
     }
-    run.ms = ms_since(start);
+    // On a busy machine a build waits for others; with several threads it works for longer than it lasts.
+    run.ms = std::min(ms_since(start), 1e3 * double(std::clock() - worked) / CLOCKS_PER_SEC);
     run.reports = progress.reports();
     run.result = std::move(output.result());
     if (run.why.empty() && !run.cancelled) {

@@ -44,8 +44,8 @@ struct BuildRun {
     int32_t status = RT_FAILED;
     std::string why;  // how it failed or broke its contract, in its terms; empty: the result is sound as far as the ABI goes
     bool cancelled = false;  // it returned RT_CANCELLED after progress had said so
-    double ms = 0;
-    unsigned reports = 0;  // calls of host->progress
+    double ms = 0;           // that it lasted, less what it waited for other processes
+    unsigned reports = 0;    // calls of host->progress
     BuilderResult result;
 };
 
