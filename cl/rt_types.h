@@ -149,6 +149,10 @@ typedef struct rt_texture {
 } rt_texture;
 #define RT_WRAP_ALONG_V 4u
 
+/* The surfaces that a ray may pass one after the other (shading/cutouts.h). The next one stops it; Whitted's tracers count the ray as
+ * dropped. */
+#define RT_MOST_PASSED 1024u
+
 #define RT_MOST_NUMBERS 16
 
 /* Values that may change from frame to frame while program and scene stay the same. 276 B. */

@@ -6,9 +6,6 @@
 #define RT_CUTOUTS_H
 #ifdef RT_HAS_CUTOUTS
 
-/* The surfaces that a ray may pass one after the other. The next one stops it; Whitted's tracers count the ray as dropped. */
-#define RT_MOST_PASSED 1024u
-
 /* The share of each lane's surface that is there, and where rays that go through it start again. */
 RT_CALLED vfloat rt_meet_cutout(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, vmask lanes, rt_vec *behind)
 {
@@ -79,7 +76,8 @@ RT_CALLED void rt_pass_cutouts(const rt_ctx *ctx, const constant rt_frame *frame
     }
 }
 
-/* The share of light that comes through in the lanes `occluded`, whose shadow rays have met something. distance: of the light. */
+/* Shadow rays of the lanes `occluded` have met a surface. Returns the share of their light that passes this surface and all others on
+ * the way to the light, which is `distance` away. */
 RT_CALLED vfloat rt_light_through(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *shadow, vmask occluded, vfloat distance,
                                   uint *dropped)
 {

@@ -25,8 +25,9 @@ Scene bent(Scene regular);
 // The first patch alone, a flat floor of 64 x 64 squares from 0 to 10, in the world itself.
 Scene floor_scene();
 
-// Trees of 1 to 20 triangles, each that of a mesh, and of 300 in the world; and 300 whose boxes have one centre, which no
-// builder can split by it. None hides another from close by.
+// Meshes of 1 to 20 triangles, each with a tree of its own, and 300 triangles in the world's tree. Another mesh has 300
+// triangles whose boxes share their centre, so that no builder can split them by centres. No triangle is close in front of
+// another.
 Scene sizes_scene(uint64_t seed = 0);
 
 // `count` triangles around the origin, and a room around them. The box of each holds a cube of 0.3 around the origin, but a ray

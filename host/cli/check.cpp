@@ -351,7 +351,7 @@ std::shared_ptr<const Scene> own_scene(const PluginRegistry& plugins, const std:
     return scene;
 }
 
-// Refuses a device whose own faults would be taken for the plugins'.
+// Refuses a device that compiles some kernels wrongly: its faults would look like faults of plugins.
 void expect_sound_compiler(const check::CheckOptions& options) {
     const auto traces_nothing = [](const std::string& name) {
         return name.rfind("builds", 0) == 0 || name.rfind("keys", 0) == 0;

@@ -51,41 +51,41 @@ bool is_type_name(const char* text) {
     return true;
 }
 
-Problem check_choices(const std::string& who, const rt_param& param) {
-    if (!param.choices) return who + " is an ENUM without choices";
+Problem check_choices(const std::string& what, const rt_param& param) {
+    if (!param.choices) return what + " is an ENUM without choices";
     std::set<std::string> seen;
     rt_u32 count = 0;
     for (; count <= kMaxChoices && param.choices[count]; ++count) {
-        if (const Problem why = check_text("a choice", param.choices[count], true)) return who + ": " + why.text();
+        if (const Problem why = check_text("a choice", param.choices[count], true)) return what + ": " + why.text();
         if (std::string(param.choices[count]).find_first_of(",= ") != std::string::npos)
-            return who + ": the choice '" + param.choices[count] +
+            return what + ": the choice '" + param.choices[count] +
                    "' cannot be typed on the command line: no ',', '=' or blank in it";
-        if (!seen.insert(param.choices[count]).second) return who + " has the choice '" + param.choices[count] + "' twice";
+        if (!seen.insert(param.choices[count]).second) return what + " has the choice '" + param.choices[count] + "' twice";
     }
-    if (count == 0) return who + " is an ENUM without choices";
-    if (count > kMaxChoices) return who + ": its choices have no NULL at the end";
+    if (count == 0) return what + " is an ENUM without choices";
+    if (count > kMaxChoices) return what + ": its choices have no NULL at the end";
     if (param.min != 0 || param.max != count - 1)
-        return who + " is an ENUM of " + std::to_string(count) + " choices: its range must be 0.." + std::to_string(count - 1);
+        return what + " is an ENUM of " + std::to_string(count) + " choices: its range must be 0.." + std::to_string(count - 1);
     return {};
 }
 
 Problem check_param(const rt_param& param, rt_u32 number) {
     if (!is_identifier(param.key)) return "parameter " + std::to_string(number) + " has no key, or one that is no identifier";
-    const std::string who = "parameter '" + std::string(param.key) + "'";
-    if (const Problem why = check_text("label", param.label, true)) return who + ": " + why.text();
-    if (const Problem why = check_text("help", param.help, true)) return who + ": " + why.text();
+    const std::string what = "parameter '" + std::string(param.key) + "'";
+    if (const Problem why = check_text("label", param.label, true)) return what + ": " + why.text();
+    if (const Problem why = check_text("help", param.help, true)) return what + ": " + why.text();
     if (param.kind < RT_PARAM_INT || param.kind > RT_PARAM_ENUM)
-        return who + " has the unknown kind " + std::to_string(param.kind);
+        return what + " has the unknown kind " + std::to_string(param.kind);
     if (param.effect != RT_EFFECT_REBUILD && param.effect != RT_EFFECT_RECOMPILE)
-        return who + " has the unknown effect " + std::to_string(param.effect);
+        return what + " has the unknown effect " + std::to_string(param.effect);
     if (!std::isfinite(param.min) || !std::isfinite(param.max) || !(param.min <= param.def && param.def <= param.max))
-        return who + ": expected finite min <= def <= max, found " + std::to_string(param.min) + ", " +
+        return what + ": expected finite min <= def <= max, found " + std::to_string(param.min) + ", " +
                std::to_string(param.def) + ", " + std::to_string(param.max);
-    if (param.kind == RT_PARAM_BOOL && (param.min != 0 || param.max != 1)) return who + " is a BOOL: its range must be 0..1";
+    if (param.kind == RT_PARAM_BOOL && (param.min != 0 || param.max != 1)) return what + " is a BOOL: its range must be 0..1";
     if (param.kind != RT_PARAM_FLOAT)
         for (const double value : {param.min, param.max, param.def})
-            if (value != std::floor(value)) return who + " takes whole numbers, but its range or default is none";
-    return param.kind == RT_PARAM_ENUM ? check_choices(who, param) : "";
+            if (value != std::floor(value)) return what + " takes whole numbers, but its range or default is none";
+    return param.kind == RT_PARAM_ENUM ? check_choices(what, param) : "";
 }
 
 Problem check_params(const rt_plugin& plugin) {
@@ -117,10 +117,10 @@ Problem check_slots(const rt_accel& accel) {
     std::set<std::string> names;
     for (rt_u32 i = 0; i < accel.slot_count; ++i) {
         const rt_slot& slot = accel.slots[i];
-        const std::string who = "slot " + std::to_string(i);
-        if (!is_identifier(slot.name)) return who + " has no name, or one that is no identifier";
+        const std::string what = "slot " + std::to_string(i);
+        if (!is_identifier(slot.name)) return what + " has no name, or one that is no identifier";
         if (!names.insert(slot.name).second) return "two slots are named '" + std::string(slot.name) + "'";
-        const std::string called = who + " ('" + slot.name + "')";
+        const std::string called = what + " ('" + slot.name + "')";
         const bool host_only = (slot.flags & RT_SLOT_HOST_ONLY) != 0;
         if (i == 0 && host_only) return called + " is RT_SLOT_HOST_ONLY, but roots are elements of it: put it behind the nodes";
         if (!host_only && !is_type_name(slot.cl_type)) return called + " has no cl_type, or one that is no type's name";

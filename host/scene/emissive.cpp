@@ -9,6 +9,10 @@
 
 namespace clarity {
 
+bool emits(const rt_material& material) {
+    return std::any_of(std::begin(material.emission), std::end(material.emission), [](float channel) { return channel > 0; });
+}
+
 bool is_convex(const float* corners, size_t count) {
     Vec normal{};
     const auto at = [&](size_t i) { return to_vec(corners + 3 * (i % count)); };
@@ -29,21 +33,20 @@ bool is_convex(const float* corners, size_t count) {
 }
 
 EmissiveCounts count_emissive(const Scene& scene) {
-    std::vector<bool> emits, is_cut_out;
+    std::vector<bool> emitting, is_cut_out;
     for (const Material& material : scene.materials) {
-        emits.push_back(std::any_of(std::begin(material.values.emission), std::end(material.values.emission),
-                                    [](float channel) { return channel > 0; }));
+        emitting.push_back(emits(material.values));
         is_cut_out.push_back(material.values.alpha != RT_ALPHA_OPAQUE);
     }
     EmissiveCounts counts;
     const auto count = [&](rt_u32 material, uint64_t number, uint64_t& whole) {
-        if (emits[material]) (is_cut_out[material] ? counts.cut_out : whole) += number;
+        if (emitting[material]) (is_cut_out[material] ? counts.cut_out : whole) += number;
     };
     std::vector<EmissiveCounts> of_mesh(scene.meshes.size());  // of triangles with a material of their own
     for (size_t m = 0; m < scene.meshes.size(); ++m)
         for (rt_u32 i = 0; i < scene.meshes[m].triangle_count; ++i) {
             const rt_u32 material = scene.triangle_materials[scene.meshes[m].first_triangle + i];
-            if (emits[material]) ++(is_cut_out[material] ? of_mesh[m].cut_out : of_mesh[m].triangles);
+            if (emitting[material]) ++(is_cut_out[material] ? of_mesh[m].cut_out : of_mesh[m].triangles);
         }
     for (const Instance& instance : scene.instances) {
         if (!instance.visible) continue;
@@ -56,7 +59,7 @@ EmissiveCounts count_emissive(const Scene& scene) {
     }
     for (const Sphere& sphere : scene.spheres) count(sphere.material, 1, counts.spheres);
     for (const Polygon& polygon : scene.polygons) {
-        if (!emits[polygon.material]) continue;
+        if (!emitting[polygon.material]) continue;
         const float* const corners = &scene.polygon_corners[3 * size_t(polygon.first_corner)];
         count(polygon.material, 1, is_convex(corners, polygon.corner_count) ? counts.polygons : counts.bent_polygons);
     }

@@ -3,9 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "rt_types.h"
+
 namespace clarity {
 
 struct Scene;
+
+// Whether a surface emits light.
+bool emits(const rt_material& material);
 
 // Placed primitives that emit light.
 struct EmissiveCounts {

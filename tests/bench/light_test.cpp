@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "bench/cases/light.hpp"
+#include "bench/measured.hpp"
 #include "bench/output/output.hpp"
 #include "bench/run/bench.hpp"
 #include "render/compare/picture_errors.hpp"
@@ -38,15 +39,7 @@ class BenchLight : public testing::Test {
         request_.only = {"/light"};
         request_.time_limit_s = 600;
     }
-    BenchReport run() {
-        BenchOptions options;
-        options.devices = {Workbench::get().device().info()};
-        options.rules.max_spread = 100;
-        options.rules.min_rounds = options.rules.max_rounds = 3;
-        const PluginRegistry& plugins = Workbench::get().plugins();
-        Progress progress;
-        return run_bench(plugins, request_, make_suite(request_, SceneCatalog("", ""), plugins), options, progress);
-    }
+    BenchReport run() { return measured(request_); }
     // The picture of the request's settings with that seed and so many samples, written as a file.
     std::string reference(const char* seed, unsigned samples) const {
         std::vector<std::pair<std::string, std::string>> pairs = request_.settings;

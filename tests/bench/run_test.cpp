@@ -4,6 +4,7 @@
 #include <new>
 
 #include "base/error.hpp"
+#include "bench/measured.hpp"
 #include "bench/run/bench.hpp"
 #include "support/scenes.hpp"
 #include "support/workbench.hpp"
@@ -80,14 +81,7 @@ TEST(Moving, RowsOfAllMeasures) {
     request.settings = {{"size", "32x24"}};
     request.only = {"wave"};
     request.time_limit_s = 600;  // the first repetition compiles kernels, beside another test
-    BenchOptions options;
-    options.devices = {Workbench::get().device().info()};
-    options.rules.max_spread = 100;
-    options.rules.min_rounds = options.rules.max_rounds = 3;
-    const PluginRegistry& plugins = Workbench::get().plugins();
-    Progress progress;
-    const BenchReport report =
-        run_bench(plugins, request, make_suite(request, SceneCatalog("", ""), plugins), options, progress);
+    const BenchReport report = measured(request);
     EXPECT_EQ(report.failure, "");
     size_t refits = 0, rays = 0;
     for (const BenchRecord& r : report.records) {

@@ -124,22 +124,20 @@ PathPicture traced(const Scene& scene, const View& view, unsigned samples, Pairs
     return trace_paths(scene, view, samples, pairs);
 }
 
-bool counts_events(const std::string& seed) {
+bool shows_at_depths(const Scene& scene, const View& view, double (*radiance)(double albedo, int depth),
+                     const std::string& seed) {
     for (const int depth : {1, 2})
-        if (!shows(traced(hollow_sphere(0.5f, 1), inside_view(false), 4, {{"depth", std::to_string(depth)}, {"size", "16x16"}},
-                          seed),
-                   hollow_sphere_radiance(0.5, depth)))
+        if (!shows(traced(scene, view, 4, {{"depth", std::to_string(depth)}, {"size", "16x16"}}, seed), radiance(0.5, depth)))
             return false;
     return true;
 }
 
+bool counts_events(const std::string& seed) {
+    return shows_at_depths(hollow_sphere(0.5f, 1), inside_view(false), hollow_sphere_radiance, seed);
+}
+
 bool asks_lights_at_the_last_event(const std::string& seed) {
-    for (const int depth : {1, 2})
-        if (!shows(traced(hollow_sphere(0.5f, 0), inside_view(true), 4, {{"depth", std::to_string(depth)}, {"size", "16x16"}},
-                          seed),
-                   lit_sphere_radiance(0.5, depth)))
-            return false;
-    return true;
+    return shows_at_depths(hollow_sphere(0.5f, 0), inside_view(true), lit_sphere_radiance, seed);
 }
 
 bool ends_by_roulette(const std::string& seed) {

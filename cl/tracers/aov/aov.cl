@@ -60,7 +60,7 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
             const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
             const uint bits = rt_bits(active);
 #ifdef RT_HAS_CUTOUTS
-            uint dropped; /* counted by pictures of colours */
+            uint dropped = 0; /* counted by pictures of colours */
             rt_pass_cutouts(&ctx, frame, 0, rt_vint(0), rays + b, hits + b, active, &dropped);
 #endif
             RT_COUNT_OVERFLOW(hits + b)

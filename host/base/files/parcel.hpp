@@ -118,9 +118,9 @@ class ParcelWriter {
     std::string waiting_;  // what follows them
 };
 
-// Reads what a ParcelWriter wrote. The other process is not trusted: every size is compared with the file's, whose size must be
-// sealed, and each byte is read once, so that it does not matter if that process still writes. Functions throw ParcelDamaged,
-// and Error(failed) if the file cannot be read.
+// Reads what a ParcelWriter wrote. The other process is not trusted. Every size is compared with that of the file, which must
+// be sealed. Each byte is read once, because that process may still write. Functions throw ParcelDamaged, and Error(failed) if
+// the file cannot be read.
 class ParcelReader {
  public:
     static constexpr bool kWrites = false;

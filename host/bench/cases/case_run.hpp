@@ -25,8 +25,8 @@ std::vector<BenchRecord> run_case(const CaseRun& run);
 // kind must agree exactly.
 std::vector<BenchRecord> measure_pictures(const CaseRun& run);
 
-// A model whose vertices all move, refitted or built anew. Measures of the case: "refit", "rebuild", or a kind of rays, which
-// are traced after either. One row for each variant, and of the first two one for each quality of the baseline.
+// Moves all vertices of a model, and measures what the case names: "refit", "rebuild", or a kind of rays, which are traced
+// after either. One row for each variant; of refits and rebuilds also one for each quality of the baseline.
 std::vector<BenchRecord> measure_motion(const CaseRun& run);
 
 // Plays 200 frames of the case's animation with each strategy: always refit, a build every 50, 20, 10, 5 or 2 frames, always

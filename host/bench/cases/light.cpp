@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <regex>
 
-#include "base/error.hpp"
-#include "base/pictures/picture_read.hpp"
 #include "device/program.hpp"
 #include "render/compare/picture_errors.hpp"
+#include "render/compare/reference_picture.hpp"
 #include "render/kernels/program_cache.hpp"
 
 namespace clarity::bench {
@@ -16,16 +15,7 @@ constexpr unsigned kTimedSamples = 16;      // of a repetition at most
 constexpr unsigned kReferenceSamples = 16;  // as many times the samples: its own variance then adds 3 % to an RMSE
 
 FloatImage reference_of(CaseState& state, const Settings& settings, const Fixture::Held& held, const std::string& file) {
-    if (!file.empty()) {
-        FloatImage picture = read_picture(file);
-        if (picture.width != unsigned(settings.width) || picture.height != unsigned(settings.height))
-            throw Error(Exit::usage, "--reference " + file + ": has " + std::to_string(picture.width) + "x" +
-                                         std::to_string(picture.height) + " pixels and the picture " +
-                                         std::to_string(settings.width) + "x" + std::to_string(settings.height) +
-                                         "; measure with --size " + std::to_string(picture.width) + "x" +
-                                         std::to_string(picture.height));
-        return picture;
-    }
+    if (!file.empty()) return read_reference(file, settings);
     Settings other = settings;
     set_setting(other, "seed", find_setting("seed")->get(settings) == "1" ? "2" : "1");
     other.sampler = "sobol";

@@ -13,9 +13,9 @@ std::vector<BenchRecord> measure_ranks(const BenchScene& scene, const PluginRegi
                                        const BenchCase& c, const BenchOptions& options, const MeasureRules& rules,
                                        Progress& progress);
 
-// How long a first picture takes: the program is started anew for each variant, in their order. One whose label has "cold"
-// starts with empty folders for what is kept (ours, PoCL's, CUDA's), any other one with those of the variant before it. time_ms
-// is the part that compiles. Throws Cancelled.
+// Measures how long a first picture takes. The program is started anew for each variant, in their order. If the label has
+// "cold", the folders of compiled programs (ours, PoCL's, CUDA's) are empty; otherwise they are those of the variant before.
+// time_ms: the time of compilation. Throws Cancelled.
 std::vector<BenchRecord> measure_start(const BenchScene& scene, const PluginRegistry& plugins, const BenchRequest& request,
                                        const BenchCase& c, const BenchOptions& options, Progress& progress);
 

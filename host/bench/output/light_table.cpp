@@ -16,9 +16,7 @@ const std::vector<std::string> kHead = {"scene",      "",         "samples", "se
                                         "Msamples/s", "spread %", "slope",   "B/path",  "registers", "spilled B"};
 
 std::string errors_table(const BenchReport& report) {
-    TextTable table({"scene", "", "samples", "seconds", "RMSE", "trimmed", "relMSE", "Msamples/s", "spread %", "slope",
-                     "B/path", "registers", "spilled B"},
-                    2);
+    TextTable table(kHead, 2);
     for (const BenchRecord& r : report.records) {
         if (r.measure != "light" || r.status != RowStatus::ok) continue;
         for (const LightRun::Point& point : r.light.points) {

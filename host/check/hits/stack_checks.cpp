@@ -65,7 +65,7 @@ BenchInput few_rays(BenchInput input) {
 const TestScene kCrowd{"60000 triangles whose boxes overlap", [](uint64_t) { return crowd_scene(60000); }, crowd_ray_sets},
     kSmallCrowd{"400 triangles whose boxes overlap", [](uint64_t) { return crowd_scene(400); }, crowd_ray_sets};
 
-// The large one for trees. In a grid or a kd-tree each cell names each primitive of a crowd.
+// Returns the large crowd for trees, and the small one for grids and kd-trees, where each cell names each primitive of a crowd.
 const TestScene& crowd_of(const BenchInput& input, const Step& step) {
     constexpr uint64_t kMost = 512;  // bytes a primitive, of a structure that names it once
     Bench small(input, kSmallCrowd);
@@ -117,7 +117,7 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     // where a leaf is tested without a push, a path may test one at each level. With 4 primitives a path lbvh tests 135 at
     // most, and what asks for every other push alone 180.
     constexpr rt_u32 kGranted = 12, kLeast = 4, kLonger = 3;
-    // The crowd's trees are deep everywhere: it shows who asks only while the stack is short.
+    // The crowd's trees are deep everywhere. So they show a traversal that asks only while the stack is short.
     const Row rows[] = {{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
                         {kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"},
                         {crowd_of(input, step), {"hits.crowd"}, 0.5, "at many triangles whose boxes overlap"}};

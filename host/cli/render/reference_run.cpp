@@ -1,18 +1,14 @@
 #include "cli/render/reference_run.hpp"
 
 #include "base/error.hpp"
-#include "base/pictures/picture_read.hpp"
+#include "render/compare/reference_picture.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "render/settings/aov.hpp"
 
 namespace clarity {
 
-ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings) : file_(file), reference_(read_picture(file)) {
-    if (reference_.width != unsigned(settings.width) || reference_.height != unsigned(settings.height))
-        throw Error(Exit::usage, "--reference " + file + ": has " + std::to_string(reference_.width) + "x" +
-                                     std::to_string(reference_.height) + " pixels and the picture " +
-                                     std::to_string(settings.width) + "x" + std::to_string(settings.height) + "; take --size " +
-                                     std::to_string(reference_.width) + "x" + std::to_string(reference_.height));
+ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings)
+    : file_(file), reference_(read_reference(file, settings)) {
     if (!find_aov(settings.aov).is_color())
         throw Error(Exit::usage, "--reference " + file + ": is compared with colours; leave out --aov " + settings.aov);
 }

@@ -50,10 +50,6 @@ double flux_of_sky(const rt_lighting& sky, const SkyTable& picture) {
     return 4 * kPi * mean(sky.sky_color);
 }
 
-const rt_material& material_of(const Scene& scene, const View& view, size_t i) {
-    return view.materials.empty() ? scene.materials[i].values : view.materials[i];
-}
-
 // Collects the emissive primitives, by ascending numbers.
 class Collector {
  public:
@@ -68,7 +64,7 @@ class Collector {
           powers_(powers) {
         // Where a surface is cut out a light would be drawn in vain: rays that hit it find its light.
         for (size_t i = 0; i < scene.materials.size(); ++i)
-            emits_.push_back(mean(material(i).emission) > 0 && material(i).alpha == RT_ALPHA_OPAQUE);
+            emits_.push_back(emits(material(i)) && material(i).alpha == RT_ALPHA_OPAQUE);
     }
 
     void collect() {
@@ -214,7 +210,7 @@ const std::vector<const char*>& emitter_headers() {
 
 bool has_emitting_surfaces(const Scene& scene, const View& view) {
     for (size_t i = 0; i < scene.materials.size(); ++i)
-        if (mean(material_of(scene, view, i).emission) > 0) return true;
+        if (emits(material_of(scene, view, i))) return true;
     return false;
 }
 

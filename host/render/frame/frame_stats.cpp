@@ -19,8 +19,7 @@ KernelTime& time_of(std::vector<KernelTime>& times, const std::string& name) {
 std::string not_finite_text(uint64_t samples) {
     return "tracing: " + plural(samples, "sample is", "samples are") +
            " not a finite number, and so are their pixels: a number of the scene is too large, or a kernel has a fault. Look "
-           "for "
-           "huge radiances and scales; `--only-paths` shows which light and which event they come from";
+           "for huge radiances and scales; `--only-paths` shows which light and which event they come from";
 }
 
 void add_rays(FrameStats& sum, const FrameStats& more) {

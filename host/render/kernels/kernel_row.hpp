@@ -20,8 +20,8 @@ enum : unsigned {
     kCountsRays = 32,     // traces more than camera rays: it has `counters`, and the `distances` of the camera rays
     kLayers = 64,         // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
     kPicksLights = 128,   // has the table of emitters and the sky: cl/shading/emitters.h
-    kWhitted = 512,       // lights with cl/shading/shading.h
-    kSumsSamples = 256    // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
+    kSumsSamples = 256,   // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
+    kWhitted = 512        // lights with cl/shading/shading.h
 };
 
 struct KernelRow {

@@ -72,14 +72,16 @@ Setting number(const std::string& key, std::string label, std::string help, doub
         [member](Settings& settings, Number value) { settings.*member = value; });
 }
 
+double stored(const Settings& settings, const std::string& key, double standard) {
+    const auto found = settings.numbers.find(key);
+    return found == settings.numbers.end() ? standard : found->second;
+}
+
 // A number that only kernels read: RT_SETTING(frame, key). This row is all that there is to it. The type of its default
 // says whether it is a whole one.
 template <class Number>
 Setting kernel_number(const std::string& key, std::string label, std::string help, double min, double max, Number standard) {
-    const auto read = [=](const Settings& settings) {
-        const auto found = settings.numbers.find(key);
-        return found == settings.numbers.end() ? standard : static_cast<Number>(found->second);
-    };
+    const auto read = [=](const Settings& settings) { return static_cast<Number>(stored(settings, key, standard)); };
     const auto write = [=](Settings& settings, Number value) {
         if (value == standard)
             settings.numbers.erase(key);
@@ -315,7 +317,7 @@ const std::vector<const Setting*>& kernel_numbers() {
 }
 
 uint32_t Setting::bits(const Settings& settings) const {
-    const double value = number_of(settings, key);
+    const double value = stored(settings, key, *number);
     if (kind == Kind::integer) return static_cast<uint32_t>(static_cast<int32_t>(value));
     const float single = static_cast<float>(value);
     uint32_t bits = 0;
@@ -326,8 +328,7 @@ uint32_t Setting::bits(const Settings& settings) const {
 double number_of(const Settings& settings, const std::string& key) {
     const Setting* const row = find_setting(key);
     if (!row || !row->number) throw Error(Exit::usage, "no number of kernels `" + key + "`");
-    const auto found = settings.numbers.find(key);
-    return found == settings.numbers.end() ? *row->number : found->second;
+    return stored(settings, key, *row->number);
 }
 
 const Setting* find_setting(const std::string& key) {

@@ -4,13 +4,10 @@
 #include <iterator>
 
 #include "render/settings/tracer_choice.hpp"
+#include "scene/emissive.hpp"
 
 namespace clarity {
 namespace {
-
-bool any(const rt_f32 (&color)[3]) {
-    return std::any_of(std::begin(color), std::end(color), [](float channel) { return channel > 0; });
-}
 
 void add(Optics& optics, const rt_light& light) {
     optics.lights |= 1u << light.kind;
@@ -19,22 +16,26 @@ void add(Optics& optics, const rt_light& light) {
 }
 
 void add(Optics& optics, const rt_material& m) {
-    if (any(m.emission)) optics.lights |= 1u << RT_EMITTER_SURFACE;
+    if (emits(m)) optics.lights |= 1u << RT_EMITTER_SURFACE;
+    rt_u32 lobes = 0;
     switch (m.model) {
         case RT_MODEL_WHITTED:
-            if (m.reflect > 0) optics.lobes |= RT_LOBE_MIRROR;
-            if (m.refract > 0) optics.lobes |= RT_LOBE_GLASS;
+            if (m.reflect > 0) lobes |= RT_LOBE_MIRROR;
+            if (m.refract > 0) lobes |= RT_LOBE_GLASS;
             break;
         case RT_MODEL_CONDUCTOR:
-            optics.lobes |= RT_LOBE_METAL;
+            lobes |= RT_LOBE_METAL;
             break;
         case RT_MODEL_DIELECTRIC:
-            optics.lobes |= RT_LOBE_GLASS;
-            if (m.roughness > 0) optics.lobes |= RT_LOBE_FROSTED;
+            lobes |= RT_LOBE_GLASS;
+            if (m.roughness > 0) lobes |= RT_LOBE_FROSTED;
             break;
     }
+    const bool absorbs =
+        std::any_of(std::begin(m.absorption), std::end(m.absorption), [](float channel) { return channel > 0; });
+    if ((lobes & RT_LOBE_GLASS) && absorbs) lobes |= RT_LOBE_ABSORBS;
+    optics.lobes |= lobes;
     if (m.alpha != RT_ALPHA_OPAQUE) optics.cutouts = 1;
-    if ((optics.lobes & RT_LOBE_GLASS) && any(m.absorption)) optics.lobes |= RT_LOBE_ABSORBS;
 }
 
 Optics seen_by(const Settings& settings, const Optics& optics) {
@@ -60,9 +61,7 @@ Optics optics_of(const Scene& scene) {
 Optics optics_of(const Scene& scene, const View& view, const Settings& settings) {
     Optics optics = sky_of(scene, view.background);
     for (const rt_light& light : view.lights) add(optics, light);
-    for (const rt_material& material : view.materials) add(optics, material);
-    if (view.materials.empty())
-        for (const Material& material : scene.materials) add(optics, material.values);
+    for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i));
     return seen_by(settings, optics);
 }
 
