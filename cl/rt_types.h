@@ -126,7 +126,7 @@ typedef struct rt_emitter_run {
     rt_u32 first_prim, first_emitter;
 } rt_emitter_run;
 
-/* The table of emitters as a whole, and the sky. 88 B. */
+/* The table of emitters as a whole, and the sky. 96 B. */
 typedef struct rt_lighting {
     rt_u32 emitter_count, cell_bits; /* the table has 2^cell_bits entries; those beyond emitter_count are cells only */
     rt_u32 run_count;                /* another run follows these, as their end */
@@ -138,6 +138,8 @@ typedef struct rt_lighting {
     rt_f32 sky_turn;                 /* by which it is turned about +Y, in turns, counter-clockwise from above */
     rt_f32 sky_color[3];             /* radiance; of a gradient at the zenith; factor of a picture */
     rt_f32 sky_horizon[3], sky_ground[3];
+    rt_u32 sky_below;                /* of RT_PICKS: how many draw a direction below a gradient's horizon */
+    rt_f32 sky_horizon_share;        /* of a gradient: mean color of horizon / (horizon + zenith) */
     rt_f32 background[3];
 } rt_lighting;
 
