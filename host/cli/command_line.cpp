@@ -185,6 +185,9 @@ void add_render(CLI::App& app, RenderOptions& render) {
         ->check(CLI::Range(1e-3, 1e6));
     add_pose(app, render.pose);
     single(app.add_option("--repeat", render.repeat, "Trace each frame N times for timing, after one warm-up"))->type_name("N");
+    single(app.add_option("--crop", render.crop,
+                          "Render this part of the picture of --size: its first pixel from the top left, and its size"))
+        ->type_name("X,Y,W,H");
     single(app.add_option("--reference", render.reference,
                           "A picture of what should come out, .pfm, .exr or .png: --stats has the errors against it, and how "
                           "they fall with the samples"))

@@ -54,6 +54,7 @@ struct RenderOptions {
     bool verify = false;     // scene.files are records of frames: they are rendered again and compared
     bool mpi = false;        // this process is one of several that mpirun has started
     unsigned repeat = 1;     // how often each picture is traced, for timing
+    std::string crop;        // x,y,width,height: the part of the picture that is rendered; "": all of it
     std::string reference;   // picture to compare with; "": none
     std::string stats_file;  // file for the statistics; "-": stdout; "": none
     bool watch = false;      // render again after each change of a kernel, plugin library or scene file

@@ -37,6 +37,7 @@ RecordJson options_json(const RenderOptions& options) {
     json["set"] = options.trace.sets;
     json["settings"] = options.trace.settings;
     json["all_aovs"] = options.all_aovs;
+    json["crop"] = options.crop;
     json["camera"] = options.trace.camera;
     json["light"] = options.trace.light;
     json["preset"] = options.trace.preset.empty() ? "" : absolute(options.trace.preset);
@@ -57,6 +58,7 @@ RenderOptions options_of(const RecordJson& json) {
     json.at("set").get_to(options.trace.sets);
     json.at("settings").get_to(options.trace.settings);
     json.at("all_aovs").get_to(options.all_aovs);
+    options.crop = json.value("crop", "");  // records of earlier versions have none
     json.at("camera").get_to(options.trace.camera);
     json.at("light").get_to(options.trace.light);
     json.at("preset").get_to(options.trace.preset);
@@ -141,6 +143,7 @@ std::string render_words(const RenderOptions& options, std::optional<int> frame)
     for (const std::string& words : options.scene.import.importers) add("--importer", words);
     add("--preset", options.trace.preset);
     add("--accel", options.trace.accel);
+    add("--crop", options.crop);
     add("--camera", options.trace.camera);
     add("--light", options.trace.light);
     for (const std::string& word : options.trace.sets) add("--set", word);

@@ -43,6 +43,7 @@ PictureDigests::PictureDigests(FrameScene& scene, const Settings& settings, cons
     add_kernels_to(digest, *scene.imported());
     add_settings_to(digest, settings, writes_display(options.output));
     digest.add_value(options.all_aovs);
+    if (!options.crop.empty()) digest.add(options.crop);
     common_ = digest.hex();
 }
 

@@ -56,6 +56,7 @@ class RenderJob {
           plugins_(plugins),
           bar_(options_.quiet || !is_first()),
           scene_(plugins, options_, words_, bar_) {
+        if (!options_.crop.empty()) crop_picture(words_.settings, options_.crop);
         stats_.files = options_.scene.files;
         stats_.settings = settings_;
     }
