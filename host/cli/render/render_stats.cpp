@@ -138,6 +138,8 @@ std::string stats_json(const RenderStats& stats) {
         json["crop"] = {
             {"x", crop.x}, {"y", crop.y}, {"of", std::to_string(crop.whole_width) + "x" + std::to_string(crop.whole_height)}};
     json["spp"] = stats.settings.spp;
+    json["samples"] = stats.samples;
+    if (stats.estimated_error >= 0) json["estimated_error"] = figure(stats.estimated_error);
     json["shutter"] = stats.settings.shutter;
     json["aov"] = used.aov;
     json["shadows"] = stats.settings.shadows;
