@@ -13,12 +13,12 @@ namespace clarity {
 struct View {
     Camera camera;
     std::vector<rt_light> lights;
-    std::vector<rt_material> materials;  // one for each material of the scene; empty: use the scene's own
+    std::vector<MaterialValues> materials;  // one for each material of the scene; empty: use the scene's own
     std::array<float, 3> background{}, ambient{};
     std::optional<SkyValues> sky;  // empty: the scene's own
 };
 // The material of that number in a view of the scene.
-inline const rt_material& material_of(const Scene& scene, const View& view, size_t number) {
+inline const MaterialValues& material_of(const Scene& scene, const View& view, size_t number) {
     return view.materials.empty() ? scene.materials[number].values : view.materials[number];
 }
 inline const SkyValues& sky_of(const Scene& scene, const View& view) {
