@@ -38,19 +38,6 @@ std::string option_name(std::string key) {
     return "--" + key;
 }
 
-void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>>& settings, std::vector<std::string>& sets) {
-    for (const Setting& setting : settings_table()) {
-        const auto set = [&settings, key = setting.key](const std::string& value) { settings.emplace_back(key, value); };
-        single(app.add_option_function<std::string>(option_name(setting.key), set, setting_help(setting)))
-            ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
-            ->group("Settings");
-    }
-    app.add_option("--set", sets, "A setting as key=value (ray_slots=16); may be repeated")
-        ->type_name("key=value")
-        ->allow_extra_args(false)
-        ->group("Settings");
-}
-
 // From "bounce=2,by=nee" to the settings only_bounce and only_by.
 void add_only_paths(const std::string& text, std::vector<std::pair<std::string, std::string>>& settings) {
     for (size_t at = 0; at <= text.size();) {
@@ -94,6 +81,19 @@ CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_flag("--import-in-process", scene.import.in_process,
                  "Run importers in this process, to debug them; a crash then ends the program");
     return app.add_option("scene", scene.files, "Scene or model files; several become one scene")->type_name("FILE");
+}
+
+void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>>& settings, std::vector<std::string>& sets) {
+    for (const Setting& setting : settings_table()) {
+        const auto set = [&settings, key = setting.key](const std::string& value) { settings.emplace_back(key, value); };
+        single(app.add_option_function<std::string>(option_name(setting.key), set, setting_help(setting)))
+            ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
+            ->group("Settings");
+    }
+    app.add_option("--set", sets, "A setting as key=value (ray_slots=16); may be repeated")
+        ->type_name("key=value")
+        ->allow_extra_args(false)
+        ->group("Settings");
 }
 
 void add_device(CLI::App& app, TraceOptions& trace) {

@@ -12,6 +12,8 @@ void add_common(CLI::App& app, CommonOptions& common);
 // Returns the option of the files, so that a command may require them.
 CLI::Option* add_scene(CLI::App& app, SceneOptions& scene);
 void add_device(CLI::App& app, TraceOptions& trace);
+// An option for each row of the table of settings, and --set.
+void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>>& settings, std::vector<std::string>& sets);
 // Devices, the structure, settings and edits.
 void add_trace(CLI::App& app, TraceOptions& trace);
 void add_pose(CLI::App& app, PoseOptions& pose);
