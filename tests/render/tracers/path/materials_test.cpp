@@ -20,13 +20,15 @@ static_assert(sizeof(rt_material) == 4 * kWords);
 LaneKernel& loader() {
     static LaneKernel compiled(
         {"#define RT_HAS_TEXTURES 1\n", "rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h",
-         "typedef struct rt_ctx { const global rt_material *materials; const global rt_texture *textures; const global uint "
+         "typedef struct rt_ctx { const global rt_material *materials; const global rt_layers *layers; const global rt_texture "
+         "*textures; const global uint "
          "*texels; } rt_ctx;\n"
          "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
          "sampling/math.h", "sampling/warps.h", "shading/material.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
-         "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/bsdf.h", "shading/bsdf_of.h"},
+         "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/matter.h", "shading/bsdf.h", "shading/bsdf_of.h"},
         kWords, 10,
-        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.textures = (const global rt_texture *)(given + 8 * "
+        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.layers = (const global rt_layers *)given; "
+        "ctx.textures = (const global rt_texture *)(given + 8 * "
         "READS);"
         "ctx.texels = (const global uint *)(given + 8 * READS + 4);"
         "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(7)); s.tex_u = in[1]; s.tex_v = in[2];"
