@@ -74,7 +74,7 @@ void add_materials(Scene& scene, bool textures) {
     scene.materials[kMirror].values.reflect = 0.7f;
     if (!textures) return;
     scene.materials[kTextured].values.texture = 0;
-    scene.textures.push_back({0, 2, 2, 0});
+    scene.textures.push_back({0, 2, 2, 0, 0, 0, 0});
     for (const uint32_t texel : {0xFF2040C0u, 0xFFE0E0E0u, 0xFF40C020u, 0xFF808080u}) scene.texels.push_back(texel);
 }
 

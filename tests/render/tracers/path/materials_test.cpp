@@ -23,8 +23,9 @@ LaneKernel& loader() {
          "typedef struct rt_ctx { const global rt_material *materials; const global rt_texture *textures; const global uint "
          "*texels; } rt_ctx;\n"
          "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
-         "sampling/math.h", "sampling/warps.h", "shading/material.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
-         "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/bsdf.h", "shading/bsdf_of.h"},
+         "sampling/math.h", "sampling/warps.h", "shading/textures.h", "shading/maps.h", "shading/material.h",
+         "shading/lost_metal.h", "shading/lost_glass_outside.h", "shading/lost_glass_inside.h", "shading/microfacets.h",
+         "shading/bsdf.h", "shading/bsdf_of.h"},
         kWords, 10,
         "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.textures = (const global rt_texture *)(given + 8 * "
         "READS);"
