@@ -12,6 +12,10 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
     out.diffuse = out.mirror = out.metal = out.glass = out.alpha = zero;
     out.eta = one;
     out.compensate = rt_vint(-1);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    rt_matter matter = rt_no_matter();
+    vmask layered = rt_vint(0);
+#endif
     int id;
     vmask mine;
     for (rt_groups g = rt_group_lanes(s->material, bits); rt_next_group(&g, &id, &mine);) {
@@ -23,6 +27,14 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
             diffuse = max(1.0f - m->reflect - m->refract, 0.0f);
             mirror = m->reflect;
             glass = m->refract;
+        } else if (m->model == RT_MODEL_UNLIT) {
+            /* It scatters nothing. */
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+        } else if (m->model == RT_MODEL_GLTF) {
+            rt_load_matter(ctx, s, id, mine, at, &matter);
+            layered |= mine;
+            continue;
+#endif
         } else if (RT_LOBES != 0u) {
             alpha = m->roughness * m->roughness;
             if (m->model == RT_MODEL_CONDUCTOR) metal = 1.0f;
@@ -39,6 +51,12 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
         out.eta = rt_select(mine, rt_select(entering, ior / around, around / ior), out.eta);
         if (m->flags & RT_MATERIAL_SINGLE_SCATTER) out.compensate &= ~mine;
     }
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    out.color = rt_choose(layered, matter.color, out.color);
+    out.diffuse = rt_select(layered, one - matter.metallic, out.diffuse);
+    out.metal = rt_select(layered, matter.metallic, out.metal);
+    out.alpha = rt_select(layered, rt_max(matter.roughness * matter.roughness, rt_vfloat(RT_LEAST_ALPHA)), out.alpha);
+#endif
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
     const vmask straight = RT_MASK(rt_max(out.eta, one / out.eta) < rt_vfloat(1.001f));

@@ -162,6 +162,21 @@ RT_INLINE vmask rt_map_normals(const rt_ctx *ctx, rt_surface *s, uint bits)
 #endif
 #endif /* RT_HAS_TEXTURES */
 
+#ifdef RT_HAS_TANGENTS
+/* Turns the axes *x and *y, perpendicular to the unit vector `normal`, along tangent and bitangent where a surface has them. Behind the
+ * surface both are reversed, as the normal is. */
+RT_INLINE void rt_turn_frame(const rt_surface *s, rt_vec normal, rt_vec *x, rt_vec *y)
+{
+    const vfloat zero = rt_vfloat(0.0f), side = rt_select(RT_MASK(rt_dot(normal, s->normal) < zero), rt_vfloat(-1.0f), rt_vfloat(1.0f));
+    const rt_vec along = rt_sub(s->tangent, rt_scale(rt_dot(s->tangent, normal), normal));
+    const vmask turns = RT_MASK(rt_dot(along, along) > rt_vfloat(1e-4f));
+    const rt_vec tangent = rt_scale(side, rt_normalize(along)), across = rt_cross(normal, tangent);
+    const vfloat handed = rt_select(RT_MASK(rt_dot(across, s->bitangent) * side < zero), rt_vfloat(-1.0f), rt_vfloat(1.0f));
+    *x = rt_choose(turns, tangent, *x);
+    *y = rt_choose(turns, rt_scale(handed, across), *y);
+}
+#endif
+
 /* Completes a surface for shading. width: see rt_spread_surface(). */
 #ifdef RT_HAS_MIPS
 #define RT_SPREAD_SURFACE(frame, s, ray, width) rt_spread_surface(s, rt_vec_of((ray)->dx, (ray)->dy, (ray)->dz), width);

@@ -61,7 +61,8 @@ typedef struct rt_surface {
 #endif
 #endif
 #ifdef RT_HAS_TANGENTS
-    rt_vec tangent, bitangent; /* of unit length and perpendicular to `normal`; where there are none, 0 */
+    rt_vec tangent, bitangent; /* of unit length and perpendicular to `unmapped`; where there are none, 0 */
+    rt_vec unmapped;           /* `normal` before a map turned it */
 #endif
 #ifdef RT_HAS_COLORS
     rt_vec color;        /* of the vertices, linear; 1 where there are none */
@@ -476,6 +477,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.tangent = rt_sub(s.tangent, rt_scale(rt_dot(s.tangent, s.normal), s.normal));
     const vmask has_tangent = RT_MASK(rt_dot(s.tangent, s.tangent) > rt_vfloat(1e-20f));
     s.tangent = rt_choose(has_tangent, rt_normalize(s.tangent), rt_splat(0.0f, 0.0f, 0.0f));
+    s.unmapped = s.normal;
     s.bitangent = rt_scale(handed, rt_cross(s.normal, s.tangent));
 #endif
     return s;

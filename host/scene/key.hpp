@@ -31,6 +31,7 @@ struct Key {
     bool logarithmic = false;        // slider
     bool alias = false;              // another name for the member of the key before it
     bool follows_model = false;      // the model of a material changes it, too
+    rt_u32 models = 0;               // 1 << RT_MODEL_* of the models that have it; 0: of all
     bool reversed_in_edits = false;  // edits have the opposite vector, as those of older versions do
 };
 

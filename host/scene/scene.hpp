@@ -101,9 +101,16 @@ constexpr MaterialMaps no_maps() {
     for (rt_u32 use = 0; use < RT_MAP_USES; ++use) maps[use] = RT_NONE;
     return maps;
 }
+// All numbers of a material. Keys reach both structs by their offsets from the first one.
+struct MaterialValues : rt_material {
+    MaterialValues() : MaterialValues(rt_material{}) {}
+    MaterialValues(const rt_material& plain);  // with the defaults of layers
+    rt_layers layers;
+};
+static_assert(sizeof(MaterialValues) == sizeof(rt_material) + sizeof(rt_layers), "layers follow at once");
 struct Material {
     std::string name;
-    rt_material values{};
+    MaterialValues values{};
     MaterialMaps maps = no_maps();
 };
 struct Light {
@@ -196,7 +203,7 @@ Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
 // Texels of a picture and of the smaller ones behind it; 0 if it is empty or has more levels than its size allows.
 uint64_t texel_count(const rt_texture& texture);
-rt_material default_material();  // in material_keys.cpp
+MaterialValues default_material();  // in material_keys.cpp
 // A light without falloff. kind: RT_LIGHT_POINT at a position, or RT_LIGHT_DIRECTIONAL from a unit vector towards it.
 rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color);
 

@@ -284,6 +284,9 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     if (scattered_bits == 0u) return scattered;
     const rt_sampler sampler = rt_sampler_of(frame, p);
     rt_basis(m.point.normal, &m.s, &m.t);
+#ifdef RT_HAS_TANGENTS
+    rt_turn_frame(&surface, m.point.normal, &m.s, &m.t);
+#endif
     m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
     vfloat around = rt_vfloat(1.0f);
 #if RT_MAY_SCATTER(RT_LOBE_GLASS)

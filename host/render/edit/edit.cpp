@@ -149,8 +149,8 @@ void read_light(const Scene& scene, EditedView& edited, const std::string& key, 
     if (path.size() == 2) edited.lights_on[at] = true;
 }
 
-std::vector<rt_material> scene_materials(const Scene& scene) {
-    std::vector<rt_material> all;
+std::vector<MaterialValues> scene_materials(const Scene& scene) {
+    std::vector<MaterialValues> all;
     for (const Material& material : scene.materials) all.push_back(material.values);
     return all;
 }
@@ -252,7 +252,7 @@ void add_light_words(const rt_light& light, size_t number, const std::array<doub
 }
 
 // The words that turn one material into another one. Where a key changes what others follow, those are written, too.
-void add_material_words(const rt_material& was, const rt_material& is, size_t number, std::vector<Word>& words) {
+void add_material_words(const MaterialValues& was, const MaterialValues& is, size_t number, std::vector<Word>& words) {
     bool differs = false;
     for (const Key& key : material_keys()) {
         const std::array<float, 3> value = value_of(key, &is);
@@ -343,7 +343,7 @@ std::vector<Word> edits_between(const Scene& scene, const EditedView& from, cons
     }
     for (size_t i = view.lights.size(); i < base.lights.size(); ++i) words.push_back({"light." + std::to_string(i), "off"});
     for (size_t i = 0; i < view.materials.size() && i < scene.materials.size(); ++i) {
-        const rt_material& was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values;
+        const MaterialValues& was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values;
         add_material_words(was, view.materials[i], i, words);
     }
     add_instance_words(from.instances, edited.instances, words);

@@ -38,6 +38,9 @@ void set_sky(const Sky& sky, const View& view, rt_lighting& out) {
         out.sky_horizon[k] = values.strength * values.horizon[k];
         out.sky_ground[k] = values.strength * values.ground[k];
     }
+    const double ground = mean(out.sky_ground), horizon = mean(out.sky_horizon), above = horizon + mean(out.sky_color);
+    out.sky_below = deal({2 * ground, above}, RT_PICKS)[0];
+    out.sky_horizon_share = above > 0 ? static_cast<float>(horizon / above) : 0;
 }
 
 // The integral of the mean color over all directions.

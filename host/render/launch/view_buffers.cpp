@@ -8,7 +8,7 @@
 namespace clarity {
 namespace {
 
-void check_materials(const Scene& scene, const std::vector<rt_material>& materials) {
+void check_materials(const Scene& scene, const std::vector<MaterialValues>& materials) {
     if (materials.size() != scene.materials.size())
         throw Error(Exit::failed, "the view has " + std::to_string(materials.size()) + " materials and the scene has " +
                                       std::to_string(scene.materials.size()) + ": the view needs one for each, or none");
@@ -32,7 +32,12 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
     frame_.write(queue, frames_and_rows_.data(), frames_and_rows_.size());
     on_device.complete(queue, frame_.get(), frames.size());
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
-    if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
+    if (!own_materials_) return;
+    const std::vector<rt_material> plain(view.materials.begin(), view.materials.end());
+    std::vector<rt_layers> layers;
+    for (const MaterialValues& material : view.materials) layers.push_back(material.layers);
+    materials_.write(queue, plain.data(), plain.size() * sizeof plain[0]);
+    layers_.write(queue, layers.data(), layers.size() * sizeof layers[0]);
 }
 
 void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
@@ -101,7 +106,7 @@ UploadedBuffer::~UploadedBuffer() {
 
 void ViewBuffers::bind(const DeviceScene& scene, KernelArguments& kernel) const {
     kernel.set("frame", frame_.get());
-    scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr);
+    scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr, own_materials_ ? &layers_.get() : nullptr);
     if (!kernel.has("ctx_emitters")) return;
     kernel.set("ctx_emitters", emitters_.get())
         .set("ctx_emitter_runs", emitter_runs_.get())

@@ -12,11 +12,11 @@ namespace clarity {
 struct View {
     Camera camera;
     std::vector<rt_light> lights;
-    std::vector<rt_material> materials;  // one for each material of the scene; empty: use the scene's own
+    std::vector<MaterialValues> materials;  // one for each material of the scene; empty: use the scene's own
     std::array<float, 3> background{}, ambient{};
 };
 // The material of that number in a view of the scene.
-inline const rt_material& material_of(const Scene& scene, const View& view, size_t number) {
+inline const MaterialValues& material_of(const Scene& scene, const View& view, size_t number) {
     return view.materials.empty() ? scene.materials[number].values : view.materials[number];
 }
 // Makes a view from the scene's camera, lights, ambient light and background. If the scene has no lights, it gets two that suit

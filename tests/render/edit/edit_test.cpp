@@ -68,8 +68,8 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
         EXPECT_TRUE(same_lights(visible_view(again).lights, visible_view(edited).lights));
         EXPECT_TRUE(again.instances == edited.instances);
         ASSERT_EQ(again.view.materials.size(), view.materials.size());
-        EXPECT_EQ(std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(rt_material)),
-                  0);
+        EXPECT_EQ(
+            std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(MaterialValues)), 0);
     }
 }
 
@@ -88,12 +88,17 @@ TEST(Edit, LightsAndModelsOfAllKindsAreRestoredBitByBit) {
         ASSERT_TRUE(make_sound(light));
         view.lights.push_back(light);
     }
-    rt_material& metal = view.materials[1];
+    MaterialValues& metal = view.materials[1];
     set_material_value(metal, material_key("model"), {RT_MODEL_CONDUCTOR, 0, 0});
     set_material_value(metal, material_key("roughness"), {0.3f, 0, 0});
     set_material_value(metal, material_key("reflect"), {scene.materials[1].values.reflect, 0, 0});  // as before: must be kept
     set_material_value(metal, material_key("compensate"), {0, 0, 0});
     set_material_value(metal, material_key("absorption"), {0.1f, 0.2f, 1.0f / 3.0f});
+    MaterialValues& layered = view.materials[0];
+    set_material_value(layered, material_key("model"), {RT_MODEL_GLTF, 0, 0});
+    set_material_value(layered, material_key("metallic"), {0.4f, 0, 0});
+    set_material_value(layered, material_key("thin"), {0, 0, 0});
+    set_material_value(layered, material_key("sheen_color"), {0.1f, 0.2f, 1.0f / 3.0f});
     const EditedView again = replay(scene, edits_between(scene, first_view(scene), edited));
     EXPECT_TRUE(same_lights(again.view.lights, view.lights));
     ASSERT_EQ(again.view.materials.size(), view.materials.size());

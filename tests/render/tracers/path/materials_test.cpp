@@ -20,16 +20,18 @@ static_assert(sizeof(rt_material) == 4 * kWords);
 LaneKernel& loader() {
     static LaneKernel compiled(
         {"#define RT_HAS_TEXTURES 1\n", "rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h",
-         "typedef struct rt_ctx { const global rt_material *materials; const global rt_texture *textures; const global uint "
+         "typedef struct rt_ctx { const global rt_material *materials; const global rt_layers *layers; const global rt_texture "
+         "*textures; const global uint "
          "*texels; } rt_ctx;\n"
          "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
          "sampling/math.h", "sampling/warps.h", "shading/textures.h", "shading/maps.h", "shading/material.h",
          "shading/lost_metal.h", "shading/lost_glass_outside.h", "shading/lost_glass_inside.h", "shading/microfacets.h",
-         "shading/bsdf.h", "shading/bsdf_of.h"},
+         "shading/matter.h", "shading/matter_maps.h", "shading/bsdf.h", "shading/bsdf_of.h"},
         kWords, 10,
-        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.textures = (const global rt_texture *)(given + 8 * "
+        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.layers = (const global rt_layers *)given; "
+        "ctx.textures = (const global rt_texture *)(given + 8 * "
         "READS);"
-        "ctx.texels = (const global uint *)(given + 8 * READS + 4);"
+        "ctx.texels = (const global uint *)(given + 8 * READS + 7);"
         "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(7)); s.tex_u = in[1]; s.tex_v = in[2];"
         "const rt_bsdf b = rt_bsdf_of(&ctx, &s, RT_MASK(in[3] > 0.5f), rt_vfloat(1.0f), RT_ALL_LANES, rt_vec_of(in[4], in[5], "
         "in[6]));"
@@ -71,8 +73,8 @@ TEST(PathMaterials, BecomeLobes) {
     std::vector<float> rows(8 * kWords);
     std::memcpy(rows.data(), materials, sizeof materials);
     // A texture of 16 texels in a row; texel k has k, 16 + k, and 255 - k.
-    rt_u32 texture[kWords] = {0, 16, 1, 0};
-    for (rt_u32 k = 0; k < 16; ++k) texture[4 + k] = k | (16 + k) << 8 | (255 - k) << 16;
+    rt_u32 texture[kWords] = {0, 16, 1, 0, 0, 0, 0};
+    for (rt_u32 k = 0; k < 16; ++k) texture[7 + k] = k | (16 + k) << 8 | (255 - k) << 16;
     rows.resize(9 * kWords);
     std::memcpy(&rows[8 * kWords], texture, sizeof texture);
     struct Asked {

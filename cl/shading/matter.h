@@ -1,0 +1,99 @@
+/* matter.h -- RT_MODEL_GLTF at a hit: all values of the surface, before lobes are made of them. */
+#ifndef RT_MATTER_H
+#define RT_MATTER_H
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+
+/* Members are those of rt_material and rt_layers of the same name, in each lane and after textures. */
+typedef struct rt_matter {
+    rt_vec color, specular_color;
+    vfloat roughness, metallic, specular_weight, transmission;
+    vfloat ior;
+    vmask solid; /* RT_LAYERS_SOLID */
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    vfloat clearcoat, clearcoat_roughness;
+    rt_vec coat_normal; /* unit; in the frame of the shading normal, which is z */
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_SHEEN)
+    rt_vec sheen_color;
+    vfloat sheen_roughness;
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
+    vfloat anisotropy;
+    vfloat grain_x, grain_y; /* unit: the grain, along tangent and bitangent */
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    vfloat iridescence, iridescence_ior, iridescence_thickness;
+#endif
+} rt_matter;
+
+#ifdef RT_HAS_MAPS
+RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vmask mine, rt_matter *m); /* in matter_maps.h */
+#endif
+
+RT_INLINE rt_matter rt_no_matter(void)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_matter m;
+    m.color = m.specular_color = rt_splat(0.0f, 0.0f, 0.0f);
+    m.roughness = m.metallic = m.specular_weight = m.transmission = zero;
+    m.ior = one;
+    m.solid = rt_vint(0);
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    m.clearcoat = m.clearcoat_roughness = zero;
+    m.coat_normal = rt_splat(0.0f, 0.0f, 1.0f);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_SHEEN)
+    m.sheen_color = m.color;
+    m.sheen_roughness = zero;
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
+    m.anisotropy = m.grain_y = zero;
+    m.grain_x = one;
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    m.iridescence = m.iridescence_thickness = zero;
+    m.iridescence_ior = one;
+#endif
+    return m;
+}
+
+/* Loads material `id` in the lanes `mine`. at: the points, world. */
+RT_INLINE void rt_load_matter(const rt_ctx *ctx, const rt_surface *s, int id, vmask mine, rt_vec at, rt_matter *out)
+{
+    const global rt_material *m = ctx->materials + id;
+    const global rt_layers *l = ctx->layers + id;
+    out->color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out->color);
+    out->specular_color = rt_choose(mine, rt_spread(l->specular_color), out->specular_color);
+    out->roughness = rt_select(mine, rt_vfloat(m->roughness), out->roughness);
+    out->metallic = rt_select(mine, rt_vfloat(l->metallic), out->metallic);
+    out->specular_weight = rt_select(mine, rt_vfloat(l->specular_weight), out->specular_weight);
+    out->transmission = rt_select(mine, rt_vfloat(l->transmission), out->transmission);
+    out->ior = rt_select(mine, rt_vfloat(m->ior), out->ior);
+    if (l->flags & RT_LAYERS_SOLID) out->solid |= mine;
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    out->clearcoat = rt_select(mine, rt_vfloat(l->clearcoat), out->clearcoat);
+    out->clearcoat_roughness = rt_select(mine, rt_vfloat(l->clearcoat_roughness), out->clearcoat_roughness);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_SHEEN)
+    out->sheen_color = rt_choose(mine, rt_spread(l->sheen_color), out->sheen_color);
+    out->sheen_roughness = rt_select(mine, rt_vfloat(l->sheen_roughness), out->sheen_roughness);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
+    vfloat sine, cosine;
+    rt_sin_cos_turns(rt_vfloat(l->anisotropy_rotation * (1.0f / 360.0f)), &sine, &cosine);
+    out->anisotropy = rt_select(mine, rt_vfloat(l->anisotropy), out->anisotropy);
+    out->grain_x = rt_select(mine, cosine, out->grain_x);
+    out->grain_y = rt_select(mine, sine, out->grain_y);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    out->iridescence = rt_select(mine, rt_vfloat(l->iridescence), out->iridescence);
+    out->iridescence_ior = rt_select(mine, rt_vfloat(l->iridescence_ior), out->iridescence_ior);
+    out->iridescence_thickness = rt_select(mine, rt_vfloat(l->iridescence_thickness), out->iridescence_thickness);
+#endif
+#ifdef RT_HAS_MAPS
+    rt_map_matter(ctx, id, s, mine, out);
+#endif
+}
+
+#endif
+#endif
