@@ -382,8 +382,10 @@ enum {
     RT_WRAP_MIRROR  /* the picture again, every other time mirrored */
 };
 enum {
-    RT_SPACE_SRGB,  /* r, g and b are colours in sRGB */
-    RT_SPACE_LINEAR /* all channels are numbers */
+    RT_SPACE_SRGB,   /* r, g and b are colours in sRGB */
+    RT_SPACE_LINEAR, /* all channels are numbers */
+    RT_SPACE_HEIGHT  /* r is a height, and the host makes a map of normals of it: white stands out of black by a fiftieth of the picture's
+                      * width. A picture that is not grey is a map of normals already. For RT_MAP_NORMAL */
 };
 enum { RT_FILTER_SMOOTH, RT_FILTER_NEAREST }; /* between texels */
 typedef struct rt_texture_desc {

@@ -15,6 +15,7 @@
 #include "base/files/packed_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/plural.hpp"
+#include "import/sink/height_map.hpp"
 #include "import/sink/mesh_copy.hpp"
 #include "import/sink/scene_sink.hpp"
 #include "import/sink/smaller_pictures.hpp"
@@ -283,7 +284,8 @@ namespace {
 // Adds the smaller pictures of one that was just decoded.
 Problem completed(Problem why, const rt_texture_desc& d, std::vector<uint32_t>& texels, rt_texture& picture) {
     if (why) return why;
-    picture.flags = d.space == RT_SPACE_LINEAR ? RT_TEXTURE_LINEAR : 0;
+    picture.flags = d.space == RT_SPACE_SRGB ? 0 : RT_TEXTURE_LINEAR;
+    if (d.space == RT_SPACE_HEIGHT) make_normals(texels.data() + picture.first, picture);
     add_smaller_pictures(texels, picture);
     return {};
 }
