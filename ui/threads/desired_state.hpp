@@ -32,6 +32,7 @@ struct DesiredState {
     Camera camera;
     std::vector<DesiredLight> lights;
     std::array<float, 3> background{}, ambient{};
+    std::optional<SkyValues> sky;           // the edited sky; empty: that of the scene
     std::vector<MaterialValues> materials;  // the edited materials; empty: those of the scene
     InstanceEdits instances;                // moved and hidden
     PoseTime pose;                 // when the scene is shown; its clip is the chosen one even while the scene is at rest

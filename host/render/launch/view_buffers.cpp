@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "render/emitters/emitter_table.hpp"
+#include "scene/sky_kinds.hpp"
 
 namespace clarity {
 namespace {
@@ -47,7 +48,7 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
     };
     if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
         same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background &&
-        std::memcmp(&emitters_of_.sky, &scene.sky.values, sizeof(SkyValues)) == 0 && sky_of_.shares(scene.sky.texels))
+        same_sky(emitters_of_.sky, sky_of(scene, view)) && sky_of_.shares(scene.sky.texels))
         return;
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
         static const rt_emitter nothing{};  // kernels get no empty buffers
@@ -77,7 +78,7 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
     upload(emitters_, table.emitters);
     upload(emitter_runs_, table.runs);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    emitters_of_ = {accel, view.lights, view.materials, view.background, scene.sky.values};
+    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view)};
 }
 
 void UploadedBuffer::write(cl::CommandQueue& queue, const void* data, size_t bytes) {

@@ -63,16 +63,15 @@ Optics seen_by(const Settings& settings, const Optics& optics) {
     return picture_of_tracer(settings.tracer) == kPathPicture ? optics : optics.for_whitted();
 }
 
-Optics sky_of(const Scene& scene, const std::array<float, 3>& background) {
-    const bool shines =
-        scene.sky.values.kind != RT_NONE || std::any_of(background.begin(), background.end(), [](float c) { return c > 0; });
+Optics optics_of_sky(const SkyValues& sky, const std::array<float, 3>& background) {
+    const bool shines = sky.kind != RT_NONE || std::any_of(background.begin(), background.end(), [](float c) { return c > 0; });
     return {shines ? 1u << RT_EMITTER_SKY : 0u, 0, 0};
 }
 
 }  // namespace
 
 Optics optics_of(const Scene& scene) {
-    Optics optics = sky_of(scene, scene.background);
+    Optics optics = optics_of_sky(scene.sky.values, scene.background);
     for (const Light& light : scene.lights) add(optics, light.values);
     if (scene.lights.empty()) optics.lights |= 1u << RT_LIGHT_POINT;  // those that make_view() adds
     for (const Material& material : scene.materials) add(optics, material.values);
@@ -80,7 +79,7 @@ Optics optics_of(const Scene& scene) {
 }
 
 Optics optics_of(const Scene& scene, const View& view, const Settings& settings) {
-    Optics optics = sky_of(scene, view.background);
+    Optics optics = optics_of_sky(sky_of(scene, view), view.background);
     for (const rt_light& light : view.lights) add(optics, light);
     for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i));
     return seen_by(settings, optics);
