@@ -78,4 +78,25 @@ typedef struct rt_packed_prim {
 #define RT_MATERIAL_CHECKER 1u        /* a unit checkerboard of color and a third of it, in world x and z; for planes */
 #define RT_MATERIAL_ONE_SIDED 2u      /* only the side that its normal points to emits light */
 #define RT_MATERIAL_SINGLE_SCATTER 4u /* conductor, dielectric: what is scattered several times between facets is lost */
+
+/* What a material uses a texture for. Channels of a picture are r, g, b and a. */
+#define RT_MAP_COLOR 0u    /* rgb multiplies the colour, a the opacity */
+#define RT_MAP_EMISSION 1u /* rgb multiplies the emission */
+#define RT_MAP_NORMAL 2u   /* rgb is the normal in the frame of tangent, bitangent and normal: 2 rgb - 1 */
+#define RT_MAP_OCCLUSION 3u          /* r: the share of ambient light */
+#define RT_MAP_METALLIC_ROUGHNESS 4u /* g multiplies the roughness, b the share of metal */
+#define RT_MAP_TRANSMISSION 5u       /* r */
+#define RT_MAP_THICKNESS 6u          /* g */
+#define RT_MAP_CLEARCOAT 7u          /* r */
+#define RT_MAP_CLEARCOAT_ROUGHNESS 8u /* g */
+#define RT_MAP_CLEARCOAT_NORMAL 9u    /* as RT_MAP_NORMAL */
+#define RT_MAP_SPECULAR 10u           /* a */
+#define RT_MAP_SPECULAR_COLOR 11u     /* rgb */
+#define RT_MAP_SHEEN_COLOR 12u        /* rgb */
+#define RT_MAP_SHEEN_ROUGHNESS 13u    /* a */
+#define RT_MAP_ANISOTROPY 14u         /* rg is the direction, b multiplies the strength */
+#define RT_MAP_IRIDESCENCE 15u        /* r */
+#define RT_MAP_IRIDESCENCE_THICKNESS 16u /* g: between the least and the greatest thickness */
+#define RT_MAP_OPACITY 17u               /* r multiplies the opacity */
+#define RT_MAP_USES 18u
 #endif

@@ -44,7 +44,7 @@ typedef struct rt_material {
     rt_f32 specular[3];   /* colour of the Blinn-Phong highlight */
     rt_f32 shininess;     /* exponent of the highlight */
     rt_f32 ior;           /* index of refraction of the inside, 1.5 for glass */
-    rt_u32 texture;       /* index of the texture that multiplies color; RT_NONE: none */
+    rt_u32 texture;       /* that multiplies color, by the first set of coordinates; RT_NONE: none, or one that is an rt_map */
     rt_u32 flags;         /* RT_MATERIAL_* */
     rt_u32 model;         /* RT_MODEL_*: what `path` takes the surface for. Whitted's tracers read the members above */
     rt_f32 absorption[3]; /* inside of a dielectric, per unit of length: light falls by exp(-absorption length) */
@@ -171,13 +171,27 @@ typedef struct rt_lighting {
     rt_f32 background[3];
 } rt_lighting;
 
-/* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. Several textures may
- * show one picture. 16 B. */
+/* A picture in the texel buffer: width x height RGBA8, top row first, starting at texel `first`. Behind it are `levels` smaller
+ * ones, each half as wide and high as the one before, rounded down, but at least 1. Several textures may show one picture. 28 B. */
 typedef struct rt_texture {
     rt_u32 first, width, height;
-    rt_u32 wrap; /* outside of the picture: RT_WRAP_... of rt_plugin.h along u, plus RT_WRAP_ALONG_V times that along v */
+    rt_u32 wrap;  /* outside of the picture: RT_WRAP_... of rt_plugin.h along u, plus RT_WRAP_ALONG_V times that along v */
+    rt_u32 flags; /* RT_TEXTURE_... */
+    rt_u32 levels;
+    rt_u32 smaller; /* on a device: number of the texture that shows the first smaller picture; those of the others follow */
 } rt_texture;
 #define RT_WRAP_ALONG_V 4u
+#define RT_TEXTURE_LINEAR 1u  /* its texels are numbers of 0..1; else r, g and b are sRGB */
+#define RT_TEXTURE_NEAREST 2u /* shows the nearest texel; else texels are interpolated */
+
+/* One use of a texture by a material. 40 B. */
+typedef struct rt_map {
+    rt_f32 matrix[6]; /* 2x3, row-major: from the surface's coordinates to the texture's. (0, 0) is at the bottom left */
+    rt_u32 texture;
+    rt_u32 set;       /* of the surface's coordinates: 0 or 1 */
+    rt_f32 scale;     /* RT_MAP_NORMAL: of x and y; RT_MAP_OCCLUSION: its strength; else 1 */
+    rt_u32 pad;
+} rt_map;
 
 /* The surfaces that a ray may pass one after the other (shading/cutouts.h). The next one stops it; Whitted's tracers count the ray as
  * dropped. */

@@ -86,7 +86,7 @@ RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const
         const global rt_material *m = ctx->materials + id;
         if (m->emission[0] <= 0.0f && m->emission[1] <= 0.0f && m->emission[2] <= 0.0f) continue;
         if (m->flags & RT_MATERIAL_ONE_SIDED) mine &= RT_MASK(facing > zero);
-        sum = rt_choose(mine, rt_spread(m->emission), sum);
+        sum = rt_choose(mine, rt_sharp_emission(ctx, m, surface, mine), sum);
         emits |= mine;
     }
     uint left = rt_bits(emits);

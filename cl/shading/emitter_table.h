@@ -27,10 +27,14 @@ typedef struct rt_lit {
     vfloat radius, cos_inner, cos_outer;
     vfloat area; /* of the polygon that the triangle is a part of; 0: it is none */
     vfloat u1;   /* the random number that is left after a part of a polygon was chosen */
+#ifdef RT_HAS_MAPS
+    vint map;         /* of a triangle's emission; -1: none */
+    vfloat uv[6];     /* its coordinates at p, and what they gain along u and v */
+#endif
 } rt_lit;
 
 /* The numbers of a lane, `RT_LANES` apart. */
-enum { RT_LIT_P = 0, RT_LIT_U = 3, RT_LIT_V = 6, RT_LIT_COLOR = 9, RT_LIT_RADIUS = 12, RT_LIT_INNER, RT_LIT_OUTER, RT_LIT_AREA, RT_LIT_U1, RT_LIT_PICK, RT_LIT_FIELDS };
+enum { RT_LIT_P = 0, RT_LIT_U = 3, RT_LIT_V = 6, RT_LIT_COLOR = 9, RT_LIT_RADIUS = 12, RT_LIT_INNER, RT_LIT_OUTER, RT_LIT_AREA, RT_LIT_U1, RT_LIT_PICK, RT_LIT_UV, RT_LIT_FIELDS = RT_LIT_UV + 6 };
 #define RT_LIT(field) out[(field) * (int)RT_LANES]
 #define RT_LIT_3(field, x, y, z) RT_LIT(field) = (x), RT_LIT((field) + 1) = (y), RT_LIT((field) + 2) = (z)
 
@@ -42,8 +46,8 @@ RT_INLINE void rt_cross_numbers(const float *a, const float *b, float *c)
 }
 
 /* The triangle of a leaf in the world: a corner and two edges. An instance that mirrors swaps the edges, so that their cross product
- * stays on the side of the triangle's normal. */
-RT_INLINE void rt_load_triangle(const rt_ctx *ctx, const global rt_packed_prim *leaf, uint instance, float *p, float *u, float *v)
+ * stays on the side of the triangle's normal. Returns whether they are swapped. */
+RT_INLINE bool rt_load_triangle(const rt_ctx *ctx, const global rt_packed_prim *leaf, uint instance, float *p, float *u, float *v)
 {
     for (int k = 0; k < 3; ++k) {
         p[k] = leaf->a[k];
@@ -51,7 +55,7 @@ RT_INLINE void rt_load_triangle(const rt_ctx *ctx, const global rt_packed_prim *
         v[k] = leaf->c[k] - p[k];
     }
 #if RT_HAS_INSTANCES
-    if (instance == RT_NONE) return;
+    if (instance == RT_NONE) return false;
     const global float *m = ctx->instances[instance].object_from_world;
     /* The columns of the inverse are the cross products of the rows, divided by the determinant. */
     float rows[3][3], columns[3][3], moved[3], placed[3][3];
@@ -72,8 +76,38 @@ RT_INLINE void rt_load_triangle(const rt_ctx *ctx, const global rt_packed_prim *
         u[k] = placed[first][k];
         v[k] = placed[3 - first][k];
     }
+    return first == 2;
+#else
+    return false;
 #endif
 }
+
+#ifdef RT_HAS_MAPS
+/* The coordinates of a triangle on the texture of a map: at its first corner, and how they change along the edges that
+ * rt_load_triangle() gives. */
+RT_INLINE void rt_load_triangle_uvs(const rt_ctx *ctx, const global rt_packed_prim *leaf, const global rt_map *map, bool swapped, float *out)
+{
+    float uv[3][2] = {{0.0f, 0.0f}, {0.0f, 0.0f}, {0.0f, 0.0f}};
+#if RT_HAS_UVS
+    const global rt_triangle *tri = ctx->triangles + RT_REF_INDEX(leaf->ref);
+    const global float *uvs = ctx->uvs;
+#ifdef RT_HAS_UVS2
+    if (map->set != 0u) uvs = ctx->uvs2;
+#endif
+    for (uint i = 0; i < 3u; ++i)
+        for (uint k = 0; k < 2u; ++k) {
+            const global float *m = map->matrix + 3u * k, *at = uvs + 2ul * tri->v[i];
+            uv[i][k] = fma(m[0], at[0], fma(m[1], at[1], m[2]));
+        }
+#endif
+    const int first = swapped ? 2 : 1;
+    for (int k = 0; k < 2; ++k) {
+        out[k] = uv[0][k];
+        out[2 + k] = uv[first][k] - uv[0][k];
+        out[4 + k] = uv[3 - first][k] - uv[0][k];
+    }
+}
+#endif
 
 #if RT_HAS_POLYGONS
 /* Chooses a triangle of a convex polygon's fan in proportion to its area. *u1 is used for that and stretched to [0, 1) again. */
@@ -104,12 +138,14 @@ RT_INLINE void rt_disc_axes(const global float *n, float radius, float *u, float
     v[0] = radius * b, v[1] = radius * (sign + n[1] * n[1] * a), v[2] = -radius * n[1];
 }
 
-/* Writes the numbers of emitter e and returns its kind. *flags: RT_LIGHT_* of the light. u1: see rt_lit. */
-RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, float u1, uint *flags, float *out)
+/* Writes the numbers of emitter e and returns its kind. *flags: RT_LIGHT_* of the light. *map, u1: see rt_lit. */
+RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, float u1, uint *flags, int *map, float *out)
 {
     float p[3] = {0, 0, 0}, u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
     uint kind = e->kind;
     *flags = 0u;
+    *map = -1;
+    for (int k = 0; k < 6; ++k) RT_LIT(RT_LIT_UV + k) = 0.0f;
     RT_LIT(RT_LIT_PICK) = e->pick;
     RT_LIT(RT_LIT_AREA) = 0.0f;
     RT_LIT(RT_LIT_RADIUS) = 0.0f;
@@ -150,7 +186,18 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
             rt_load_polygon(ctx, leaf, e->area, p, u, v, &u1);
         }
 #endif
-        if (RT_REF_KIND(leaf->ref) == RT_REF_TRIANGLE) rt_load_triangle(ctx, leaf, e->instance, p, u, v);
+        if (RT_REF_KIND(leaf->ref) == RT_REF_TRIANGLE) {
+            const bool swapped = rt_load_triangle(ctx, leaf, e->instance, p, u, v);
+#ifdef RT_HAS_MAPS
+            const global rt_map *of = rt_map_of(ctx, material, RT_MAP_EMISSION);
+            if (of) {
+                float uv[6];
+                rt_load_triangle_uvs(ctx, leaf, of, swapped, uv);
+                for (int k = 0; k < 6; ++k) RT_LIT(RT_LIT_UV + k) = uv[k];
+                *map = (int)(of - ctx->maps);
+            }
+#endif
+        }
     }
     RT_LIT_3(RT_LIT_P, p[0], p[1], p[2]);
     RT_LIT_3(RT_LIT_U, u[0], u[1], u[2]);
@@ -163,7 +210,7 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
 RT_INLINE rt_lit rt_pick_emitters(const rt_ctx *ctx, vfloat u_pick, vfloat u1)
 {
     const uint rest_bits = RT_PICK_BITS - ctx->lighting->cell_bits;
-    int number[RT_LANES], kind[RT_LANES], light[RT_LANES], falloff[RT_LANES], two_sided[RT_LANES];
+    int number[RT_LANES], kind[RT_LANES], light[RT_LANES], falloff[RT_LANES], two_sided[RT_LANES], map[RT_LANES];
     float first[RT_LANES], columns[RT_LIT_FIELDS * RT_LANES];
     rt_store(min(max(rt_to_int(u_pick * rt_vfloat((float)RT_PICKS)), rt_vint(0)), rt_vint(RT_PICKS - 1)), number);
     rt_store(u1, first);
@@ -172,7 +219,7 @@ RT_INLINE rt_lit rt_pick_emitters(const rt_ctx *ctx, vfloat u_pick, vfloat u1)
         const global rt_emitter *e = ctx->emitters + cell;
         if (rest >= e->threshold) e = ctx->emitters + e->alias;
         uint flags;
-        kind[l] = (int)rt_load_emitter(ctx, e, first[l], &flags, columns + l);
+        kind[l] = (int)rt_load_emitter(ctx, e, first[l], &flags, map + l, columns + l);
         light[l] = (int)e->at;
         if (e->kind == RT_EMITTER_SURFACE) light[l] = (int)RT_LIGHT_OF_SURFACES;
         if (e->kind == RT_EMITTER_SKY) light[l] = (int)RT_LIGHT_OF_SKY;
@@ -196,6 +243,10 @@ RT_INLINE rt_lit rt_pick_emitters(const rt_ctx *ctx, vfloat u_pick, vfloat u1)
     lit.cos_outer = RT_LIT_COLUMN(RT_LIT_OUTER);
     lit.area = RT_LIT_COLUMN(RT_LIT_AREA);
     lit.u1 = RT_LIT_COLUMN(RT_LIT_U1);
+#ifdef RT_HAS_MAPS
+    lit.map = rt_load(map);
+    for (int k = 0; k < 6; ++k) lit.uv[k] = RT_LIT_COLUMN(RT_LIT_UV + k);
+#endif
 #undef RT_LIT_COLUMN
 #undef RT_LIT_VECTOR
     return lit;

@@ -164,6 +164,22 @@ RT_INLINE rt_vec rt_seen_sky(const rt_ctx *ctx, const constant rt_frame *frame, 
 
 /* ---- drawing */
 
+#ifdef RT_HAS_MAPS
+/* What the maps of drawn triangles say of the points that rt_draw_flat() draws by u1 and u2. */
+RT_INLINE rt_vec rt_drawn_map(const rt_ctx *ctx, const rt_lit *lit, vfloat u1, vfloat u2, vmask lanes)
+{
+    rt_vec out = rt_splat(1.0f, 1.0f, 1.0f);
+    vfloat s, t;
+    rt_warp_triangle(u1, u2, &s, &t);
+    const rt_texture_point point = rt_sharp_point(fma(s, lit->uv[2], fma(t, lit->uv[4], lit->uv[0])), fma(s, lit->uv[3], fma(t, lit->uv[5], lit->uv[1])));
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(lit->map, rt_bits(lanes & RT_MASK(lit->map >= rt_vint(0)))); rt_next_group(&g, &id, &mine);)
+        out = rt_choose(mine, rt_sample_texture(ctx, ctx->maps[id].texture, mine, &point), out);
+    return out;
+}
+#endif
+
 /* Draws a light and a direction towards it from the points `at`, by three random numbers of [0, 1). */
 RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec at, vfloat u_pick, vfloat u1, vfloat u2,
                                         vmask lanes)
@@ -218,6 +234,9 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
         out.towards = rt_choose(flat, rt_scale(scale, to), out.towards);
         out.distance = rt_select(flat, rt_vfloat(1.0f - RT_LIGHT_CLEARANCE) / scale, out.distance);
         density = rt_select(flat, by_area, density);
+#ifdef RT_HAS_MAPS
+        if (rt_any(flat & RT_MASK(lit.map >= rt_vint(0)))) light = rt_mul(light, rt_drawn_map(ctx, &lit, lit.u1, u2, flat));
+#endif
         out.valid |= shines;
     }
     if (RT_MAY_SHINE(RT_LIGHTS_SPHERES) && rt_any(sphere)) {

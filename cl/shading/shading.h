@@ -52,6 +52,9 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
     rt_vec diffuse[RT_STREAM], shine[RT_STREAM];
     RT_FOR_EACH_PACKET(b, count) {
         diffuse[b] = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]);
+#ifdef RT_HAS_MAPS
+        if (rt_any(points[b].hits)) diffuse[b] = rt_scale(materials[b].occlusion, diffuse[b]);
+#endif
         shine[b] = rt_splat(0.0f, 0.0f, 0.0f);
     }
     for (uint i = 0; i < frame->light_count; ++i) {

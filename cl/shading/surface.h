@@ -22,7 +22,11 @@
 #ifdef RT_AOV
 #define RT_USES_UV(ctx, number) 1
 #else
+#ifdef RT_HAS_MAPS
+#define RT_USES_UV(ctx, number) 1
+#else
 #define RT_USES_UV(ctx, number) ((ctx)->materials[number].texture != RT_NONE)
+#endif
 #endif
 
 /* The error of a sum of products after n roundings is at most RT_GAMMA(n) times the sum of the absolute values of its terms. */
@@ -47,6 +51,19 @@ typedef struct rt_surface {
     rt_vec geometric;    /* unit normal, world, on the primitive's own side */
     rt_vec normal;       /* unit shading normal, on the side of `geometric`; interpolated where there are vertex normals */
     vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
+#ifdef RT_HAS_UVS2
+    vfloat tex_u2, tex_v2; /* of the second set; of what is no triangle the same as the first */
+#endif
+#ifdef RT_HAS_MIPS
+    vfloat spread;       /* how far tex_u and tex_v change along a length of 1; after rt_spread_surface() within what a pixel sees */
+#ifdef RT_HAS_UVS2
+    vfloat spread2;
+#endif
+#endif
+#ifdef RT_HAS_TANGENTS
+    rt_vec tangent, bitangent; /* of unit length and perpendicular to `unmapped`; where there are none, 0 */
+    rt_vec unmapped;           /* `normal` before a map turned it */
+#endif
 #ifdef RT_HAS_COLORS
     rt_vec color;        /* of the vertices, linear; 1 where there are none */
 #ifdef RT_HAS_CUTOUTS
@@ -67,12 +84,51 @@ RT_INLINE rt_vec rt_world_normal(const global float *m, rt_vec n)
     return rt_vec_of(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
 }
 
+#if defined(RT_HAS_MIPS) || defined(RT_HAS_TANGENTS)
+/* The inverse of the 3x3 part of m times its determinant, column after column. Returns the determinant. */
+RT_INLINE float rt_inverse_columns(const global float *m, float *columns)
+{
+    for (uint i = 0; i < 3u; ++i) {
+        const global float *a = m + 4u * ((i + 1u) % 3u), *b = m + 4u * ((i + 2u) % 3u);
+        columns[3u * i] = fma(a[1], b[2], -(a[2] * b[1]));
+        columns[3u * i + 1u] = fma(a[2], b[0], -(a[0] * b[2]));
+        columns[3u * i + 2u] = fma(a[0], b[1], -(a[1] * b[0]));
+    }
+    return fma(m[0], columns[0], fma(m[1], columns[1], m[2] * columns[2]));
+}
+#endif
+
 /* A row of object_from_world times the point p. *magnitude: the sum of the absolute values of the terms. */
 RT_INLINE vfloat rt_place_row(const global float *row, rt_vec p, vfloat *magnitude)
 {
     *magnitude = fma(rt_vfloat(fabs(row[0])), fabs(p.x), fma(rt_vfloat(fabs(row[1])), fabs(p.y),
                      fma(rt_vfloat(fabs(row[2])), fabs(p.z), rt_vfloat(fabs(row[3])))));
     return fma(rt_vfloat(row[0]), p.x, fma(rt_vfloat(row[1]), p.y, fma(rt_vfloat(row[2]), p.z, rt_vfloat(row[3]))));
+}
+#endif
+
+#ifdef RT_HAS_MIPS
+/* Twice the area of a triangle on its texture. */
+RT_INLINE float rt_uv_area(const global float *uvs, const global rt_triangle *tri)
+{
+    const global float *a = uvs + 2ul * tri->v[0], *b = uvs + 2ul * tri->v[1], *c = uvs + 2ul * tri->v[2];
+    return fabs(fma(b[0] - a[0], c[1] - a[1], -((b[1] - a[1]) * (c[0] - a[0]))));
+}
+#endif
+
+#ifdef RT_HAS_TANGENTS
+/* The tangents of a triangle's corners, in its plane and its own space: host/scene/tangents.hpp says how they are stored. Returns 1, or
+ * -1 where the texture is mirrored. */
+RT_INLINE float rt_load_tangents(const global rt_packed_prim *leaf, const global uint *stored, float *tangents)
+{
+    const float3 a = vload3(0, leaf->a), e = vload3(0, leaf->b) - a, f = vload3(0, leaf->c) - a;
+    const float3 n = cross(e, f);
+    const float3 x = e * rsqrt(max(dot(e, e), 1e-36f)), across = cross(n, e), y = across * rsqrt(max(dot(across, across), 1e-36f));
+    for (uint i = 0; i < 3u; ++i) {
+        const float along_x = (float)((int)(stored[i] << 16) >> 17), along_y = (float)((int)stored[i] >> 17);
+        vstore3((x * along_x + y * along_y) * (1.0f / 16383.0f), i, tangents);
+    }
+    return (stored[0] & 1u) != 0u ? -1.0f : 1.0f;
 }
 #endif
 
@@ -150,6 +206,23 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     vfloat corner_alpha[3] = {rt_vfloat(1.0f), rt_vfloat(1.0f), rt_vfloat(1.0f)};
 #endif
 #endif
+#ifdef RT_HAS_UVS2
+    vmask is_triangle = rt_vint(0);
+    vfloat corner_u2[3] = {zero, zero, zero}, corner_v2[3] = {zero, zero, zero};
+#endif
+#ifdef RT_HAS_TANGENTS
+    rt_vec tangent[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}}; /* in the plane of the triangle */
+    vfloat handed = rt_vfloat(1.0f);
+    vmask of_sphere = rt_vint(0);
+#endif
+#ifdef RT_HAS_MIPS
+    /* Twice the area of a triangle, in its own space and on its texture; of other surfaces what stands in the same relation. */
+    const vfloat raw_length = sqrt(fma(hit->nx, hit->nx, fma(hit->ny, hit->ny, hit->nz * hit->nz)));
+    vfloat area = rt_vfloat(1.0f), uv_area = zero;
+#ifdef RT_HAS_UVS2
+    vfloat uv_area2 = zero;
+#endif
+#endif
 #if RT_HAS_TEXTURES
     vmask planar = rt_vint(0);
     uint round = 0;
@@ -171,6 +244,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #if RT_HAS_TEXTURES
             planar |= mine;
+#endif
+#ifdef RT_HAS_MIPS
+            uv_area = rt_select(mine, rt_vfloat(1.0f), uv_area);
 #endif
             continue;
         }
@@ -205,8 +281,21 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         if (kind == RT_REF_POLYGON) planar |= mine;
         if (kind == RT_REF_SPHERE && RT_USES_UV(ctx, leaf->material)) round |= rt_bits(mine) & bits;
 #endif
+#ifdef RT_HAS_MIPS
+        if (kind == RT_REF_POLYGON || kind == RT_REF_SPHERE) {
+            const float side = kind == RT_REF_SPHERE ? 4.0f * 3.14159265f * leaf->b[0] * leaf->b[0] : 1.0f; /* in all, for one picture */
+            uv_area = rt_select(mine, rt_vfloat(1.0f), uv_area);
+            area = rt_select(mine, rt_vfloat(side), area);
+        }
+#endif
+#ifdef RT_HAS_TANGENTS
+        if (kind == RT_REF_SPHERE) of_sphere |= mine;
+#endif
 #if RT_HAS_ATTRIBUTES
         if (kind == RT_REF_TRIANGLE) {
+#ifdef RT_HAS_UVS2
+            is_triangle |= mine;
+#endif
             const global rt_triangle *tri = ctx->triangles + RT_REF_INDEX(leaf->ref);
             /* Unrolled, the arrays stay in registers. In memory they were cleared in halves and then read whole, and processors
              * wait for such reads. */
@@ -219,6 +308,10 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
                 corner_u[i] = rt_select(mine, rt_vfloat(ctx->uvs[2u * tri->v[i]]), corner_u[i]);
                 corner_v[i] = rt_select(mine, rt_vfloat(ctx->uvs[2u * tri->v[i] + 1u]), corner_v[i]);
 #endif
+#ifdef RT_HAS_UVS2
+                corner_u2[i] = rt_select(mine, rt_vfloat(ctx->uvs2[2u * tri->v[i]]), corner_u2[i]);
+                corner_v2[i] = rt_select(mine, rt_vfloat(ctx->uvs2[2u * tri->v[i] + 1u]), corner_v2[i]);
+#endif
 #ifdef RT_HAS_COLORS
                 corner_color[i] = rt_choose(mine, rt_spread(ctx->colors + 4u * (size_t)tri->v[i]), corner_color[i]);
 #ifdef RT_HAS_CUTOUTS
@@ -226,6 +319,20 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #endif
             }
+#ifdef RT_HAS_MIPS
+            area = rt_select(mine, raw_length, area);
+#if RT_HAS_UVS
+            uv_area = rt_select(mine, rt_vfloat(rt_uv_area(ctx->uvs, tri)), uv_area);
+#endif
+#ifdef RT_HAS_UVS2
+            uv_area2 = rt_select(mine, rt_vfloat(rt_uv_area(ctx->uvs2, tri)), uv_area2);
+#endif
+#endif
+#ifdef RT_HAS_TANGENTS
+            float t[9];
+            handed = rt_select(mine, rt_vfloat(rt_load_tangents(leaf, ctx->tangents + 3ul * RT_REF_INDEX(leaf->ref), t)), handed);
+            for (uint i = 0; i < 3u; ++i) tangent[i] = rt_choose(mine, rt_splat(t[3 * i], t[3 * i + 1], t[3 * i + 2]), tangent[i]);
+#endif
         }
 #endif
     }
@@ -241,6 +348,14 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_UVS
     s.tex_u = fma(u, corner_u[0], fma(v, corner_u[1], w * corner_u[2]));
     s.tex_v = fma(u, corner_v[0], fma(v, corner_v[1], w * corner_v[2]));
+#endif
+#ifdef RT_HAS_UVS2
+    s.tex_u2 = fma(u, corner_u2[0], fma(v, corner_u2[1], w * corner_u2[2]));
+    s.tex_v2 = fma(u, corner_v2[0], fma(v, corner_v2[1], w * corner_v2[2]));
+#endif
+#ifdef RT_HAS_TANGENTS
+    s.tangent = rt_along(u, tangent[0], rt_along(v, tangent[1], rt_scale(w, tangent[2])));
+    s.tangent = rt_choose(of_sphere, rt_vec_of(s.geometric.z, zero, -s.geometric.x), s.tangent);
 #endif
 #ifdef RT_HAS_COLORS
     s.color = rt_along(u, corner_color[0], rt_along(v, corner_color[1], rt_scale(w, corner_color[2])));
@@ -305,6 +420,24 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         placed = rt_sub(placed, anchor);
         s.height = rt_select(mine, rt_dot(s.geometric, placed), s.height);
         s.error = rt_select(mine, RT_HEIGHT_ERROR * rt_absolute_dot(s.geometric, placed) + RT_PLACED_ERROR * rt_absolute_dot(s.geometric, magnitude), s.error);
+#if defined(RT_HAS_MIPS) || defined(RT_HAS_TANGENTS)
+        float columns[9];
+        const float determinant = rt_inverse_columns(instance->object_from_world, columns);
+#endif
+#ifdef RT_HAS_MIPS
+        /* The world's cross product of two edges is the transposed matrix times that in object space, divided by the determinant. */
+        const rt_vec placed_normal = rt_world_normal(instance->object_from_world, s.geometric);
+        const vfloat grown = rt_dot(placed_normal, placed_normal) / rt_max(rt_dot(s.geometric, s.geometric), rt_vfloat(1e-36f));
+        area = rt_select(mine, area * sqrt(grown) / rt_vfloat(fabs(determinant)), area);
+#endif
+#ifdef RT_HAS_TANGENTS
+        const vfloat side = rt_vfloat(determinant < 0.0f ? -1.0f : 1.0f);
+        s.tangent = rt_choose(mine, rt_scale(side, rt_vec_of(
+            fma(rt_vfloat(columns[0]), s.tangent.x, fma(rt_vfloat(columns[3]), s.tangent.y, rt_vfloat(columns[6]) * s.tangent.z)),
+            fma(rt_vfloat(columns[1]), s.tangent.x, fma(rt_vfloat(columns[4]), s.tangent.y, rt_vfloat(columns[7]) * s.tangent.z)),
+            fma(rt_vfloat(columns[2]), s.tangent.x, fma(rt_vfloat(columns[5]), s.tangent.y, rt_vfloat(columns[8]) * s.tangent.z)))), s.tangent);
+        handed = rt_select(mine, side * handed, handed);
+#endif
         s.geometric = rt_choose(mine, rt_world_normal(instance->object_from_world, s.geometric), s.geometric);
 #if RT_HAS_ATTRIBUTES
         s.normal = rt_choose(mine, rt_world_normal(instance->object_from_world, s.normal), s.normal);
@@ -328,6 +461,24 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.normal = rt_scale(rt_select(against, rt_vfloat(-1.0f), rt_vfloat(1.0f)), s.normal);
 #else
     s.normal = s.geometric;
+#endif
+#ifdef RT_HAS_UVS2
+    s.tex_u2 = rt_select(is_triangle, s.tex_u2, s.tex_u);
+    s.tex_v2 = rt_select(is_triangle, s.tex_v2, s.tex_v);
+#endif
+#ifdef RT_HAS_MIPS
+    const vfloat by_area = rt_vfloat(1.0f) / rt_max(area, rt_vfloat(1e-36f));
+    s.spread = sqrt(uv_area * by_area);
+#ifdef RT_HAS_UVS2
+    s.spread2 = rt_select(is_triangle, sqrt(uv_area2 * by_area), s.spread);
+#endif
+#endif
+#ifdef RT_HAS_TANGENTS
+    s.tangent = rt_sub(s.tangent, rt_scale(rt_dot(s.tangent, s.normal), s.normal));
+    const vmask has_tangent = RT_MASK(rt_dot(s.tangent, s.tangent) > rt_vfloat(1e-20f));
+    s.tangent = rt_choose(has_tangent, rt_normalize(s.tangent), rt_splat(0.0f, 0.0f, 0.0f));
+    s.unmapped = s.normal;
+    s.bitangent = rt_scale(handed, rt_cross(s.normal, s.tangent));
 #endif
     return s;
 }

@@ -16,13 +16,14 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
                         rt_vec *weight, rt_vec *light, rt_deferred *deferred, uint *splits, rt_tally *tally)
 {
     const uint bits = rt_bits(active);
-    const rt_surface surface = rt_resolve(ctx, ray, hit, bits);
+    rt_surface surface = rt_resolve(ctx, ray, hit, bits);
     const vmask hits = surface.hit & active;
     const uint hit_bits = rt_bits(hits);
     rt_vec seen = rt_splat(frame->background[0], frame->background[1], frame->background[2]), passed = *weight;
     vmask next_lanes = rt_vint(0);
     *splits = 0u;
     if (hit_bits != 0u) {
+        RT_COMPLETE(ctx, frame, &surface, ray, hit, hit_bits)
         const rt_point point = rt_point_of(ray, &surface, hits);
         const rt_shade material = rt_load_materials(ctx, &surface, hit_bits, point.at);
         vmask mirrored, refracted;

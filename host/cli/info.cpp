@@ -9,6 +9,7 @@
 #include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/memory_text.hpp"
 #include "base/numbers.hpp"
 #include "base/plural.hpp"
 #include "base/printable.hpp"
@@ -108,6 +109,7 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["materials"] = scene.materials.size();
     json["materials_with_alpha"] = materials_with_alpha(scene);
     json["textures"] = scene.textures.size();
+    json["texture_bytes"] = scene.texels.size() * sizeof(uint32_t);
     json["lights"] = scene.lights.size();
     json["light_kinds"] = Json::object();
     for (const auto& [kind, count] : light_counts(scene)) json["light_kinds"][kind] = count;
@@ -174,7 +176,7 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("shapes", scene.shapes.size(), kinds);
     const uint64_t clear = materials_with_alpha(scene);
     count_row("materials", scene.materials.size(), clear > 0 ? ", of " + grouped(clear) + " alpha counts" : "");
-    count_row("textures", scene.textures.size());
+    count_row("textures", scene.textures.size(), ", " + memory_text(scene.texels.size() * sizeof(uint32_t)));
     kinds.clear();
     for (const auto& [kind, count] : light_counts(scene)) kinds += ", " + grouped(count) + ' ' + kind;
     count_row("lights", scene.lights.size(), kinds);

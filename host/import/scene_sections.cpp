@@ -19,7 +19,7 @@ Converted convert(const Scene& s) {
         c.instances.push_back({name(i.name), i.mesh, i.material, i.visible, i.node, i.root, i.moving_mesh, i.world_from_object,
                                i.node_from_object});
     for (const ShapeKind& kind : s.shape_kinds) c.shape_kinds.push_back(name(kind.id));
-    for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values});
+    for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values, m.maps});
     for (const Light& l : s.lights) c.lights.push_back({name(l.name), l.node, l.values, l.at_node});
     for (const Camera& k : s.cameras)
         c.cameras.push_back({name(k.name), k.node, k.eye, k.target, k.up, k.node_eye, k.node_target, k.node_up, k.fov_y_rad,
@@ -63,7 +63,7 @@ bool convert_back(const Converted& c, Scene& s) {
         s.instances.push_back({name(i.name_bytes), i.mesh, i.material, i.world_from_object, i.visible != 0, i.node, i.root,
                                i.moving_mesh, i.node_from_object});
     for (const uint32_t bytes : c.shape_kinds) s.shape_kinds.push_back({name(bytes), nullptr});
-    for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values});
+    for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values, m.maps});
     for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values, l.node, l.at_node, 0});
     for (const WireCamera& k : c.cameras)
         s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.aperture, k.focus, k.node, k.node_eye,

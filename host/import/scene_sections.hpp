@@ -26,6 +26,7 @@ struct WireInstance {
 struct WireMaterial {
     uint32_t name_bytes;
     MaterialValues values;
+    MaterialMaps maps;
 };
 struct WireLight {
     uint32_t name_bytes, node;
@@ -72,10 +73,11 @@ struct Converted {
 // The one list of all sections: whoever writes, reads or compares scenes uses it, so that they always agree.
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {
-    v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.colors), v(s.triangles), v(s.triangle_materials);
+    v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.uvs2), v(s.colors), v(s.tangents), v(s.triangles),
+        v(s.triangle_materials);
     v(c.meshes), v(c.instances);
     v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.shape_kinds), v(s.shapes), v(s.shape_parts);
-    v(s.shape_numbers), v(c.materials), v(s.textures), v(s.texels), v(s.sky.texels), v(c.lights);
+    v(s.shape_numbers), v(c.materials), v(s.maps), v(s.textures), v(s.texels), v(s.sky.texels), v(c.lights);
     v(c.cameras), v(c.nodes), v(c.clips), v(c.morphs);
     auto& m = s.motion;
     v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);

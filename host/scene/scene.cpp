@@ -159,6 +159,17 @@ PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
     return place;
 }
 
+uint64_t texel_count(const rt_texture& texture) {
+    uint64_t count = 0, width = texture.width, height = texture.height;
+    for (rt_u32 level = 0; level <= texture.levels; ++level) {
+        if (width == 0 || height == 0) return 0;
+        if (level > 0 && width == 1 && height == 1) return 0;
+        if (level > 0) width = std::max<uint64_t>(width / 2, 1), height = std::max<uint64_t>(height / 2, 1);
+        count += width * height;
+    }
+    return count;
+}
+
 Bounds instance_bounds(const Scene& scene, rt_u32 index) {
     Bounds box;
     const Instance& instance = scene.instances[index];

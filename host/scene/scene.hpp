@@ -93,6 +93,14 @@ struct ShapePart {
     std::array<float, RT_SHAPE_NUMBERS> numbers{};
     rt_u32 first_more = 0, more_count = 0;  // range in Scene::shape_numbers
 };
+// For each use of a texture (RT_MAP_...) an index in Scene::maps, or RT_NONE. A colour that needs no map is
+// rt_material::texture.
+using MaterialMaps = std::array<rt_u32, RT_MAP_USES>;
+constexpr MaterialMaps no_maps() {
+    MaterialMaps maps{};
+    for (rt_u32 use = 0; use < RT_MAP_USES; ++use) maps[use] = RT_NONE;
+    return maps;
+}
 // All numbers of a material. Keys reach both structs by their offsets from the first one.
 struct MaterialValues : rt_material {
     MaterialValues() : MaterialValues(rt_material{}) {}
@@ -103,6 +111,7 @@ static_assert(sizeof(MaterialValues) == sizeof(rt_material) + sizeof(rt_layers),
 struct Material {
     std::string name;
     MaterialValues values{};
+    MaterialMaps maps = no_maps();
 };
 struct Light {
     std::string name;
@@ -134,7 +143,9 @@ struct Scene {
     SharedArray<float> positions;            // 3 per vertex
     SharedArray<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
     SharedArray<float> uvs;                  // 2 per vertex; or empty
+    SharedArray<float> uvs2;                 // as uvs: a second set, for maps that name it
     SharedArray<float> colors;               // linear r, g, b and alpha per vertex, 1 for meshes without colours; or empty
+    SharedArray<rt_u32> tangents;            // 3 per triangle, for normal maps: see tangents.hpp; or empty
     SharedArray<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
     SharedArray<rt_u32> triangle_materials;  // 1 per triangle
     std::vector<Mesh> meshes;
@@ -148,6 +159,7 @@ struct Scene {
     std::vector<ShapePart> shape_parts;
     std::vector<float> shape_numbers;
     std::vector<Material> materials;
+    std::vector<rt_map> maps;
     std::vector<rt_texture> textures;
     SharedArray<uint32_t> texels;  // RGBA8, R in the low byte
     std::vector<Light> lights;
@@ -189,6 +201,8 @@ Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 // Box of a shape's parts in its own space.
 Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
+// Texels of a picture and of the smaller ones behind it; 0 if it is empty or has more levels than its size allows.
+uint64_t texel_count(const rt_texture& texture);
 MaterialValues default_material();  // in material_keys.cpp
 // A light without falloff. kind: RT_LIGHT_POINT at a position, or RT_LIGHT_DIRECTIONAL from a unit vector towards it.
 rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color);

@@ -28,12 +28,14 @@ void bake_singular_instances(Scene& scene) {
         // The copy has no vertex normals; it is shaded with the normals of its triangles.
         if (!scene.normals.empty()) scene.normals.resize(scene.positions.size(), 0.f);
         if (!scene.uvs.empty()) repeat(scene.uvs, 2 * size_t(source.first_vertex), 2 * size_t(source.vertex_count));
+        if (!scene.uvs2.empty()) repeat(scene.uvs2, 2 * size_t(source.first_vertex), 2 * size_t(source.vertex_count));
         if (!scene.colors.empty()) repeat(scene.colors, 4 * size_t(source.first_vertex), 4 * size_t(source.vertex_count));
         repeat(scene.triangle_materials, source.first_triangle, source.triangle_count);
         const size_t first = 3 * size_t(source.first_triangle), count = 3 * size_t(source.triangle_count);
         for (size_t i = first; i < first + count; ++i) {
             scene.triangles.push_back(scene.triangles[i] - source.first_vertex + baked.first_vertex);
         }
+        if (!scene.tangents.empty()) repeat(scene.tangents, first, count);
         instance.mesh = static_cast<rt_u32>(scene.meshes.size());
         instance.world_from_object = kIdentity;
         scene.meshes.push_back(std::move(baked));

@@ -40,8 +40,10 @@ Problem check_arrays(const Scene& s) {
     if (vertices >= RT_NONE) return "positions: " + std::to_string(vertices) + " vertices are more than an index can name";
     if (!s.normals.empty() && s.normals.size() != s.positions.size()) return "normals: not 3 numbers per vertex";
     if (!s.uvs.empty() && s.uvs.size() != 2 * vertices) return "uvs: not 2 numbers per vertex";
+    if (!s.uvs2.empty() && s.uvs2.size() != 2 * vertices) return "uvs2: not 2 numbers per vertex";
     if (!s.colors.empty() && s.colors.size() != 4 * vertices) return "colors: not 4 numbers per vertex";
     if (s.triangles.size() % 3 != 0) return "triangles: " + std::to_string(s.triangles.size()) + " indices, not 3 per triangle";
+    if (!s.tangents.empty() && s.tangents.size() != s.triangles.size()) return "tangents: not 3 per triangle";
     if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
     if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
     // A ref stores the index within its kind in 28 bits.
@@ -57,6 +59,7 @@ Problem check_arrays(const Scene& s) {
     if (Problem why = check("position", s.positions, 3)) return why;
     if (Problem why = check("normal", s.normals, 3)) return why;
     if (Problem why = check("uv", s.uvs, 2)) return why;
+    if (Problem why = check("uv2", s.uvs2, 2)) return why;
     if (Problem why = check("color", s.colors, 4)) return why;
     return check("polygon corner", s.polygon_corners, 3);
 }
@@ -161,15 +164,25 @@ Problem check_looks(const Scene& s) {
         if (m.texture != RT_NONE && m.texture >= s.textures.size()) {
             return text("material", i, "texture " + of(m.texture, s.textures.size()));
         }
+        for (const rt_u32 map : s.materials[i].maps)
+            if (map != RT_NONE && map >= s.maps.size()) return text("material", i, "map " + of(map, s.maps.size()));
+    }
+    for (size_t i = 0; i < s.maps.size(); ++i) {
+        const rt_map& m = s.maps[i];
+        if (m.texture >= s.textures.size()) return text("map", i, "texture " + of(m.texture, s.textures.size()));
+        if (m.set > 1) return text("map", i, "set " + std::to_string(m.set) + " of texture coordinates");
+        if (!std::isfinite(m.scale) || !std::all_of(m.matrix, m.matrix + 6, [](float x) { return std::isfinite(x); }))
+            return text("map", i, "not a finite number");
     }
     for (size_t i = 0; i < s.textures.size(); ++i) {
         const rt_texture& t = s.textures[i];
-        const uint64_t texels = uint64_t(t.width) * t.height;
+        const uint64_t texels = texel_count(t);
         if (texels == 0) return text("texture", i, "it is empty");
         if (texels > s.texels.size() || t.first > s.texels.size() - texels)
             return text("texture", i, "texels past the last one");
         if (t.wrap % RT_WRAP_ALONG_V > RT_WRAP_MIRROR || t.wrap / RT_WRAP_ALONG_V > RT_WRAP_MIRROR)
             return text("texture", i, "unknown wrap modes");
+        if (t.flags & ~(RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST)) return text("texture", i, "unknown flags");
     }
     return {};
 }

@@ -25,7 +25,8 @@
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
  *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky and sky_kind of
- *      rt_scene_sink; colors of meshes; RT_TRAVERSES_SINGLE_RAYS. */
+ *      rt_scene_sink; colors, uvs2 and tangents of meshes; space and filter of textures; maps
+ *      of materials; RT_TRAVERSES_SINGLE_RAYS. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -331,6 +332,10 @@ typedef struct rt_mesh {
     double origin[3]; /* appended: what was subtracted from positions in double precision, so that floats keep their details */
     const float *colors; /* appended: linear r, g, b and alpha per vertex, which multiply the color of the material; or NULL */
     rt_u32 color_stride, pad;
+    const float *uvs2;     /* appended: a second set of texture coordinates per vertex, for rt_map_desc::set; or NULL */
+    const float *tangents; /* appended: x, y, z along u, and w: 1 or -1 times cross(normal, tangent) is along v; or NULL: they come
+                            * from the texture coordinates of the normal map, after Mikkelsen 2008 */
+    rt_u32 uv2_stride, tangent_stride;
 } rt_mesh;
 
 typedef struct rt_instance_desc {
@@ -343,6 +348,15 @@ typedef struct rt_instance_desc {
     rt_u32 pad;                  /* 0 */
     const double *translation;   /* appended: x, y, z, in place of numbers 3, 7 and 11 of world_from_object; NULL: those */
 } rt_instance_desc;
+
+/* One use of a texture by a material. rt_material_desc::map_bytes tells the size of an element. rt::map() gives usual values. */
+typedef struct rt_map_desc {
+    rt_u32 use;      /* RT_MAP_... */
+    rt_u32 texture;  /* id that the sink's `texture` returned; RT_NONE: the map is left out */
+    rt_u32 set;      /* 0: the mesh's uvs; 1: its uvs2 */
+    float scale;     /* RT_MAP_NORMAL: of x and y; RT_MAP_OCCLUSION: its strength; else 1 */
+    float matrix[6]; /* 2x3, row-major: from the mesh's coordinates to the texture's. (0, 0) is at the bottom left. All 0: the identity */
+} rt_map_desc;
 
 /* A material. The members are those of Whitted's; docs/scene_format.md lists the keys of `values`. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */
 typedef struct rt_material_desc {
@@ -359,6 +373,8 @@ typedef struct rt_material_desc {
     rt_u32 texture;    /* id that the sink's `texture` returned, which multiplies color; RT_NONE: none */
     const rt_key_value *values; /* appended: of keys that rt_scene_sink::material_kind names, which replace the members above; or NULL */
     rt_u32 value_count, pad;
+    const rt_map_desc *maps; /* appended: one for each use at most. RT_MAP_COLOR replaces `texture`; or NULL */
+    rt_u32 map_count, map_bytes;
 } rt_material_desc;
 
 /* What a texture shows outside of its picture, along u or v. */
@@ -367,6 +383,13 @@ enum {
     RT_WRAP_CLAMP,  /* its border */
     RT_WRAP_MIRROR  /* the picture again, every other time mirrored */
 };
+enum {
+    RT_SPACE_SRGB,   /* r, g and b are colours in sRGB */
+    RT_SPACE_LINEAR, /* all channels are numbers */
+    RT_SPACE_HEIGHT  /* r is a height, and the host makes a map of normals of it: white stands out of black by a fiftieth of the picture's
+                      * width. A picture that is not grey is a map of normals already. For RT_MAP_NORMAL */
+};
+enum { RT_FILTER_SMOOTH, RT_FILTER_NEAREST }; /* between texels */
 typedef struct rt_texture_desc {
     rt_u32 struct_bytes;
     const char *path;           /* relative to the file being imported; NULL: the image is in `bytes` */
@@ -374,6 +397,8 @@ typedef struct rt_texture_desc {
     uint64_t byte_count;
     rt_u32 width, height;
     rt_u32 wrap_u, wrap_v; /* appended: RT_WRAP_... */
+    rt_u32 space;          /* appended: RT_SPACE_... */
+    rt_u32 filter;         /* appended: RT_FILTER_... */
 } rt_texture_desc;
 
 typedef struct rt_camera {

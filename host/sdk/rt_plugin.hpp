@@ -337,6 +337,10 @@ constexpr rt_material_desc material(const char* name = nullptr) {
     m.texture = RT_NONE;
     return m;
 }
+// A use of a texture in the mesh's first set of coordinates. use: RT_MAP_COLOR, ...
+constexpr rt_map_desc map(rt_u32 use, rt_u32 texture) {
+    return {use, texture, 0, 1, {1, 0, 0, 0, 1, 0}};
+}
 // A white light at the origin, or one that shines downwards. kind: RT_LIGHT_POINT, ...
 constexpr rt_light_desc light(rt_u32 kind, const char* name = nullptr) {
     return {sizeof(rt_light_desc), kind, name, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 0, 0, nullptr, 0, 0};

@@ -76,7 +76,10 @@ inline ReadingSink::ReadingSink() {
     sink_.ctx = this;
     SINK(texture, rt_texture_desc, s.read(d->path); s.read(d->bytes, d->byte_count); return s.textures_++);
     SINK(material, rt_material_desc, s.read(d->name); s.read_values(d->values, d->value_count);
-         require(d->texture == RT_NONE || d->texture < s.textures_, "texture"); return s.materials_++);
+         require(d->texture == RT_NONE || d->texture < s.textures_, "texture"); s.read(d->maps, d->map_count);
+         for (rt_u32 i = 0; i < d->map_count; ++i)
+             require(d->maps[i].texture < s.textures_ && d->maps[i].set < 2 && d->maps[i].use < RT_MAP_USES, "map");
+         return s.materials_++);
     SINK(mesh, rt_mesh, s.mesh(*d); return s.meshes_++);
     SINK(instance, rt_instance_desc, s.read(d->name); require(d->mesh < s.meshes_ && d->node <= s.nodes_, "instance");
          return rt_u32(0));
@@ -114,6 +117,9 @@ inline void ReadingSink::mesh(const rt_mesh& d) {
         if (d.normals)
             read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.normals) + uint64_t(i) * d.normal_stride), 3);
         if (d.uvs) read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.uvs) + uint64_t(i) * d.uv_stride), 2);
+        if (d.uvs2) read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.uvs2) + uint64_t(i) * d.uv2_stride), 2);
+        if (d.tangents)
+            read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.tangents) + uint64_t(i) * d.tangent_stride), 4);
         if (d.colors)
             read(reinterpret_cast<const float*>(reinterpret_cast<const char*>(d.colors) + uint64_t(i) * d.color_stride), 4);
     }

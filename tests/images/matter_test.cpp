@@ -212,7 +212,7 @@ Scene masked_square(float cutoff) {
     m.texture = 0;
     Scene scene = layers(1, m);
     scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
-    scene.textures.push_back({0, 2, 2, 0});
+    scene.textures.push_back({0, 2, 2, 0, 0, 0, 0});
     for (const uint32_t texel : {0xff0000ffu, 0x000000ffu, 0x000000ffu, 0xff0000ffu}) scene.texels.push_back(texel);
     return scene;
 }

@@ -16,7 +16,7 @@ constexpr uint32_t kRed = 0xff0000ffu, kGreen = 0xff00ff00u, kBlue = 0xffff0000u
 
 // Two by two texels, top row first: red, green / blue, white.
 rt_u32 add_texture(Scene& scene) {
-    scene.textures.push_back({static_cast<rt_u32>(scene.texels.size()), 2, 2, 0});
+    scene.textures.push_back({static_cast<rt_u32>(scene.texels.size()), 2, 2, 0, 0, 0, 0});
     for (const uint32_t texel : {kRed, kGreen, kBlue, kWhite}) scene.texels.push_back(texel);
     return static_cast<rt_u32>(scene.textures.size() - 1);
 }

@@ -29,8 +29,12 @@ Scene sample() {
     s.polygons = {{0, 4, 0}};
     s.polygon_corners = {-3, 0, 0, -1, 0, 0, -1, 2, 0, -3, 2, 0};
     s.materials = {{"default", default_material()}};
-    s.textures = {{0, 2, 1, 0}};
+    s.textures = {{0, 2, 1, 0, 0, 0, 0}};
     s.texels = {1, 2};
+    s.uvs2.assign(8, 0.f);
+    s.tangents.assign(3, 0);
+    s.maps = {{{1, 0, 0, 0, 1, 0}, 0, 1, 1, 0}};
+    s.materials[0].maps[RT_MAP_EMISSION] = 0;
     s.lights.resize(1);
     s.cameras = {{"c", {0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 0.8f}};
     return s;
@@ -107,6 +111,7 @@ TEST(Scene, validate_names_every_damage) {
          [](Scene& s) {
              s.materials.clear();
              s.triangle_materials.clear();
+             s.tangents.clear();
              s.triangles.clear();
              s.meshes.clear();
              s.instances.clear();
@@ -122,6 +127,17 @@ TEST(Scene, validate_names_every_damage) {
         {"texture 0: texels", [](Scene& s) { s.textures[0].first = 0xFFFFFFFFu; }},
         {"texture 0: texels", [](Scene& s) { s.textures[0].width = s.textures[0].height = 0xFFFFFFFFu; }},
         {"texture 0: it is empty", [](Scene& s) { s.textures[0].height = 0; }},
+        {"texture 0: it is empty", [](Scene& s) { s.textures[0].levels = 2; }},
+        {"texture 0: texels", [](Scene& s) { s.textures[0].levels = 1; }},
+        {"texture 0: unknown flags", [](Scene& s) { s.textures[0].flags = 8; }},
+        {"material 0: map 1 of 1", [](Scene& s) { s.materials[0].maps[RT_MAP_NORMAL] = 1; }},
+        {"map 0: texture 1 of 1", [](Scene& s) { s.maps[0].texture = 1; }},
+        {"map 0: set 2", [](Scene& s) { s.maps[0].set = 2; }},
+        {"map 0: not a finite", [](Scene& s) { s.maps[0].matrix[4] = kNan; }},
+        {"map 0: not a finite", [](Scene& s) { s.maps[0].scale = kNan; }},
+        {"uvs2", [](Scene& s) { s.uvs2.resize(3); }},
+        {"uv2 3", [](Scene& s) { s.uvs2.own()[7] = kNan; }},
+        {"tangents", [](Scene& s) { s.tangents.push_back(0); }},
         {"light 0: unknown", [](Scene& s) { s.lights[0].values.kind = 7; }},
         {"light 0: not a finite", [](Scene& s) { s.lights[0].values.color[0] = kNan; }},
         {"light 0: `color` is -1 0 0", [](Scene& s) { s.lights[0].values.color[0] = -1; }},

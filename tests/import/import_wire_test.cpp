@@ -44,8 +44,12 @@ Scene sample() {
     s.polygon_corners = {1, 2, 3, 4, 5, 6, 7, 8, 10};
     s.materials = {{"default", default_material()}, {"gl\303\244sern", default_material()}};
     s.materials[1].values.ior = 1.33f;
-    s.textures = {{0, 1, 2, 0}};
+    s.textures = {{0, 1, 2, 0, 0, 0, 0}};
     s.texels = {0xff112233u, 0xff445566u};
+    s.uvs2 = {0, 0.5f, 1, 0.5f, 0, 1};
+    s.tangents = {1, 2, 3};
+    s.maps = {{{1, 0, 0.25f, 0, 1, 0}, 0, 1, 0.5f, 0}};
+    s.materials[1].maps[RT_MAP_NORMAL] = 0;
     s.lights = {{"sun", whitted_light(RT_LIGHT_DIRECTIONAL, {0, 1, 0}, {1, 2, 3})}};
     s.cameras = {{"front", {0, 0, 5}, {0, 0, 1}, {0, 1, 0}, 0.7f}};
     s.background = {0.1f, 0.2f, 0.3f};
@@ -90,6 +94,11 @@ TEST(Wire, everything_arrives) {
     EXPECT_EQ(got.positions, sent.positions);
     EXPECT_EQ(got.triangles, sent.triangles);
     EXPECT_EQ(got.texels, sent.texels);
+    EXPECT_EQ(got.uvs2, sent.uvs2);
+    EXPECT_EQ(got.tangents, sent.tangents);
+    EXPECT_EQ(got.materials.at(1).maps, sent.materials[1].maps);
+    ASSERT_EQ(got.maps.size(), 1u);
+    EXPECT_EQ(std::memcmp(&got.maps[0], &sent.maps[0], sizeof(rt_map)), 0);
     EXPECT_EQ(got.warnings, sent.warnings);
     EXPECT_EQ(got.materials[1].name, sent.materials[1].name);
     EXPECT_EQ(got.materials[1].values.ior, 1.33f);
@@ -154,7 +163,7 @@ TEST(Wire, the_file_keeps_its_size) {
 TEST(Wire, writing_meanwhile_does_no_harm) {
     Scene sent = sample();
     sent.texels.assign(1 << 20, 7);
-    sent.textures = {{0, 1024, 1024, 0}};
+    sent.textures = {{0, 1024, 1024, 0, 0, 0, 0}};
     const std::vector<char> whole = image_of(sent);
     int arrived = 0;
     for (int run = 0; run < 20; ++run) {
@@ -186,7 +195,7 @@ TEST(Wire, the_scene_is_not_held_twice) {
     MemoryFile file;
     Scene sent = sample();
     sent.texels.assign(8 << 20, 7);  // 32 MB
-    sent.textures = {{0, 4096, 2048, 0}};
+    sent.textures = {{0, 4096, 2048, 0, 0, 0, 0}};
     write_scene(file, sent);
     struct stat before {
     }, after{};

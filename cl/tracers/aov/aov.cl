@@ -23,12 +23,19 @@ RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, v
         RT_FOR_LANES_STORE(out, at, hit->t, bits)
         return;
     }
-    const rt_surface s = rt_resolve(ctx, ray, hit, bits);
+    rt_surface s = rt_resolve(ctx, ray, hit, bits);
     if (frame->aov == RT_AOV_PRIM || frame->aov == RT_AOV_INSTANCE) {
         RT_FOR_LANES_STORE(out, at, rt_as_vfloat(frame->aov == RT_AOV_PRIM ? s.prim : hit->instance), bits)
         return;
     }
     const bool normal = frame->aov == RT_AOV_NORMAL;
+#if defined(RT_HAS_TANGENTS) && defined(RT_HAS_MAPS)
+    if (normal) {
+        RT_SPREAD_SURFACE(frame, &s, ray, hit->t * rt_vfloat(rt_pixel_angle(frame)))
+        const vmask mapped = rt_map_normals(ctx, &s, bits & rt_bits(s.hit));
+        s.geometric = rt_choose(mapped, s.normal, s.geometric);
+    }
+#endif
     const vint at3 = at * 3;
     RT_FOR_LANES_STORE(out, at3, normal ? s.geometric.x : s.tex_u, bits)
     RT_FOR_LANES_STORE(out, at3 + 1, normal ? s.geometric.y : s.tex_v, bits)

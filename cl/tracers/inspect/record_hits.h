@@ -70,7 +70,8 @@ RT_INLINE void rt_record_hits(rt_recorder *rec, const rt_ctx *ctx, const constan
         rt_fill_records(rec, hit, hit->prim, rt_vint(0), behind);
         return;
     }
-    const rt_surface surface = rt_resolve(ctx, ray, hit, rt_bits(active));
+    rt_surface surface = rt_resolve(ctx, ray, hit, rt_bits(active));
+    RT_COMPLETE(ctx, frame, &surface, ray, hit, rt_bits(hits))
     const rt_point point = rt_point_of(ray, &surface, hits);
     const rt_shade material = rt_load_materials(ctx, &surface, rt_bits(hits), point.at);
     const rt_vec ambient = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]), none = rt_splat(0.0f, 0.0f, 0.0f);

@@ -141,7 +141,8 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                 points[b].hits = active[b] & RT_MASK(hit->prim >= rt_vint(0));
                 if (hit_bits == 0u) continue;
                 any_hit = 1u;
-                const rt_surface surface = rt_resolve(ctx, rays + b, hit, bits);
+                rt_surface surface = rt_resolve(ctx, rays + b, hit, bits);
+                RT_COMPLETE(ctx, frame, &surface, rays + b, hit, hit_bits)
                 points[b] = rt_point_of(rays + b, &surface, points[b].hits);
                 materials[b] = rt_load_materials(ctx, &surface, hit_bits, points[b].at);
             }

@@ -22,6 +22,11 @@ typedef struct rt_meeting {
 /* Paths of fewer events than this end by roulette nowhere. */
 #define RT_ROULETTE_EVENT 3
 
+#ifdef RT_HAS_MIPS
+/* The angle of the cone that leaves a diffuse surface: small enough that textures lose no detail that is seen in what they light. */
+#define RT_CONE_OF_ROUGH 0.05f
+#endif
+
 /* The weight of light that two strategies find. mine, other: the densities with which this one and the other one do. */
 RT_INLINE vfloat rt_mis_weight(const constant rt_frame *frame, vfloat mine, vfloat other)
 {
@@ -197,6 +202,11 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     p->pdf = rt_select(on, s.pdf, p->pdf);
     p->sharp = rt_select(on, s.delta, p->sharp);
     p->scale = rt_select(on, scale, p->scale);
+#ifdef RT_HAS_MIPS
+    /* What a rough surface sends is seen as through a cone of its own: the wider, the less likely the direction. */
+    const vfloat widened = rt_max(p->cone_angle, rt_vfloat(RT_CONE_OF_ROUGH) / sqrt(rt_max(s.pdf, one)));
+    p->cone_angle = rt_select(on & ~s.delta, widened, p->cone_angle);
+#endif
 #if RT_MAY_SCATTER(RT_LOBE_GLASS)
     if (rt_any(on & s.transmitted & ~rt_is_sheet(&m->bsdf))) rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted & ~rt_is_sheet(&m->bsdf));
 #endif
@@ -256,7 +266,12 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     }
     const uint hit_bits = rt_bits(hits);
     if (hit_bits == 0u) return hits;
-    const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
+    rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
+#ifdef RT_HAS_MIPS
+    p->cone = fma(rt_select(hits, hit.t, rt_vfloat(0.0f)), p->cone_angle, p->cone);
+#endif
+    RT_SPREAD_SURFACE(frame, &surface, &ray, p->cone)
+    RT_MAP_NORMALS(ctx, &surface, hit_bits)
     rt_meeting m;
     m.point = rt_point_of(&ray, &surface, hits);
     if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE)) {
@@ -276,6 +291,9 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     if (scattered_bits == 0u) return scattered;
     const rt_sampler sampler = rt_sampler_of(frame, p);
     rt_basis(m.point.normal, &m.s, &m.t);
+#ifdef RT_HAS_TANGENTS
+    rt_turn_frame(&surface, m.point.normal, &m.s, &m.t);
+#endif
     m.wo = rt_to_local(m.s, m.t, m.point.normal, rt_scale(rt_vfloat(-1.0f), m.point.incoming));
     vfloat around = rt_vfloat(1.0f);
 #if RT_MAY_SCATTER(RT_LOBE_GLASS)

@@ -26,6 +26,9 @@ typedef struct rt_path {
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;       /* rt_surface.area where the ray starts */
 #endif
+#ifdef RT_HAS_MIPS
+    vfloat cone, cone_angle; /* the ray's width where it starts, and how it grows with the distance */
+#endif
 } rt_path;
 
 RT_INLINE vmask rt_mask_of_bits(uint bits)
@@ -118,6 +121,11 @@ RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *
 #ifdef RT_SPLITS_INCOHERENT
     p->area = rt_select(begun, RT_INFINITY, p->area);
 #endif
+#ifdef RT_HAS_MIPS
+    /* Half a pixel: the samples of a pixel lie at different places in it, so their mean is blurred enough. */
+    p->cone = rt_select(begun, rt_vfloat(0.0f), p->cone);
+    p->cone_angle = rt_select(begun, rt_vfloat(0.5f * rt_pixel_angle(frame)), p->cone_angle);
+#endif
     p->alive |= begun;
 }
 
@@ -138,6 +146,9 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
 #endif
 #ifdef RT_SPLITS_INCOHERENT
     p.area = RT_INFINITY;
+#endif
+#ifdef RT_HAS_MIPS
+    p.cone = p.cone_angle = rt_vfloat(0.0f);
 #endif
     return p;
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/files/read_file.hpp"
+#include "base/pictures/srgb.hpp"
 
 // Static, because importers hold the library too.
 #define STB_IMAGE_STATIC
@@ -78,8 +79,7 @@ FloatImage read_png(const std::string& bytes) {
     if (!values) throw Error(Exit::failed, std::string("it is no PNG that can be read: ") + stbi_failure_reason());
     FloatImage image = blank(width, height);
     for (size_t i = 0; i < image.pixels.size(); ++i) {
-        const double v = values.get()[i] / 65535.0;
-        image.pixels[i] = static_cast<float>(v <= .04045 ? v / 12.92 : std::pow((v + .055) / 1.055, 2.4));
+        image.pixels[i] = static_cast<float>(linear_from_srgb(values.get()[i] / 65535.0));
     }
     return image;
 }

@@ -46,6 +46,7 @@ Scene with_object(Scene scene) {
             scene.positions.push_back(at);
             if (!scene.normals.empty()) scene.normals.push_back(0);
             if (!scene.uvs.empty() && a < 2) scene.uvs.push_back(0);
+            if (!scene.uvs2.empty() && a < 2) scene.uvs2.push_back(0);
         }
     if (!scene.colors.empty()) scene.colors.resize(4 * size_t(scene.vertex_count()), 1.0f);
     for (rt_u32 t = 0; t < 8; ++t) {

@@ -170,6 +170,7 @@ std::string stats_json(const RenderStats& stats) {
     json["stack_overflows"] = stats.overflowed;
     json["nodes"] = uint64_t(accel.stat("nodes"));
     json["accel_bytes"] = accel.bytes;
+    json["texture_bytes"] = prepared.scene->texels.size() * sizeof(uint32_t);
     json["accel_stats"] = Json::object();
     for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = number_json(value);
     if (stats.reference) json["reference"] = reference_json(*stats.reference);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "scene/material_keys.hpp"
+#include "scene/tangents.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -19,6 +20,8 @@ Problem check_description(const rt_mesh& m) {
         if (bad_stride(m.position_stride, 12)) return "position_stride " + std::to_string(m.position_stride);
         if (m.normals && bad_stride(m.normal_stride, 12)) return "normal_stride " + std::to_string(m.normal_stride);
         if (m.uvs && bad_stride(m.uv_stride, 8)) return "uv_stride " + std::to_string(m.uv_stride);
+        if (m.uvs2 && bad_stride(m.uv2_stride, 8)) return "uv2_stride " + std::to_string(m.uv2_stride);
+        if (m.tangents && bad_stride(m.tangent_stride, 16)) return "tangent_stride " + std::to_string(m.tangent_stride);
         if (m.colors && bad_stride(m.color_stride, 16)) return "color_stride " + std::to_string(m.color_stride);
     }
     if (m.index_count > 0 && !m.indices) return "it has faces but no indices";
@@ -181,6 +184,7 @@ Problem copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene& sce
     const size_t reserved = all_positions.capacity();
     copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, 0, reserved, scene.normals.own());
     copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, 0, reserved, scene.uvs.own());
+    copy_attribute(m.uvs2, m.uv2_stride, first_vertex, m.vertex_count, 2, 0, reserved, scene.uvs2.own());
     copy_attribute(m.colors, m.color_stride, first_vertex, m.vertex_count, 4, 1, reserved, scene.colors.own());
     limit_colors(first_vertex, scene.colors);
 
@@ -199,6 +203,13 @@ Problem copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene& sce
         why = copy_faces(m, first_vertex, unusable, materials, scene, triangulator, faces);
     }
     added.triangle_count = scene.triangle_count() - added.first_triangle;
+    if (m.tangents && !why) {
+        std::vector<float> tangents(4 * size_t(m.vertex_count));
+        copy_strided(m.tangents, m.tangent_stride, m.vertex_count, 4, tangents.data());
+        scene.tangents.resize(scene.triangles.size(), 0);
+        for (rt_u32 i = 0; i < added.triangle_count; ++i)
+            store_tangents(scene, added.first_triangle + i, tangents, first_vertex);
+    }
     return why;
 }
 

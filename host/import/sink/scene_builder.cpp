@@ -15,13 +15,16 @@
 #include "base/files/packed_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/plural.hpp"
+#include "import/sink/height_map.hpp"
 #include "import/sink/mesh_copy.hpp"
 #include "import/sink/scene_sink.hpp"
+#include "import/sink/smaller_pictures.hpp"
 #include "import/sink/texture.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/singular_instances.hpp"
+#include "scene/tangents.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -276,41 +279,62 @@ rt_u32 SceneBuilder::shape_kind(const std::string& id) {
     return static_cast<rt_u32>(kinds.size() - 1);
 }
 
-rt_u32 SceneBuilder::texture_of(rt_texture picture, rt_u32 wrap) {
+namespace {
+
+// Adds the smaller pictures of one that was just decoded.
+Problem completed(Problem why, const rt_texture_desc& d, std::vector<uint32_t>& texels, rt_texture& picture) {
+    if (why) return why;
+    picture.flags = d.space == RT_SPACE_SRGB ? 0 : RT_TEXTURE_LINEAR;
+    if (d.space == RT_SPACE_HEIGHT) make_normals(texels.data() + picture.first, picture);
+    add_smaller_pictures(texels, picture);
+    return {};
+}
+
+}  // namespace
+
+rt_u32 SceneBuilder::texture_of(rt_texture picture, const rt_texture_desc& shown) {
     if (picture.width == 0) return RT_NONE;
-    const auto [known, is_new] = textures_.insert({{picture.first, wrap}, static_cast<rt_u32>(scene_.textures.size())});
-    picture.wrap = wrap;
+    picture.wrap = shown.wrap_u + RT_WRAP_ALONG_V * shown.wrap_v;
+    if (shown.filter == RT_FILTER_NEAREST) picture.flags |= RT_TEXTURE_NEAREST;
+    const auto [known, is_new] =
+        textures_.insert({{picture.first, picture.wrap, picture.flags}, static_cast<rt_u32>(scene_.textures.size())});
     if (is_new) scene_.textures.push_back(picture);
     return known->second;
 }
 
-rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_desc& d, rt_u32 wrap) {
+rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_desc& d) {
     Digest digest;
     digest.add_value(d.width), digest.add_value(d.height);
     digest.add_bytes(d.bytes, d.byte_count);
-    const auto [known, is_new] = pictures_of_bytes_.insert({digest.hex(), rt_texture{}});
+    const auto [known, is_new] = pictures_of_bytes_.insert({{digest.hex(), d.space}, rt_texture{}});
     rt_texture& picture = known->second;
-    if (!is_new) return texture_of(picture, wrap);
-    const Problem why = d.height == 0 ? decode_texture(d.bytes, d.byte_count, scene_.texels.own(), picture)
-                                      : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene_.texels.own(), picture);
+    if (!is_new) return texture_of(picture, d);
+    std::vector<uint32_t>& texels = scene_.texels.own();
+    const Problem why = completed(d.height == 0 ? decode_texture(d.bytes, d.byte_count, texels, picture)
+                                                : copy_texture(d.bytes, d.byte_count, d.width, d.height, texels, picture),
+                                  d, texels, picture);
     if (why) warn(from, "an embedded texture is left out: " + why.text());
-    return texture_of(picture, wrap);
+    return texture_of(picture, d);
 }
 
-rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string& path, rt_u32 wrap) {
+rt_u32 SceneBuilder::texture_of_file(const std::string& from, const rt_texture_desc& d) {
+    const std::string path = d.path;
     const FileAccess::Found found = access_.find_texture(from, path);
     const auto missing = [&](const std::string& why) {
         warn(from, "texture '" + path + "': " + why + "; the material stays without it");
         return RT_NONE;
     };
     if (found.path.empty()) return missing(found.why);
-    const auto [known, is_new] = pictures_of_files_.insert({found.path, rt_texture{}});
+    const auto [known, is_new] = pictures_of_files_.insert({{found.path, d.space}, rt_texture{}});
     rt_texture& picture = known->second;
-    if (!is_new) return texture_of(picture, wrap);
+    if (!is_new) return texture_of(picture, d);
     std::string bytes;
-    Problem why = try_read_file(found.path, kMaxTexelBytes, bytes);
-    if (!why) why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), picture);
-    return why ? missing(why.text()) : texture_of(picture, wrap);
+    std::vector<uint32_t>& texels = scene_.texels.own();
+    Problem why = try_read_file(found.path, kMaxPictureFileBytes, bytes);
+    if (!why)
+        why = completed(decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), texels, picture), d,
+                        texels, picture);
+    return why ? missing(why.text()) : texture_of(picture, d);
 }
 
 // Channels of cameras and lights name them by `source` until here, because files that load each other mix their order.
@@ -345,14 +369,17 @@ Scene SceneBuilder::take() {
     scene_.cameras = std::move(world_.cameras);
     scene_.edits = std::move(world_.edits);
     for (const auto& [path, content] : files_) scene_.sources.push_back(path);
-    for (const auto& [path, picture] : pictures_of_files_) scene_.sources.push_back(path);
+    for (const auto& [file, picture] : pictures_of_files_)  // two spaces of one file follow each other
+        if (scene_.sources.empty() || scene_.sources.back() != file.first) scene_.sources.push_back(file.first);
     take_motion();
     as_stored_.resize(scene_.meshes.size());
     if (const size_t count = deform_at_rest(scene_, as_stored_); count > 0)
         scene_.warnings.push_back(
             std::to_string(count) +
             " meshes are shown as they are stored: their skins or morphs lead to numbers that are too large");
+    if (!scene_.tangents.empty()) scene_.tangents.resize(scene_.triangles.size(), 0);
     bake_singular_instances(scene_);
+    make_tangents(scene_);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {
         const rt_u32 corner_count = static_cast<rt_u32>(polygon.corners.size() / 3);
         scene_.polygons.push_back({static_cast<rt_u32>(scene_.polygon_corners.size() / 3), corner_count, polygon.material});

@@ -51,9 +51,9 @@ class SceneBuilder {
     // Cancelled.
     Problem include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);
     // Index of the scene's texture for a path, or for a picture in memory; RT_NONE (after a warning) if it cannot be read. A
-    // picture is kept once, however many textures show it. wrap: see rt_texture.
-    rt_u32 texture_of_file(const std::string& from, const std::string& path, rt_u32 wrap);
-    rt_u32 texture_of_bytes(const std::string& from, const rt_texture_desc& picture, rt_u32 wrap);
+    // picture is kept once for each colour space, however many textures show it.
+    rt_u32 texture_of_file(const std::string& from, const rt_texture_desc& picture);
+    rt_u32 texture_of_bytes(const std::string& from, const rt_texture_desc& picture);
     // A number for the next camera or light, by which channels name it until take().
     rt_u32 next_source() { return ++sources_; }
 
@@ -63,7 +63,7 @@ class SceneBuilder {
     void place(const std::string& from, const FileContent& content, const Placement& placement, FileContent& into);
     void place_edits(const std::string& from, const FileContent& content, const std::vector<rt_u32>& instances, size_t lights,
                      FileContent& into);
-    rt_u32 texture_of(rt_texture picture, rt_u32 wrap);
+    rt_u32 texture_of(rt_texture picture, const rt_texture_desc& shown);
     void take_motion();
     void subtract_origin();
 
@@ -76,11 +76,11 @@ class SceneBuilder {
     FileContent world_;
     Triangulator triangulator_;
     std::map<std::string, std::unique_ptr<FileContent>> files_;  // by canonical path
-    // The picture of a canonical path, or of the digest of bytes; of no width: it cannot be read.
-    std::map<std::string, rt_texture> pictures_of_files_, pictures_of_bytes_;
-    std::map<std::pair<rt_u32, rt_u32>, rt_u32> textures_;  // by the picture's first texel and wrap
-    std::vector<std::string> open_;                         // canonical paths of the files being imported now, outermost first
-    uint64_t placed_ = 0;  // number of objects from included files, counted each time they are placed
+    // The picture of a canonical path, or of the digest of bytes, and of a colour space; of no width: it cannot be read.
+    std::map<std::pair<std::string, rt_u32>, rt_texture> pictures_of_files_, pictures_of_bytes_;
+    std::map<std::tuple<rt_u32, rt_u32, rt_u32>, rt_u32> textures_;  // by the picture's first texel, wrap and flags
+    std::vector<std::string> open_;  // canonical paths of the files being imported now, outermost first
+    uint64_t placed_ = 0;            // number of objects from included files, counted each time they are placed
     size_t warnings_left_out_ = 0;
     rt_u32 sources_ = 0;
     std::vector<bool> as_stored_;  // for each mesh before the file being imported: it is not deformed at rest

@@ -177,8 +177,10 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
     if (d.wrap_u > RT_WRAP_MIRROR || d.wrap_v > RT_WRAP_MIRROR)
         return fail("a texture has the wrap modes " + std::to_string(d.wrap_u) + " and " + std::to_string(d.wrap_v) +
                     ": expected RT_WRAP_ values");
-    const rt_u32 wrap = d.wrap_u + RT_WRAP_ALONG_V * d.wrap_v;
-    const rt_u32 index = d.bytes ? builder_.texture_of_bytes(path_, d, wrap) : builder_.texture_of_file(path_, d.path, wrap);
+    if (d.space > RT_SPACE_HEIGHT || d.filter > RT_FILTER_NEAREST)
+        return fail("a texture has the space " + std::to_string(d.space) + " and the filter " + std::to_string(d.filter) +
+                    ": expected RT_SPACE_ and RT_FILTER_ values");
+    const rt_u32 index = d.bytes ? builder_.texture_of_bytes(path_, d) : builder_.texture_of_file(path_, d);
     if (index == RT_NONE) return RT_NONE;
     textures_.push_back(index);
     return static_cast<rt_u32>(textures_.size() - 1);
@@ -186,19 +188,66 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
 
 rt_u32 SceneSink::material(const rt_material_desc& d) {
     std::string problem;
-    Material material = {clean_name(d.name), material_of(d, problem)};
-    if (d.texture != RT_NONE) {
-        if (d.texture >= textures_.size()) {
-            return fail("material '" + material.name + "': texture id " + std::to_string(d.texture) + " of " +
-                        std::to_string(textures_.size()) + " is unknown: pass an id that the sink returned");
-        }
-        material.values.texture = textures_[d.texture];
-    }
+    Material material;
+    material.name = clean_name(d.name);
+    material.values = material_of(d, problem);
+    if (d.texture != RT_NONE && !scene_texture(d.texture, material, material.values.texture)) return kFailed;
+    if (!take_maps(d, material, problem)) return kFailed;
     if (!problem.empty()) builder_.warn(path_, "material '" + material.name + "' " + problem);
     Scene& scene = builder_.scene();
     materials_.push_back(static_cast<rt_u32>(scene.materials.size()));
     scene.materials.push_back(std::move(material));
     return static_cast<rt_u32>(materials_.size() - 1);
+}
+
+bool SceneSink::scene_texture(rt_u32 id, const Material& material, rt_u32& texture) {
+    if (id >= textures_.size()) {
+        fail("material '" + material.name + "': texture id " + std::to_string(id) + " of " + std::to_string(textures_.size()) +
+             " is unknown: pass an id that the sink returned");
+        return false;
+    }
+    texture = textures_[id];
+    return true;
+}
+
+// Uses that only a later host knows are left out.
+bool SceneSink::take_maps(const rt_material_desc& d, Material& material, std::string& problem) {
+    constexpr rt_u32 kLeast = 40;
+    if (d.maps && d.map_count > 0 && (d.map_bytes < kLeast || d.map_bytes % 4 != 0)) {
+        fail("material '" + material.name + "': map_bytes is " + std::to_string(d.map_bytes) +
+             ": write sizeof(rt_map_desc) there");
+        return false;
+    }
+    const auto* from = reinterpret_cast<const char*>(d.maps);
+    for (rt_u32 i = 0; d.maps && i < d.map_count; ++i, from += d.map_bytes) {
+        const auto desc = copied<rt_map_desc>(from, d.map_bytes);
+        if (desc.texture == RT_NONE || desc.use >= RT_MAP_USES) continue;
+        rt_map map{};
+        if (!scene_texture(desc.texture, material, map.texture)) return false;
+        if (desc.set > 1) {
+            fail("material '" + material.name + "': the set of texture coordinates " + std::to_string(desc.set) +
+                 " is unknown: expected 0 or 1");
+            return false;
+        }
+        const std::array<float, 6> identity = {1, 0, 0, 0, 1, 0};
+        std::array<float, 6> matrix{};
+        std::copy_n(desc.matrix, 6, matrix.begin());
+        if (matrix == std::array<float, 6>{}) matrix = identity;
+        map.set = desc.set;
+        map.scale = desc.scale;
+        if (!are_usable(matrix) || !is_usable(map.scale)) {
+            problem = "has a texture whose placement is not a finite number; it lies as the coordinates say";
+            matrix = identity;
+            map.scale = is_usable(map.scale) ? map.scale : 1;
+        }
+        std::copy(matrix.begin(), matrix.end(), map.matrix);
+        const bool is_plain = desc.use == RT_MAP_COLOR && map.set == 0 && matrix == identity;
+        if (desc.use == RT_MAP_COLOR) material.values.texture = is_plain ? map.texture : RT_NONE;
+        if (is_plain) continue;
+        material.maps[desc.use] = static_cast<rt_u32>(builder_.scene().maps.size());
+        builder_.scene().maps.push_back(map);
+    }
+    return true;
 }
 
 rt_u32 SceneSink::mesh(const rt_mesh& d) {

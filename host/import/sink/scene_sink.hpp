@@ -45,7 +45,10 @@ class SceneSink {
     int32_t sky(const rt_sky_desc& sky);
 
     rt_u32 fail(const std::string& why);
-    // Finds the scene material of an id. If the plugin never received this id, records an error and returns false.
+    // Finds the scene material, or a material's texture, of an id. If the plugin never received this id, records an error and
+    // returns false.
+    bool scene_texture(rt_u32 id, const Material& material, rt_u32& texture);
+    bool take_maps(const rt_material_desc& desc, Material& material, std::string& problem);
     bool scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material);
     void offer_motion();
     template <class Result, class Body>

@@ -26,14 +26,16 @@ Problem check_size(uint64_t width, uint64_t height, const std::vector<uint32_t>&
     if (width > kMaxTextureSide || height > kMaxTextureSide) {
         return size + ": at most " + std::to_string(kMaxTextureSide) + " are possible along each side";
     }
-    if (4 * (texels.size() + width * height) > kMaxTexelBytes) {
-        return size + ": the scene's textures would take more than " + memory_limit_text(kMaxTexelBytes);
+    // Smaller pictures take a third more, and a row each where a side is odd.
+    if (4 * (texels.size() + width * height / 3 * 4 + width + height + 16) > kMaxTexelBytes) {
+        return size + ": the scene's textures would take more than " + memory_limit_text(kMaxTexelBytes) +
+               "; make pictures smaller";
     }
     return {};
 }
 
 void append(const void* rgba, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels, rt_texture& texture) {
-    texture = {static_cast<rt_u32>(texels.size()), width, height, 0};
+    texture = {static_cast<rt_u32>(texels.size()), width, height, 0, 0, 0, 0};
     texels.resize(texels.size() + size_t(width) * height);
     std::memcpy(texels.data() + texture.first, rgba, 4 * size_t(width) * height);
 }

@@ -10,7 +10,10 @@
 namespace clarity::import {
 
 inline constexpr rt_u32 kMaxTextureSide = 16384;
-inline constexpr uint64_t kMaxTexelBytes = 256u << 20;  // bytes of all decoded textures of one scene
+// Bytes of all decoded textures of one scene, with their smaller pictures: as many as rt_texture can number. Whether a device
+// holds them is asked when the scene is sent there.
+inline constexpr uint64_t kMaxTexelBytes = uint64_t(16) << 30;
+inline constexpr uint64_t kMaxPictureFileBytes = 256u << 20;
 
 // Decodes a picture (PNG, JPEG, BMP, TGA, PSD, GIF, HDR, PNM; `bytes` as in the file), appends it to `texels` as RGBA8 with the
 // top row first, and describes it in `texture`. Returns nothing on success; otherwise the reason, and nothing is

@@ -12,6 +12,8 @@ constexpr uint64_t kPrimitivesPerNode = 12;
 
 constexpr const char* kAdvice =
     "; take fewer triangles, meshes placed several times instead of copies, or another device (`clarity devices`)";
+constexpr const char* kTextures = "textures";
+constexpr const char* kSmallerPictures = "; make the pictures of textures smaller, or take another device (`clarity devices`)";
 constexpr const char* kSmallerNodes =
     "; take a structure of smaller nodes (`clarity bench accel` lists their bytes per triangle)";
 
@@ -22,13 +24,15 @@ std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& sce
     pieces.push_back({"leaves", (counts.references + kLeafPadding) * sizeof(rt_packed_prim)});
     if (accel.slot_count > 0)
         pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
-    if (!scene.normals.empty() || !scene.uvs.empty() || !scene.colors.empty())
+    if (!scene.normals.empty() || !scene.uvs.empty() || !scene.uvs2.empty() || !scene.tangents.empty() || !scene.colors.empty())
         pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
     pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
     pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});
+    if (!scene.tangents.empty()) pieces.push_back({"tangents", 3 * counts.triangles * sizeof(rt_u32)});
+    pieces.push_back({"second texture coordinates", scene.uvs2.size() * sizeof(float)});
     pieces.push_back({"colours of vertices", scene.colors.size() * sizeof(float)});
     pieces.push_back({"numbers of shapes", scene.shape_numbers.size() * sizeof(float)});
-    pieces.push_back({"textures", scene.texels.size() * sizeof(uint32_t)});
+    pieces.push_back({kTextures, scene.texels.size() * sizeof(uint32_t)});
     return pieces;
 }
 
@@ -39,7 +43,8 @@ void check_fits(const std::vector<MemoryPiece>& pieces, const DeviceInfo& device
         if (device.max_allocation_bytes == 0 || piece.bytes <= device.max_allocation_bytes) continue;
         throw Error(Exit::failed, "the scene does not fit: the " + piece.what + " of " + scene + " take " +
                                       memory_text(piece.bytes) + ", and " + device.name + " allows " +
-                                      memory_text(device.max_allocation_bytes) + " in one piece" + kAdvice);
+                                      memory_text(device.max_allocation_bytes) + " in one piece" +
+                                      (piece.what == kTextures ? kSmallerPictures : kAdvice));
     }
     if (device.global_bytes == 0 || total <= device.global_bytes) return;
     std::vector<MemoryPiece> largest = pieces;

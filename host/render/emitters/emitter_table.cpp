@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "render/emitters/map_mean.hpp"
 #include "render/emitters/pick_table.hpp"
 #include "scene/emissive.hpp"
 #include "scene/light_kinds.hpp"
@@ -65,8 +66,10 @@ class Collector {
           out_(out),
           powers_(powers) {
         // Where a surface is cut out a light would be drawn in vain: rays that hit it find its light.
-        for (size_t i = 0; i < scene.materials.size(); ++i)
+        for (size_t i = 0; i < scene.materials.size(); ++i) {
             emits_.push_back(emits(material(i)) && material(i).alpha == RT_ALPHA_OPAQUE);
+            emits_evenly_.push_back(emits_.back() && scene.materials[i].maps[RT_MAP_EMISSION] == RT_NONE);
+        }
     }
 
     void collect() {
@@ -86,18 +89,21 @@ class Collector {
     const rt_packed_prim& leaf(rt_u32 at) const { return leaves_[at]; }
 
     // For each primitive of a kind that emits, by its ref: a leaf that holds it. Of a primitive that was cut there are several,
-    // all alike. instances: primitives of an instance whose own material emits count, too.
+    // all alike. all: also those whose own material does not emit, since an instance may have one that does. Light of a map is
+    // drawn from triangles only.
     std::vector<rt_u32> leaves_of(rt_u32 kind, size_t count, bool all) const {
+        const std::vector<bool>& emits = kind == RT_REF_TRIANGLE ? emits_ : emits_evenly_;
         std::vector<rt_u32> found(count, RT_NONE);
         for (uint64_t at = 0; at < accel_.leaf_count; ++at) {
             const rt_packed_prim& prim = leaf(rt_u32(at));
-            if (RT_REF_KIND(prim.ref) == kind && (all || emits_[prim.material])) found[RT_REF_INDEX(prim.ref)] = rt_u32(at);
+            if (RT_REF_KIND(prim.ref) == kind && (all || emits[prim.material])) found[RT_REF_INDEX(prim.ref)] = rt_u32(at);
         }
         return found;
     }
 
-    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area) {
-        if (!(area > 0) || !std::isfinite(area)) return;
+    // share: of the material's emission that it has in the mean.
+    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, double share = 1) {
+        if (!(share > 0) || !(area > 0) || !std::isfinite(area)) return;
         if (out_.emitters.size() >= kMostPicked) {
             ++out_.left_out;
             return;
@@ -113,7 +119,7 @@ class Collector {
         emitter.area = static_cast<float>(area);
         out_.emitters.push_back(emitter);
         const rt_material& m = material(of_material);
-        powers_.push_back(area * kPi * mean(m.emission) * (m.flags & RT_MATERIAL_ONE_SIDED ? 1 : 2));
+        powers_.push_back(share * area * kPi * mean(m.emission) * (m.flags & RT_MATERIAL_ONE_SIDED ? 1 : 2));
     }
 
     static double triangle_area(const rt_packed_prim& prim, const Affine* placed) {
@@ -166,7 +172,11 @@ class Collector {
         for (rt_u32 i = 0; i < instances_.size(); ++i)
             if (!instances_[i].hidden) add_group(build.group_of_instance[i], i);
         std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.prim < b.prim; });
-        for (const Found& f : found) add(f.at, f.instance, f.prim, f.material, f.area);
+        for (const Found& f : found) {
+            const rt_u32 map = scene_.materials[f.material].maps[RT_MAP_EMISSION];
+            const rt_u32 triangle = build.attribute_triangle[RT_REF_INDEX(leaf(f.at).ref)];
+            add(f.at, f.instance, f.prim, f.material, f.area, map == RT_NONE ? 1 : mean_of_map(scene_, map, triangle));
+        }
     }
 
     void add_spheres() {
@@ -199,7 +209,8 @@ class Collector {
     const View& view_;
     EmitterTable& out_;
     std::vector<double>& powers_;
-    std::vector<bool> emits_;  // so that light is drawn from it
+    // So that light is drawn from it, and from all of it alike.
+    std::vector<bool> emits_, emits_evenly_;
 };
 
 }  // namespace

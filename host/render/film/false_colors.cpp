@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/angle.hpp"
+#include "base/pictures/srgb.hpp"
 #include "render/settings/aov.hpp"
 
 namespace clarity {
@@ -26,10 +27,6 @@ Rgb3 linear_from_oklch(double lightness, double chroma, double hue) {
                  s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
     return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
             -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
-}
-
-double srgb_from_linear(double x) {
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
 // Dark blue, violet, red, orange, pale yellow. Lightness rises in even steps, so that equal differences in value look equal,

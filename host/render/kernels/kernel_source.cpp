@@ -32,9 +32,13 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_NORMALS", features.normals);
     const bool uvs = features.uvs && (features.textures || row.has(kReadsUvs));
     out.define_int("RT_HAS_UVS", uvs);
-    out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs || features.colors);
+    out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs || features.uvs2 || features.tangents || features.colors);
     if (features.colors) out.define_int("RT_HAS_COLORS", 1);
     out.define_int("RT_HAS_TEXTURES", features.textures);
+    if (features.maps) out.define_int("RT_HAS_MAPS", 1);
+    if (features.mips) out.define_int("RT_HAS_MIPS", 1);
+    if (features.tangents) out.define_int("RT_HAS_TANGENTS", 1);
+    if (features.uvs2) out.define_int("RT_HAS_UVS2", 1);
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
     if (features.sky_picture && row.has(kPicksLights)) out.define_int("RT_HAS_SKY_PICTURE", 1);

@@ -3,19 +3,19 @@
 #pragma once
 #include <cstddef>
 
+#include "render/kernels/scene_features.hpp"
 #include "rt_shape.h"
 #include "rt_types.h"
 
 namespace clarity {
 
 struct SceneBuffer {
-    const char *type, *name;   // in rt_ctx; as an argument of kernels it is called ctx_NAME
-    const char* what;          // for messages
-    size_t checked_bytes;      // if not 0: the size of the type, which is compared with the device's
-    bool of_shapes = false;    // only kernels of scenes with shapes have it
-    bool of_emitters = false;  // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
-    bool of_colors = false;    // only kernels of scenes whose vertices have colours have it
-    bool of_layers = false;    // only kernels with RT_LOBE_LAYERS have it
+    const char *type, *name;            // in rt_ctx; as an argument of kernels it is called ctx_NAME
+    const char* what;                   // for messages
+    size_t checked_bytes;               // if not 0: the size of the type, which is compared with the device's
+    bool SceneFeatures::*of = nullptr;  // only kernels of scenes with this feature have it
+    bool of_emitters = false;           // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
+    bool of_layers = false;             // only kernels with RT_LOBE_LAYERS have it
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {
@@ -25,21 +25,25 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"float", "polygon_corners", "polygon corners", 0},
     {"rt_plane", "planes", "planes", 0},
     {"rt_material", "materials", "materials", sizeof(rt_material)},
-    {"rt_layers", "layers", "layers of materials", sizeof(rt_layers), false, false, false, true},
+    {"rt_layers", "layers", "layers of materials", sizeof(rt_layers), nullptr, false, true},
     {"rt_triangle", "triangles", "triangles", 0},
     {"float", "normals", "normals", 0},
     {"float", "uvs", "texture coordinates", 0},
-    {"float", "colors", "colours of vertices", 0, false, false, true},
+    {"float", "colors", "colours of vertices", 0, &SceneFeatures::colors},
+    {"float", "uvs2", "second texture coordinates", 0, &SceneFeatures::uvs2},
+    {"uint", "tangents", "tangents", 0, &SceneFeatures::tangents},
+    {"rt_map", "maps", "maps", sizeof(rt_map), &SceneFeatures::maps},
+    {"uint", "material_maps", "maps of materials", 0, &SceneFeatures::maps},
     {"rt_texture", "textures", "texture table", 0},
     {"uint", "texels", "textures", 0},
     {"rt_light", "lights", "lights", 0},
-    {"rt_shape", "shapes", "shapes", sizeof(rt_shape), true},
-    {"float", "shape_numbers", "numbers of shapes", 0, true},
-    {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), false, true},
-    {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, false, true},
-    {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), false, true},
-    {"float", "sky_texels", "picture of the sky", 0, false, true},
-    {"uint", "sky_picks", "tables of the sky", 0, false, true},
+    {"rt_shape", "shapes", "shapes", sizeof(rt_shape), &SceneFeatures::shapes},
+    {"float", "shape_numbers", "numbers of shapes", 0, &SceneFeatures::shapes},
+    {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), nullptr, true},
+    {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, nullptr, true},
+    {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), nullptr, true},
+    {"float", "sky_texels", "picture of the sky", 0, nullptr, true},
+    {"uint", "sky_picks", "tables of the sky", 0, nullptr, true},
 };
 
 }  // namespace clarity

@@ -6,7 +6,7 @@
 
 namespace clarity {
 
-static_assert(RT_WRAP_REPEAT == 0 && RT_WRAP_CLAMP == 1 && RT_WRAP_MIRROR == 2, "cl/shading/material.h has these numbers");
+static_assert(RT_WRAP_REPEAT == 0 && RT_WRAP_CLAMP == 1 && RT_WRAP_MIRROR == 2, "cl/shading/textures.h has these numbers");
 
 SceneFeatures features_of(const Scene& scene, const BuildScene& build, const Optics& more) {
     SceneFeatures f;
@@ -16,13 +16,18 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build, const Opt
     f.planes = !build.planes.empty();
     f.shapes = !build.shapes.empty();
     f.normals = !scene.normals.empty() && !build.attribute_triangle.empty();
-    f.textures = std::any_of(scene.materials.begin(), scene.materials.end(),
-                             [](const Material& m) { return m.values.texture != RT_NONE; });
+    f.maps = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.maps != no_maps(); });
+    f.textures = f.maps || std::any_of(scene.materials.begin(), scene.materials.end(),
+                                       [](const Material& m) { return m.values.texture != RT_NONE; });
     f.wraps = f.textures && std::any_of(scene.textures.begin(), scene.textures.end(),
                                         [](const rt_texture& texture) { return texture.wrap != RT_WRAP_REPEAT; });
     f.sky_picture = scene.sky.values.kind == RT_SKY_PICTURE;
     f.colors = !scene.colors.empty() && !build.attribute_triangle.empty();
     f.uvs = !scene.uvs.empty() && !build.attribute_triangle.empty();
+    f.mips = f.textures && std::any_of(scene.textures.begin(), scene.textures.end(),
+                                       [](const rt_texture& texture) { return texture.levels > 0; });
+    f.tangents = !scene.tangents.empty() && !build.attribute_triangle.empty();
+    f.uvs2 = f.maps && !scene.uvs2.empty() && !build.attribute_triangle.empty();
     f.optics = optics_of(scene) | more;
     return f;
 }

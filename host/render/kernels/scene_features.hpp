@@ -10,8 +10,12 @@ struct SceneFeatures {
     bool instances = false, spheres = false, polygons = false, planes = false, normals = false, uvs = false, textures = false,
          shapes = false;
     bool sky_picture = false;
-    bool colors = false;  // vertices have colours
-    bool wraps = false;   // a texture is clamped or mirrored somewhere; otherwise all repeat
+    bool colors = false;    // vertices have colours
+    bool maps = false;      // a material has textures besides a plain one of its colour
+    bool mips = false;      // a texture has smaller pictures
+    bool tangents = false;  // a map of normals is one of them
+    bool uvs2 = false;      // they may name a second set of texture coordinates
+    bool wraps = false;     // a texture is clamped or mirrored somewhere; otherwise all repeat
     Optics optics;
 };
 // more: what views have that the scene's own has not.

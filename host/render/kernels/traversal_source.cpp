@@ -104,8 +104,7 @@ std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneF
         init += " ctx." + name + " = ctx_" + name + ";";
     };
     for (const SceneBuffer& buffer : kSceneBuffers) {
-        if ((buffer.of_shapes && !features.shapes) || (buffer.of_emitters && !picks_lights)) continue;
-        if (buffer.of_colors && !features.colors) continue;
+        if ((buffer.of && !(features.*buffer.of)) || (buffer.of_emitters && !picks_lights)) continue;
         if (buffer.of_layers && !(picks_lights && (features.optics.lobes & RT_LOBE_LAYERS))) continue;
         add(buffer.type, buffer.name);
         if (buffer.checked_bytes) check(buffer.type, buffer.type, buffer.checked_bytes);

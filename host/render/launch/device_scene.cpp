@@ -121,6 +121,23 @@ std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build
     return normals;
 }
 
+// The textures, and behind them those of their smaller pictures.
+std::vector<rt_texture> with_smaller_ones(const std::vector<rt_texture>& textures) {
+    std::vector<rt_texture> all = textures;
+    for (size_t i = 0; i < textures.size(); ++i) {
+        all[i].smaller = static_cast<rt_u32>(all.size());
+        rt_texture at = textures[i];
+        for (rt_u32 level = 0; level < textures[i].levels; ++level) {
+            at.first += at.width * at.height;
+            at.width = std::max(at.width / 2, rt_u32(1));
+            at.height = std::max(at.height / 2, rt_u32(1));
+            at.levels = 0;
+            all.push_back(at);
+        }
+    }
+    return all;
+}
+
 void add_slots(const AccelData& accel, std::vector<Content>& contents) {
     const rt_accel& table = *accel.layout->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
@@ -138,13 +155,20 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     for (const Material& material : scene_->materials) {
         materials_.push_back(material.values);
         layers_.push_back(material.values.layers);
+        if (!scene_->maps.empty()) material_maps_.insert(material_maps_.end(), material.maps.begin(), material.maps.end());
     }
     const BuildScene& build = accel_->scene;
-    if (!scene_->normals.empty() || !scene_->uvs.empty() || !scene_->colors.empty()) {
+    if (!scene_->normals.empty() || !scene_->uvs.empty() || !scene_->uvs2.empty() || !scene_->tangents.empty() ||
+        !scene_->colors.empty()) {
         attributes_.resize(build.attribute_triangle.size());
         for (size_t i = 0; i < attributes_.size(); ++i)
             for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
     }
+    if (!scene_->tangents.empty())
+        for (const uint32_t triangle : build.attribute_triangle)
+            tangents_.insert(tangents_.end(), &scene_->tangents[3 * size_t(triangle)],
+                             &scene_->tangents[3 * size_t(triangle)] + 3);
+    textures_ = with_smaller_ones(scene_->textures);
     has_triangles_ = !attributes_.empty();
     const bool moved = !scene_->normals.empty() && !build.flattened.empty();
     if (moved) normals_ = normals_as_placed(*scene_, build);
@@ -159,9 +183,15 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("triangles", bytes_of(attributes_)),
         content("normals", moved ? bytes_of(normals_) : bytes_of(scene_->normals)),
         content("uvs", bytes_of(scene_->uvs)),
-        content("textures", bytes_of(scene_->textures)),
+        content("textures", bytes_of(textures_)),
         content("texels", bytes_of(scene_->texels)),
     };
+    if (!scene_->maps.empty()) {
+        contents.push_back(content("maps", bytes_of(scene_->maps)));
+        contents.push_back(content("material_maps", bytes_of(material_maps_)));
+        if (!scene_->uvs2.empty()) contents.push_back(content("uvs2", bytes_of(scene_->uvs2)));
+    }
+    if (!scene_->tangents.empty()) contents.push_back(content("tangents", bytes_of(tangents_)));
     if (!scene_->colors.empty()) contents.push_back(content("colors", bytes_of(scene_->colors)));
     if (!build.shapes.empty()) {
         contents.push_back(content("shapes", bytes_of(build.shapes)));
@@ -184,6 +214,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     // Only the upload needed these copies.
     attributes_ = {};
     normals_ = {};
+    tangents_ = {};
 }
 
 DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)

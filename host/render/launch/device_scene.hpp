@@ -58,8 +58,11 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
     std::vector<rt_layers> layers_;
+    std::vector<rt_u32> material_maps_;  // RT_MAP_USES for each material
+    std::vector<rt_texture> textures_;
     std::vector<rt_triangle> attributes_;
-    std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
+    std::vector<rt_u32> tangents_;  // three for each of attributes_
+    std::vector<float> normals_;    // replace the scene's normals if meshes were flattened
     // Those of the table in scene_buffers.hpp that the scene has, but for lights, by the names of their arguments.
     std::map<std::string, cl::Buffer> buffers_;
     std::vector<cl::Buffer> slots_;  // those that devices have, in the plugin's order

@@ -37,8 +37,9 @@ struct Box {
 struct MeshArrays {
     // 3, 3, 2 and 4 for each vertex; all but positions may be empty. colors: linear r, g, b, and alpha.
     std::vector<float> positions, normals, uvs, colors;
-    double origin[3] = {0, 0, 0};  // what was subtracted from positions
-    std::vector<rt_u32> sizes;     // corners of each face; empty: all faces are triangles
+    std::vector<float> uvs2, tangents;  // 2 and 4, as rt_mesh has them; VertexCopies does not copy them
+    double origin[3] = {0, 0, 0};       // what was subtracted from positions
+    std::vector<rt_u32> sizes;          // corners of each face; empty: all faces are triangles
 
     // Whether the positions lie so far from 0, as seen by their own size, that floats lose details of them which the file has.
     bool is_far() const { return Box(positions).is_far(); }
@@ -69,6 +70,10 @@ struct MeshArrays {
         out.normals = normals.empty() ? nullptr : normals.data();
         out.uvs = uvs.empty() ? nullptr : uvs.data();
         out.colors = colors.empty() ? nullptr : colors.data();
+        out.uvs2 = uvs2.empty() ? nullptr : uvs2.data();
+        out.uv2_stride = out.uv_stride;
+        out.tangents = tangents.empty() ? nullptr : tangents.data();
+        out.tangent_stride = 4 * sizeof(float);
         out.color_stride = 4 * sizeof(float);
         out.indices = corners;
         out.index_count = corner_count;

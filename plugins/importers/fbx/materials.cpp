@@ -11,11 +11,21 @@ Vec3 color(const Properties& p, const char* name, const char* oldest, const Vec3
     return p.has(name) ? p.vector(name, otherwise) : p.vector(oldest, otherwise);
 }
 
-void read_phong(const Properties& p, bool has_texture, AlphaKeys& alpha, rt_material_desc& out) {
+// Properties whose textures are maps of their own. Source of the names: FBX SDK help, "FbxSurfaceLambert".
+struct Use {
+    const char* property;
+    rt_u32 use, space;
+};
+constexpr Use kUses[] = {{"EmissiveColor", RT_MAP_EMISSION, RT_SPACE_SRGB},
+                         {"NormalMap", RT_MAP_NORMAL, RT_SPACE_LINEAR},
+                         {"Bump", RT_MAP_NORMAL, RT_SPACE_HEIGHT}};
+
+void read_phong(const Properties& p, bool has_texture, bool has_emission, AlphaKeys& alpha, rt_material_desc& out) {
     // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
     const Vec3 diffuse = has_texture ? Vec3{1, 1, 1} : color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8});
     store_color(diffuse, has_texture ? 1 : p.number("DiffuseFactor", 1), 1, out.color);
-    store_color(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1), 1000, out.emission);
+    store_color(has_emission ? Vec3{1, 1, 1} : color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1), 1000,
+                out.emission);
     const double strength = limited(p.number("SpecularFactor", 1), 0, 1, 1);
     store_color(color(p, "SpecularColor", "Specular", {}), strength, 1, out.specular);
     out.shininess = limited(p.number("ShininessExponent", p.number("Shininess", 0)), 1, 10000, 1);
@@ -59,9 +69,15 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const std::string& name = context_.objects[material].name;
     rt_material_desc out = rt::material(name.empty() ? nullptr : name.c_str());
     const uint32_t found = texture(material, model);
-    out.texture = found == kNoObject ? RT_NONE : picture(found);
+    out.texture = found == kNoObject ? RT_NONE : picture(found, RT_SPACE_SRGB);
+    const std::vector<rt_map_desc> maps = maps_of(material);
+    out.maps = maps.data();
+    out.map_count = static_cast<rt_u32>(maps.size());
+    out.map_bytes = sizeof(rt_map_desc);
+    const bool has_emission =
+        std::any_of(maps.begin(), maps.end(), [](const rt_map_desc& map) { return map.use == RT_MAP_EMISSION; });
     AlphaKeys alpha;
-    read_phong(context_.properties(material), out.texture != RT_NONE, alpha, out);
+    read_phong(context_.properties(material), out.texture != RT_NONE, has_emission, alpha, out);
     // A texture of the transparency replaces its value. Programs connect the picture of the colour again where its alpha
     // counts.
     const uint32_t clear = transparency(material);
@@ -72,6 +88,20 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
         ++transparencies_;
     alpha.give(out);
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
+}
+
+// They lie as the texture of the colour does. A map of normals counts more than one of heights.
+std::vector<rt_map_desc> Materials::maps_of(uint32_t material) {
+    std::vector<rt_map_desc> maps;
+    for (const Use& use : kUses)
+        for (const Link* link : context_.objects.below(material)) {
+            const bool is_there =
+                std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use.use; });
+            if (is_there || link->property != use.property || context_.objects[link->from].kind != "Texture") continue;
+            const rt_map_desc map = rt::map(use.use, picture(link->from, use.space));
+            if (map.texture != RT_NONE) maps.push_back(map);
+        }
+    return maps;
 }
 
 // A texture hangs from the material's property, and a layered texture may be in between. In version 6 it hangs from the model,
@@ -105,14 +135,16 @@ std::string_view Materials::file_of(uint32_t texture) const {
 }
 
 // A texture's picture is in the Content of the Video that hangs from it, or in a file. Source: Blender developer blog.
-rt_u32 Materials::picture(uint32_t texture) {
-    const auto known = pictures_.find(texture);
+rt_u32 Materials::picture(uint32_t texture, rt_u32 space) {
+    const auto key = std::make_pair(texture, space);
+    const auto known = pictures_.find(key);
     if (known != pictures_.end()) return known->second;
     const Document& document = context_.document;
     const Node* node = context_.objects[texture].node;
     if (is_transformed(context_.properties(texture))) ++transformed_;
     rt_texture_desc out{};
     out.struct_bytes = sizeof out;
+    out.space = space;
     out.wrap_u = wrap_mode(context_.properties(texture), "WrapModeU");
     out.wrap_v = wrap_mode(context_.properties(texture), "WrapModeV");
     std::string content, path;
@@ -128,10 +160,10 @@ rt_u32 Materials::picture(uint32_t texture) {
         path = importers::existing_picture(context_.place,
                                            {std::string(document.text(document.child(node, "RelativeFilename"), 0)),
                                             std::string(document.text(name ? name : document.child(node, "Filename"), 0))});
-        if (path.empty()) return pictures_[texture] = RT_NONE;
+        if (path.empty()) return pictures_[key] = RT_NONE;
         out.path = path.c_str();
     }
-    return pictures_[texture] = context_.sink.texture(context_.sink.ctx, &out);
+    return pictures_[key] = context_.sink.texture(context_.sink.ctx, &out);
 }
 
 void Materials::report() const {

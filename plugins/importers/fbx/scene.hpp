@@ -64,12 +64,13 @@ class Materials {
     uint32_t texture(uint32_t material, uint32_t model) const;  // kNoObject: there is none
     uint32_t transparency(uint32_t material) const;             // its texture, likewise
     std::string_view file_of(uint32_t texture) const;
-    rt_u32 picture(uint32_t texture);
+    std::vector<rt_map_desc> maps_of(uint32_t material);  // besides that of the colour
+    rt_u32 picture(uint32_t texture, rt_u32 space);
     const Context& context_;
     std::map<uint32_t, rt_u32> ids_;
-    std::map<uint32_t, rt_u32> pictures_;  // by texture
-    size_t transformed_ = 0;               // textures
-    size_t transparencies_ = 0;            // materials with a picture of it that is not read
+    std::map<std::pair<uint32_t, rt_u32>, rt_u32> pictures_;  // by texture and space
+    size_t transformed_ = 0;                                  // textures
+    size_t transparencies_ = 0;                               // materials with a picture of it that is not read
 };
 
 // ---- lights and cameras

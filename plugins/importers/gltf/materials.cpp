@@ -7,17 +7,9 @@
 #include "nodes.hpp"
 #include "rt_plugin.hpp"
 #include "tolerant.hpp"
-#include "uri.hpp"
 
 namespace gltf_import {
 namespace {
-
-// The texture of the colour, as the material describes it.
-Value color_texture(const Value& material) {
-    const Value gloss = material.object("extensions").object("KHR_materials_pbrSpecularGlossiness");
-    if (gloss.has("diffuseTexture")) return gloss["diffuseTexture"];
-    return material.object("pbrMetallicRoughness").object("baseColorTexture");
-}
 
 // The properties that are keys of the host as they are, by extension ("": of the material's pbrMetallicRoughness). Sources:
 // glTF 2.0, section 3.9, and the README of each extension in Khronos' registry.
@@ -81,24 +73,11 @@ void read_alpha(const Value& material, double opacity, importers::AlphaKeys& alp
         material["alphaMode"].refuse("'OPAQUE', 'MASK' or 'BLEND'");
 }
 
-// Paths out of the folder are passed on as they are: the host finds pictures by their names alone, too.
-std::string image_path(const Value& uri, const std::string& folder) {
-    try {
-        return file_of_uri(uri, folder);
-    } catch (const Error&) {
-        return percent_decoded(uri.text());
-    }
-}
-
 }  // namespace
 
 Materials::Materials(const Document& document, Accessors& accessors, const rt_scene_sink& sink)
-    : accessors_(accessors),
-      folder_(document.folder()),
-      materials_(spared_list(document, "materials", sink)),
-      textures_(spared_list(document, "textures", sink)),
-      images_(spared_list(document, "images", sink)),
-      samplers_(spared_list(document, "samplers", sink)),
+    : materials_(spared_list(document, "materials", sink)),
+      maps_(document, accessors, sink),
       sink_(sink),
       ids_(materials_.size()) {}
 
@@ -131,7 +110,6 @@ rt_u32 Materials::add(const Value& material) {
         base = factor;
         importers::store_color(base, 1, 1, out.color);
     });
-    group([&] { out.texture = texture(color_texture(material)); });
     keys.set("model", extensions.has("KHR_materials_unlit") ? importers::unlit_model : importers::gltf_model);
     keys.set("metallic", is_gloss ? 0 : 1);  // specified defaults, which are not those of the host
     keys.set("roughness", 1);
@@ -144,15 +122,17 @@ rt_u32 Materials::add(const Value& material) {
     group([&] { read_ior(extensions.object("KHR_materials_ior"), keys); });
     group([&] { read_volume(extensions.object("KHR_materials_volume"), keys); });
     group([&] {
-        // The host has one texture, which multiplies the colour. A picture that confines emission to a part of the surface is
-        // lost.
         const std::array<double, 3> emission = material.numbers<3>("emissiveFactor", {0, 0, 0});
         const double strength = extensions.object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
-        const bool shines = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
-        if (shines && material.has("emissiveTexture"))
-            rt::warn(sink_, material.path() + " shines as a picture says (emissiveTexture); that light is left out");
-        else
-            importers::store_color(emission, strength, 1000, out.emission);
+        importers::store_color(emission, strength, 1000, out.emission);
+    });
+    std::vector<rt_map_desc> maps;
+    group([&] {
+        const bool emits = out.emission[0] > 0 || out.emission[1] > 0 || out.emission[2] > 0;
+        maps = maps_.read(material, emits);
+        out.maps = maps.data();
+        out.map_count = static_cast<rt_u32>(maps.size());
+        out.map_bytes = sizeof(rt_map_desc);
     });
     group([&] { read_alpha(material, base[3], alpha); });
     alpha.give(keys);
@@ -160,78 +140,13 @@ rt_u32 Materials::add(const Value& material) {
     return rt::id(sink_.material(sink_.ctx, &out));
 }
 
-TextureMapping Materials::mapping(const Value& primitive) const {
-    TextureMapping mapping;
-    if (!primitive.has("material") || primitive["material"].json().is_null()) return mapping;
-    const auto read = [&] {
-        const Value info = color_texture(materials_[*primitive.index("material", materials_)]);
-        const Value transform = info.object("extensions").object("KHR_texture_transform");
-        const std::array<double, 2> offset = transform.numbers<2>("offset", {0, 0}),
-                                    scale = transform.numbers<2>("scale", {1, 1});
-        mapping.set = transform.count("texCoord", info.count("texCoord", 0));
-        // Counter-clockwise where v points down.
-        const double angle = transform.number("rotation", 0), c = std::cos(angle), s = std::sin(angle);
-        mapping.matrix = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
-    };
+TextureSets Materials::sets(const Value& primitive) const {
+    if (!primitive.has("material") || primitive["material"].json().is_null()) return {0};
     try {
-        read();
+        return maps_.sets(materials_[*primitive.index("material", materials_)]);
     } catch (const Error&) {
-        return {};  // add() names what is wrong
+        return {0};  // id() names what is wrong
     }
-    return mapping;
-}
-
-rt_u32 Materials::texture(const Value& info) {
-    if (!info.has("index")) return RT_NONE;
-    const Value texture = textures_[info["index"].index(textures_)];
-    const auto image = texture.index("source", images_);
-    if (!image) {
-        // Only an extension names an image, of a kind that the host does not read (WebP, KTX).
-        const std::string text = texture.path() + " has no 'source', so the material stays without it";
-        return rt::warn(sink_, text), RT_NONE;
-    }
-    rt_u32 wrap_u = RT_WRAP_REPEAT, wrap_v = RT_WRAP_REPEAT;
-    spared(sink_, "the texture repeats", [&] {
-        const auto sampler = texture.index("sampler", samplers_);
-        if (!sampler) return;
-        wrap_u = wrap_mode(samplers_[*sampler], "wrapS");
-        wrap_v = wrap_mode(samplers_[*sampler], "wrapT");
-    });
-    const auto known = texture_ids_.insert({{*image, wrap_u, wrap_v}, RT_NONE});
-    rt_u32& id = known.first->second;
-    if (known.second) spared(sink_, "the image is left out", [&] { id = add_image(images_[*image], wrap_u, wrap_v); });
-    return id;
-}
-
-rt_u32 Materials::wrap_mode(const Value& sampler, const char* key) const {
-    constexpr std::pair<uint64_t, rt_u32> kModes[] = {{10497, RT_WRAP_REPEAT}, {33071, RT_WRAP_CLAMP}, {33648, RT_WRAP_MIRROR}};
-    const uint64_t code = sampler.count(key, 10497);
-    for (const auto& [known, mode] : kModes)
-        if (known == code) return mode;
-    sampler[key].refuse("10497 (repeat), 33071 (clamp to edge) or 33648 (mirrored repeat)");
-}
-
-rt_u32 Materials::add_image(const Value& image, rt_u32 wrap_u, rt_u32 wrap_v) {
-    rt_texture_desc out{};
-    out.struct_bytes = sizeof out;
-    out.wrap_u = wrap_u;
-    out.wrap_v = wrap_v;
-    std::string bytes_or_path;
-    std::string_view bytes;
-    if (image.has("bufferView")) {
-        bytes = accessors_.view(image["bufferView"]);
-    } else if (const Value uri = image["uri"]; decode_data_uri(uri, bytes_or_path)) {
-        bytes = bytes_or_path;
-    } else {
-        // The host decides what may be read, and looks in the usual places for textures.
-        bytes_or_path = image_path(uri, folder_);
-        out.path = bytes_or_path.c_str();
-        return sink_.texture(sink_.ctx, &out);
-    }
-    if (bytes.empty()) image.refuse("an empty image", "an encoded one");
-    out.bytes = reinterpret_cast<const uint8_t*>(bytes.data());
-    out.byte_count = bytes.size();
-    return sink_.texture(sink_.ctx, &out);
 }
 
 }  // namespace gltf_import

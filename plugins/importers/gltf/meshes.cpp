@@ -24,7 +24,7 @@ enum Mode : uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStri
 struct Meshes::Geometry : importers::MeshArrays {
     std::vector<rt_u32> indices, materials;
     std::vector<Part> parts;
-    bool has_normals = false, has_uvs = false, has_colors = false;
+    bool has_normals = false, has_uvs = false, has_uvs2 = false, has_tangents = false, has_colors = false;
 };
 
 Meshes::Meshes(const Document& document, Accessors& accessors, Materials& materials, const NodeTree& tree,
@@ -83,6 +83,8 @@ Meshes::Built Meshes::build(const Value& mesh, const Value& node, const std::str
     triangles_ += g.indices.size() / 3;
     g.normals.resize(g.has_normals ? g.positions.size() : 0);  // zeros: the vertex has none
     g.uvs.resize(g.has_uvs ? g.positions.size() / 3 * 2 : 0);
+    g.uvs2.resize(g.has_uvs2 ? g.positions.size() / 3 * 2 : 0);
+    g.tangents.resize(g.has_tangents ? g.positions.size() / 3 * 4 : 0);
     g.colors.resize(g.has_colors ? g.positions.size() / 3 * 4 : 0, 1.0f);  // ones: the material's colour stays as it is
 
     built.mesh = g.pass(name, g.indices.data(), g.indices.size(), g.materials, sink_);
@@ -157,17 +159,17 @@ Elements<uint32_t> Meshes::integers(const Part& part, const std::string& attribu
 // Primitives with the same attributes share their vertices.
 const Part& Meshes::add_vertices(const Value& primitive, Geometry& g) {
     const Value attributes = primitive["attributes"];
-    const TextureMapping mapping = materials_.mapping(primitive);
+    const TextureSets sets = materials_.sets(primitive);
     if (!g.parts.empty()) {
         const Part& last = g.parts.back();
         const Value before = last.primitive;
         const bool is_draco = last.draco || primitive.object("extensions").has("KHR_draco_mesh_compression");
         if (!is_draco && before["attributes"].json() == attributes.json() &&
-            before.list("targets").json() == primitive.list("targets").json() && last.mapping == mapping) {
+            before.list("targets").json() == primitive.list("targets").json() && last.sets == sets) {
             return last;
         }
     }
-    Part part = {primitive, 0, 0, mapping, draco_of(primitive)};
+    Part part = {primitive, 0, 0, sets, draco_of(primitive)};
     const Elements<float> positions = floats(part, "POSITION", "VEC3", kAnyCount);
     if (const uint64_t stated = accessors_.form(attributes["POSITION"], "VEC3", false).count; stated != positions.count)
         rt::warn(sink_, attributes.path() + ".POSITION: found " + std::to_string(stated) + " vertices, but " +
@@ -186,19 +188,28 @@ const Part& Meshes::add_vertices(const Value& primitive, Geometry& g) {
             g.has_normals = true;
         });
     }
-    const std::string set = "TEXCOORD_" + std::to_string(mapping.set);
-    const char* const uv = attributes.has(set.c_str()) ? set.c_str() : "TEXCOORD_0";
-    if (attributes.has(uv)) {
+    // The tangents of flat normals are the host's: specification, section 3.7.2.1.
+    if (attributes.has("TANGENT") && attributes.has("NORMAL")) {
+        spared(sink_, "the tangents are left out", [&] {
+            const Elements<float> tangents = floats(part, "TANGENT", "VEC4", count);
+            g.tangents.resize(4 * first);
+            g.tangents.insert(g.tangents.end(), tangents.values.begin(), tangents.values.end());
+            g.has_tangents = true;
+        });
+    }
+    for (size_t k = 0; k < sets.size(); ++k) {
+        const std::string set = "TEXCOORD_" + std::to_string(sets[k]);
+        const char* const uv = attributes.has(set.c_str()) ? set.c_str() : "TEXCOORD_0";
+        if (!attributes.has(uv)) continue;
         spared(sink_, "the texture coordinates are left out", [&] {
+            std::vector<float>& to = k == 0 ? g.uvs : g.uvs2;
             const Elements<float> uvs = floats(part, uv, "VEC2", count);
-            g.uvs.resize(2 * first);
-            const auto& m = mapping.matrix;
+            to.resize(2 * first);
             for (size_t i = 0; i < count; ++i) {
-                const double u = uvs.values[2 * i], v = uvs.values[2 * i + 1];
-                g.uvs.push_back(to_float(m[0] * u + m[1] * v + m[2]));
-                g.uvs.push_back(to_float(1 - (m[3] * u + m[4] * v + m[5])));  // (0, 0) is at the top left in glTF
+                to.push_back(uvs.values[2 * i]);
+                to.push_back(to_float(1 - double(uvs.values[2 * i + 1])));  // (0, 0) is at the top left in glTF
             }
-            g.has_uvs = true;
+            (k == 0 ? g.has_uvs : g.has_uvs2) = true;
         });
     }
     if (attributes.has("COLOR_0")) {

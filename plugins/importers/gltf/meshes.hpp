@@ -19,7 +19,7 @@ struct Part {
     Value primitive;
     rt_u32 first;
     uint64_t count;
-    TextureMapping mapping;
+    TextureSets sets;                        // of texture coordinates, which are the host's
     std::shared_ptr<const DracoMesh> draco;  // its data, if Draco has compressed it
 };
 

@@ -13,7 +13,13 @@ struct Statements {
     float exponent = 1, ior = 1, dissolve = 1;
     bool has_diffuse = false, has_dissolve = false;
     int illumination = -1;
-    ObjTexture texture, dissolve_map;
+    ObjTexture texture, dissolve_map, emission_map, normal_map, bump_map;
+};
+
+// Statements of maps, lower case. `norm` is of the extension for physically based rendering, which Blender writes.
+constexpr std::pair<std::string_view, ObjTexture Statements::*> kMaps[] = {
+    {"map_kd", &Statements::texture},  {"map_d", &Statements::dissolve_map}, {"map_ke", &Statements::emission_map},
+    {"norm", &Statements::normal_map}, {"map_bump", &Statements::bump_map},  {"bump", &Statements::bump_map},
 };
 
 // Options of maps, from Wavefront's appendix B1, "MTL material format". `least` to `most` values follow; `unless` is the value
@@ -134,6 +140,8 @@ void Reader::map(std::string_view word, std::string_view rest, ObjTexture& out) 
             for (int k = 0; k < 2 && k < count; ++k) to[k] = numbers[k];
         } else if (known->word == "-clamp") {
             out.clamped = is_word(first, "on");
+        } else if (known->word == "-bm" && &out == &statements_.bump_map) {
+            out.bump = numbers[0];
         } else if (!is_same(values.substr(0, static_cast<size_t>(rest.data() - values.data())), known->unless)) {
             leave_out(word, known->word);
         }
@@ -161,7 +169,17 @@ float largest(const float c[3]) {
 // Converts a material. Wavefront's illumination models: 3, 5 and 8 (without ray tracing) mirror; 4, 6, 7 and 9 are glass.
 ObjMaterial finish(const Statements& s) {
     ObjMaterial m;
-    m.texture = s.texture;
+    const auto use = [&](rt_u32 use, rt_u32 space, const ObjTexture& texture) {
+        if (!texture.names.empty()) m.maps.push_back({use, space, texture});
+    };
+    const bool alpha_of_color = s.dissolve_map.names == s.texture.names;
+    use(RT_MAP_COLOR, RT_SPACE_SRGB, s.texture);
+    use(RT_MAP_EMISSION, RT_SPACE_SRGB, s.emission_map);
+    if (!s.normal_map.names.empty())
+        use(RT_MAP_NORMAL, RT_SPACE_LINEAR, s.normal_map);
+    else
+        use(RT_MAP_NORMAL, RT_SPACE_HEIGHT, s.bump_map);
+    if (!alpha_of_color) use(RT_MAP_OPACITY, RT_SPACE_LINEAR, s.dissolve_map);
     rt_material_desc& out = m.values;
     out.texture = RT_NONE;
     const bool mirrors = s.illumination == 3 || s.illumination == 5 || s.illumination == 8;
@@ -172,10 +190,12 @@ ObjMaterial finish(const Statements& s) {
         out.emission[k] = s.emission[k];
     }
     if (!s.texture.names.empty() && (!s.has_diffuse || largest(out.color) == 0)) std::fill(out.color, out.color + 3, 1.0f);
+    // Programs leave Ke black beside its picture.
+    if (!s.emission_map.names.empty() && largest(out.emission) == 0) std::fill(out.emission, out.emission + 3, 1.0f);
     out.shininess = std::clamp(s.exponent, 1.0f, 10000.0f);
     out.ior = 1;
     // `d` is the share of the surface that is there, unless it is glass. A map_d that names the picture of map_Kd means its
-    // alpha.
+    // alpha; of another picture the red channel counts.
     const bool is_cut = !s.dissolve_map.names.empty();
     if (!is_glass && (s.dissolve < 1 || is_cut)) m.alpha.set(importers::AlphaKeys::blend, s.dissolve);
     if (is_glass) {
@@ -195,10 +215,6 @@ ObjMaterial finish(const Statements& s) {
 
 void Reader::close() {
     if (!is_open_) return;
-    if (!statements_.dissolve_map.names.empty() && statements_.dissolve_map.names != statements_.texture.names) {
-        leave_out("map_d");
-        statements_.dissolve_map = {};
-    }
     ObjMaterial material = finish(statements_);
     material.folder = folder_;
     library_.materials[name_] = std::move(material);
@@ -214,14 +230,11 @@ void Reader::statement(std::string_view word, std::string_view line) {
         s.has_diffuse = s.has_diffuse || to == s.diffuse;
         return;
     }
+    for (const auto& [key, texture] : kMaps)
+        if (is_word(word, key)) return map(word, line, s.*texture);
     ObjTexture ignored;
     float number = 0;
-    if (is_word(word, "map_kd")) {
-        map(word, line, s.texture);
-    } else if (is_word(word, "map_d")) {
-        map(word, line, s.dissolve_map);
-    } else if (is_word(word.substr(0, 4), "map_") || is_word(word, "bump") || is_word(word, "disp") || is_word(word, "decal") ||
-               is_word(word, "refl") || is_word(word, "norm")) {
+    if (is_word(word.substr(0, 4), "map_") || is_word(word, "disp") || is_word(word, "decal") || is_word(word, "refl")) {
         map(word, line, ignored);
     } else if (is_word(word, "d")) {
         std::string_view value = next_word(line);

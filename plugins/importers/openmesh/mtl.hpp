@@ -10,24 +10,29 @@
 
 namespace openmesh_import {
 
-// map_Kd: the picture, and how it lies on the faces.
+// A map: the picture, and how it lies on the faces.
 struct ObjTexture {
     // What the statement may mean by the picture's name, the likeliest first: names may hold blanks, numbers and '#'.
     std::vector<std::string> names;
     float scale[2] = {1, 1}, offset[2] = {0, 0};  // uv in the picture = uv of the corner * scale + offset
     bool clamped = false;
-    bool moves() const { return scale[0] != 1 || scale[1] != 1 || offset[0] != 0 || offset[1] != 0; }
+    float bump = 1;  // -bm: by which heights are multiplied
+};
+// A use of a picture, RT_MAP_..., in a colour space, RT_SPACE_...
+struct ObjMap {
+    rt_u32 use, space;
+    ObjTexture texture;
 };
 struct ObjMaterial {
     rt_material_desc values{};  // without name, texture and alpha
     importers::AlphaKeys alpha;
-    ObjTexture texture;
+    std::vector<ObjMap> maps;
     std::string folder;  // of its library, relative to that of the OBJ file, with a slash at its end; or empty
 };
 
 struct Library {
     std::map<std::string, ObjMaterial, std::less<>> materials;
-    // Statements that say more than is obeyed, such as "map_Kd -mm" and "map_d", each once; and the material of the first.
+    // Statements that say more than is obeyed, such as "map_Kd -mm", each once; and the material of the first.
     std::vector<std::string> left_out;
     std::string first_left_out;
 

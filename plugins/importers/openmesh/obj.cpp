@@ -4,7 +4,6 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
 
 #include "../common/mapped_file.hpp"
 #include "../common/numbers.hpp"
@@ -158,41 +157,15 @@ class ObjReader {
     rt_u32 use_ = RT_NONE;
 };
 
-// uvs of corners whose material moves or scales its picture. Each pair of a material's number and a uv gets a number of its
-// own.
-void move_uvs(const std::vector<const ObjTexture*>& textures, FlatMesh& mesh) {
-    const auto moves = [&](rt_u32 use) { return use != RT_NONE && textures[use] && textures[use]->moves(); };
-    if (mesh.uv_of_corner.empty() || std::none_of(mesh.face_materials.begin(), mesh.face_materials.end(), moves)) return;
-    std::unordered_map<uint64_t, rt_u32> moved;
-    const size_t count = mesh.corner_uvs.size() / 2;
-    size_t corner = 0;
-    for (size_t face = 0; face < mesh.sizes.size(); ++face) {
-        const size_t end = corner + mesh.sizes[face];
-        const rt_u32 use = mesh.face_materials[face];
-        for (; corner < end; ++corner) {
-            rt_u32& uv = mesh.uv_of_corner[corner];
-            if (!moves(use) || uv >= count) continue;
-            const auto [at, is_new] = moved.emplace(uint64_t(use) << 32 | uv, static_cast<rt_u32>(mesh.corner_uvs.size() / 2));
-            for (int k = 0; k < 2 && is_new; ++k)
-                mesh.corner_uvs.push_back(mesh.corner_uvs[2 * size_t(uv) + size_t(k)] * textures[use]->scale[k] +
-                                          textures[use]->offset[k]);
-            uv = at->second;
-        }
-    }
-}
-
 // From the numbers of uses to the host's materials.
 void assign_materials(const Source& source, const ObjReader& reader, FlatMesh& mesh) {
     ObjLibraries libraries(source, reader.libraries);
     std::vector<rt_u32> ids;
-    std::vector<const ObjTexture*> textures;
     for (const ObjReader::Use& use : reader.uses) {
         const ObjMaterial* material = libraries.find(use.name, use.libraries);
         ids.push_back(libraries.id(use.name, material));
-        textures.push_back(material && !material->texture.names.empty() ? &material->texture : nullptr);
     }
     mesh.uv_of_corner.resize(mesh.uv_of_corner.empty() ? 0 : mesh.corners.size(), RT_NONE);
-    move_uvs(textures, mesh);
     for (rt_u32& material : mesh.face_materials) material = material == RT_NONE ? RT_NONE : ids[material];
 }
 

@@ -111,15 +111,25 @@ rt_u32 ObjLibraries::id(const std::string& name, const ObjMaterial* material) {
     rt_material_desc desc = material->values;
     desc.struct_bytes = sizeof desc;
     desc.name = name.c_str();
-    if (!material->texture.names.empty()) desc.texture = texture(*material);
+    std::vector<rt_map_desc> maps;
+    for (const ObjMap& map : material->maps) {
+        const ObjTexture& t = map.texture;
+        rt_map_desc out = rt::map(map.use, texture(*material, map));
+        if (map.space == RT_SPACE_HEIGHT) out.scale = t.bump;
+        const float matrix[6] = {t.scale[0], 0, t.offset[0], 0, t.scale[1], t.offset[1]};
+        std::copy_n(matrix, 6, out.matrix);
+        if (out.texture != RT_NONE) maps.push_back(out);
+    }
+    desc.maps = maps.data();
+    desc.map_count = static_cast<rt_u32>(maps.size());
+    desc.map_bytes = sizeof(rt_map_desc);
     material->alpha.give(desc);
     return ids_[material] = rt::id(source_.sink.material(source_.sink.ctx, &desc));
 }
 
 // The name of the picture that is there: beside the library, beside the OBJ file, or in its folder `textures`. If none is, the
 // host says so of the likeliest name, and looks in the search paths.
-std::string ObjLibraries::picture(const ObjMaterial& material) const {
-    const std::vector<std::string>& names = material.texture.names;
+std::string ObjLibraries::picture(const ObjMaterial& material, const std::vector<std::string>& names) const {
     const auto is_there = [&](const std::string& path) {
         return access((path.front() == '/' ? path : folder_ + path).c_str(), R_OK) == 0;
     };
@@ -136,14 +146,15 @@ std::string ObjLibraries::picture(const ObjMaterial& material) const {
     return plain == names.end() ? names.front() : *plain;
 }
 
-rt_u32 ObjLibraries::texture(const ObjMaterial& material) {
-    const auto key = std::make_pair(picture(material), material.texture.clamped);
+rt_u32 ObjLibraries::texture(const ObjMaterial& material, const ObjMap& map) {
+    const auto key = std::make_tuple(picture(material, map.texture.names), map.texture.clamped, map.space);
     const auto known = textures_.find(key);
     if (known != textures_.end()) return known->second;
     rt_texture_desc desc{};
     desc.struct_bytes = sizeof desc;
-    desc.path = key.first.c_str();
-    if (material.texture.clamped) desc.wrap_u = desc.wrap_v = RT_WRAP_CLAMP;
+    desc.path = std::get<0>(key).c_str();
+    desc.space = map.space;
+    if (map.texture.clamped) desc.wrap_u = desc.wrap_v = RT_WRAP_CLAMP;
     return textures_[key] = source_.sink.texture(source_.sink.ctx, &desc);
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,14 +27,14 @@ class ObjLibraries {
  private:
     void read_line(std::string_view line, Library& library);
     bool read_file(std::string name, Library& library);
-    std::string picture(const ObjMaterial& material) const;
-    rt_u32 texture(const ObjMaterial& material);
+    std::string picture(const ObjMaterial& material, const std::vector<std::string>& names) const;
+    rt_u32 texture(const ObjMaterial& material, const ObjMap& map);
 
     const Source& source_;
     const std::string folder_;  // of the OBJ file
     std::vector<Library> libraries_;
     std::map<const ObjMaterial*, rt_u32> ids_;
-    std::map<std::pair<std::string, bool>, rt_u32> textures_;
+    std::map<std::tuple<std::string, bool, rt_u32>, rt_u32> textures_;  // by picture, clamped, space
     std::set<std::string> unknown_;
     bool has_missing_ = false;
 };

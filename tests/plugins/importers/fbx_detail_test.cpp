@@ -83,6 +83,28 @@ TEST_P(FbxDetailForm, TakesWrapModesOfTextures) {
     EXPECT_EQ(wraps_of({mode("WrapModeU", 1), mode("WrapModeV", 0)}), Modes(RT_WRAP_CLAMP, RT_WRAP_REPEAT));
 }
 
+TEST_P(FbxDetailForm, TakesTexturesOfEmissionAndNormals) {
+    folder_.write("dot.ppm", "P6 1 1 255\nabc");
+    const auto with = [&](const std::string& property) {
+        FbxNode with_picture = texture(5, {});
+        with_picture.children.push_back(node("FileName", {text("dot.ppm")}));
+        return import({geometry(1, {uv_set(0, "plain", 0)}), model(2, "A"), material(3), with_picture},
+                      {link(2, 0), link(1, 2), link(3, 2), link(5, 3, property)});
+    };
+    const Scene shining = with("EmissiveColor");
+    EXPECT_NE(shining.materials.back().maps[RT_MAP_EMISSION], RT_NONE);
+    EXPECT_EQ(shining.materials.back().values.emission[0], 1) << "the picture replaces the value";
+    EXPECT_EQ(shining.materials.back().values.texture, RT_NONE);
+    const Scene mapped = with("NormalMap");
+    ASSERT_NE(mapped.materials.back().maps[RT_MAP_NORMAL], RT_NONE);
+    EXPECT_EQ(mapped.textures.at(0).flags, RT_TEXTURE_LINEAR);
+    EXPECT_EQ(mapped.texels[0] & 0xffu, 0x61u);
+    EXPECT_EQ(mapped.materials.back().values.emission[0], 0);
+    const Scene bumped = with("Bump");
+    ASSERT_NE(bumped.materials.back().maps[RT_MAP_NORMAL], RT_NONE);
+    EXPECT_EQ(bumped.texels[0] & 0xffffffu, 0xff8080u) << "heights that are all alike are a flat surface";
+}
+
 TEST_P(FbxDetailForm, TakesTheAlphaOfThePictureOfTheColour) {
     folder_.write("dot.ppm", "P6 1 1 255\nabc");
     const auto with = [&](const std::vector<FbxNode>& properties, const std::vector<FbxNode>& links) {

@@ -344,7 +344,7 @@ TEST_F(GltfParts, TexturesThatDifferInWrapShareTheirPicture) {
     const Scene scene = import(model);
     ASSERT_EQ(scene.textures.size(), 2u);
     EXPECT_EQ(scene.textures[0].first, scene.textures[1].first);
-    EXPECT_EQ(scene.texels.size(), 4u);
+    EXPECT_EQ(scene.texels.size(), 5u) << "four, and their mean";
     EXPECT_NE(scene.materials.at(1).values.texture, scene.materials.at(2).values.texture);
     EXPECT_EQ(scene.materials.at(2).values.texture, scene.materials.at(3).values.texture);
     EXPECT_EQ(scene.materials.at(1).values.texture, scene.materials.at(4).values.texture);
@@ -447,6 +447,45 @@ TEST_F(GltfUri, OfImagesAreDecodedToo) {
         EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
         std::filesystem::remove(folder_.path(file));
     }
+}
+
+// Each use has its own texture, set, transform and space; a normal map has its scale.
+TEST_F(GltfParts, TexturesOfAllUses) {
+    Model model = rich();
+    model.primitive()["attributes"]["TEXCOORD_3"] =
+        model.add(std::vector<float>{0, 1, 1, 1, 0, 0.5f, 1, 0.5f}, "VEC2", 5126, 2);
+    model["samplers"].push_back({{"magFilter", 9728}});
+    model["textures"].push_back({{"source", 0}, {"sampler", 1}});
+    model["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 3}};
+    model["materials"][0]["normalTexture"] = {{"index", 1}, {"scale", 0.5}};
+    model["materials"][0]["occlusionTexture"] = {
+        {"index", 1}, {"strength", 0.25}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0.25}}}}}}};
+    const Scene scene = import(model);
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    const Material& material = scene.materials.at(1);
+    EXPECT_NE(material.values.texture, RT_NONE) << "the colour's texture is plain";
+    EXPECT_EQ(material.values.emission[0], 0.5f) << "the texture multiplies the factor";
+    const auto map = [&](rt_u32 use) { return scene.maps.at(material.maps[use]); };
+    EXPECT_EQ(map(RT_MAP_EMISSION).set, 1u) << "TEXCOORD_3 is the second set that the material uses";
+    ASSERT_EQ(scene.uvs2.size(), 8u);
+    EXPECT_EQ(scene.uvs2[5], 0.5f);
+    EXPECT_EQ(scene.textures[map(RT_MAP_EMISSION).texture].flags, 0u);
+    EXPECT_EQ(scene.textures[map(RT_MAP_NORMAL).texture].flags, RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST);
+    EXPECT_EQ(map(RT_MAP_NORMAL).scale, 0.5f);
+    EXPECT_EQ(map(RT_MAP_OCCLUSION).scale, 0.25f);
+    EXPECT_EQ(map(RT_MAP_OCCLUSION).matrix[2], 0.5f);
+    EXPECT_EQ(map(RT_MAP_OCCLUSION).matrix[5], -0.25f) << "v points up";
+    EXPECT_EQ(scene.tangents.size(), 6u);
+    EXPECT_NE(scene.tangents[0], 0u);
+    spared("emissiveTexture.texCoord: found", [](Model& m) {
+        m["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", "x"}};
+    });
+    spared("emissiveTexture.index: found 7", [](Model& m) { m["materials"][0]["emissiveTexture"] = {{"index", 7}}; });
+    // Of three sets the third is left out.
+    spared("texCoord: found 5, expected one of the 2 sets that a material may use; the first set is taken", [](Model& m) {
+        m["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 3}};
+        m["materials"][0]["normalTexture"] = {{"index", 0}, {"texCoord", 5}};
+    });
 }
 
 }  // namespace

@@ -188,13 +188,22 @@ TEST_F(Gltf, TransformsTextureCoordinates) {
                                 {{"KHR_texture_transform",
                                   {{"texCoord", 1}, {"offset", {.25, .5}}, {"rotation", M_PI / 2}, {"scale", {2, 1}}}}}}}}}}}};
     model["textures"] = {{{"source", 0}}};
-    model["images"] = {{{"uri", "missing.png"}}};
+    model["images"] = {
+        {{"uri", "data:image/tga;base64," + base64(std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0abc", 21))}}};
     const Scene scene = import(model.text());
+    ASSERT_EQ(scene.maps.size(), 1u);
+    EXPECT_EQ(scene.materials.at(1).maps[RT_MAP_COLOR], 0u);
+    EXPECT_EQ(scene.materials[1].values.texture, RT_NONE);
+    EXPECT_EQ(scene.maps[0].set, 0u) << "the only set that the material uses";
+    const auto at = [&](size_t vertex, int k) {
+        const float* const m = scene.maps[0].matrix + 3 * k;
+        return m[0] * scene.uvs[2 * vertex] + m[1] * scene.uvs[2 * vertex + 1] + m[2];
+    };
     // u = 1 becomes 2 by the scale. A quarter of a turn counter-clockwise, where v points down, leads it to v = -2.
-    EXPECT_NEAR(scene.uvs[2], .25, 1e-5);
-    EXPECT_NEAR(scene.uvs[3], 1 - (.5 - 2), 1e-5);
-    EXPECT_NEAR(scene.uvs[4], .25 + 1, 1e-5);
-    EXPECT_NEAR(scene.uvs[5], 1 - .5, 1e-5);
+    EXPECT_NEAR(at(1, 0), .25, 1e-5);
+    EXPECT_NEAR(at(1, 1), 1 - (.5 - 2), 1e-5);
+    EXPECT_NEAR(at(2, 0), .25 + 1, 1e-5);
+    EXPECT_NEAR(at(2, 1), 1 - .5, 1e-5);
 }
 
 TEST_F(Gltf, ReadsChunksAndFilesBesideTheScene) {

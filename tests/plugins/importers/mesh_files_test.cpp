@@ -335,10 +335,13 @@ TEST_F(MeshFiles, MtlOptionsAreObeyedOrNamed) {
         folder_.write("m.mtl", "newmtl m\nKd 1 1 1\n" + statement + "\n");
         return import("a.obj", mesh);
     };
-    const auto corner = [](const Scene& scene) {  // uv of (1, 1)
+    const auto corner = [](const Scene& scene) {  // uv of (1, 1) on the picture of the colour
+        const rt_u32 map = scene.materials.back().maps[RT_MAP_COLOR];
+        const rt_map plain{{1, 0, 0, 0, 1, 0}, 0, 0, 1, 0};
+        const float* const m = map == RT_NONE ? plain.matrix : scene.maps[map].matrix;
         for (size_t v = 0; v < scene.positions.size() / 3; ++v)
             if (scene.positions[3 * v] == 1 && scene.positions[3 * v + 1] == 1)
-                return std::pair<float, float>(scene.uvs[2 * v], scene.uvs[2 * v + 1]);
+                return std::pair<float, float>(m[0] * scene.uvs[2 * v] + m[2], m[4] * scene.uvs[2 * v + 1] + m[5]);
         return std::pair<float, float>(-9, -9);
     };
     using Uv = std::pair<float, float>;
@@ -361,8 +364,6 @@ TEST_F(MeshFiles, MtlOptionsAreObeyedOrNamed) {
         EXPECT_EQ(scene.textures.size(), 1u) << option;
         EXPECT_TRUE(warns(scene, "map_Kd " + word)) << option;
     }
-    EXPECT_TRUE(warns(with_map("map_d hole.ppm"), "map_d"));
-    EXPECT_TRUE(warns(with_map("bump -bm 0.5 four.ppm"), "bump -bm"));
     const Scene halo = with_map("d -halo 0.25");
     EXPECT_TRUE(warns(halo, "d -halo"));
     EXPECT_EQ(halo.materials.back().values.alpha, RT_ALPHA_BLEND);
@@ -386,20 +387,55 @@ TEST_F(MeshFiles, MtlSaysHowMuchIsThere) {
     EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
     EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
     EXPECT_EQ(cut.materials.back().values.opacity, 1);
+    folder_.write("hole.ppm", picture());
     const Scene other = read("map_Kd four.ppm\nmap_d hole.ppm");
-    EXPECT_TRUE(warns(other, "map_d"));
-    EXPECT_EQ(other.materials.back().values.alpha, RT_ALPHA_OPAQUE);
+    EXPECT_TRUE(other.warnings.empty()) << other.warnings.at(0);
+    EXPECT_EQ(other.materials.back().values.alpha, RT_ALPHA_BLEND);
+    EXPECT_NE(other.materials.back().maps[RT_MAP_OPACITY], RT_NONE);
+    EXPECT_EQ(cut.materials.back().maps[RT_MAP_OPACITY], RT_NONE) << "the alpha of the colour's picture";
 }
 
-TEST_F(MeshFiles, MtlMovesTheUvsOfItsOwnFaces) {
+TEST_F(MeshFiles, MtlHasMapsOfOtherUses) {
+    folder_.write("four.ppm", picture());
+    folder_.write("grey.ppm", std::string("P6\n4 1\n255\n") + std::string("\0\0\0\x80\x80\x80\xFF\xFF\xFF\x80\x80\x80", 12));
+    const auto read = [&](const std::string& statements) {
+        folder_.write("m.mtl", "newmtl a\n" + statements + "\n");
+        return import("a.obj", "mtllib m.mtl\n" + kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n");
+    };
+    const Scene glowing = read("Ke 0 0 0\nmap_Ke -s 2 2 four.ppm");
+    const Material& glows = glowing.materials.back();
+    EXPECT_EQ(glows.values.emission[0], 1);
+    ASSERT_NE(glows.maps[RT_MAP_EMISSION], RT_NONE);
+    EXPECT_EQ(glowing.maps[glows.maps[RT_MAP_EMISSION]].matrix[0], 2);
+    const Scene normal = read("norm four.ppm");
+    EXPECT_EQ(normal.textures[normal.maps[normal.materials.back().maps[RT_MAP_NORMAL]].texture].flags, RT_TEXTURE_LINEAR);
+    EXPECT_EQ(normal.texels[0] & 0xffffffu, 0x0000ffu) << "as the file has it";
+    const Scene bumped = read("map_Bump -bm 0.5 grey.ppm");
+    EXPECT_TRUE(bumped.warnings.empty()) << bumped.warnings.at(0);
+    const rt_map& bump = bumped.maps[bumped.materials.back().maps[RT_MAP_NORMAL]];
+    EXPECT_EQ(bump.scale, 0.5f);
+    // Heights 0, 1/2, 1, 1/2 along u: it rises at the second texel, by 1 over two texels, and falls at the fourth. A fiftieth
+    // of 4 texels is 0.08: the slope is 0.04.
+    const auto x = [&](size_t i) { return 2 * double(bumped.texels[i] & 255u) / 255 - 1; };
+    EXPECT_NEAR(x(0), 0, 0.005);
+    EXPECT_NEAR(x(1), -0.04, 0.005);
+    EXPECT_NEAR(x(3), 0.04, 0.005);
+    EXPECT_EQ(bumped.texels[1] >> 16 & 255u, 255u) << "z";
+    EXPECT_EQ(read("bump four.ppm").texels[0] & 0xffffffu, 0x0000ffu) << "of other colours it is a map of normals already";
+}
+
+TEST_F(MeshFiles, MtlMovesThePictureOfItsOwnFaces) {
     folder_.write("four.ppm", picture());
     folder_.write("m.mtl", "newmtl a\nmap_Kd -s 2 2 2 four.ppm\nnewmtl b\nmap_Kd -clamp on four.ppm\n");
     const Scene scene =
         import("a.obj", "mtllib m.mtl\n" + kSquare +
                             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n");
     ASSERT_EQ(scene.triangle_count(), 2u);
-    EXPECT_EQ(scene.uvs[2 * size_t(scene.triangles[2])], 2);  // the same corner in both
-    EXPECT_EQ(scene.uvs[2 * size_t(scene.triangles[4])], 1);
+    EXPECT_EQ(scene.triangles[2], scene.triangles[4]) << "the same corner in both";
+    ASSERT_EQ(scene.maps.size(), 1u);
+    EXPECT_EQ(scene.maps[0].matrix[0], 2);
+    EXPECT_EQ(scene.materials[scene.triangle_materials[0]].maps[RT_MAP_COLOR], 0u);
+    EXPECT_NE(scene.materials[scene.triangle_materials[1]].values.texture, RT_NONE);
 }
 
 TEST_F(MeshFiles, ObjKeepsFacesOfAreaZeroAndFacesBeforeVertices) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "scene/tangents.hpp"
 
 namespace clarity {
 namespace {
@@ -74,8 +75,24 @@ void add_materials(Scene& scene, bool textures) {
     scene.materials[kMirror].values.reflect = 0.7f;
     if (!textures) return;
     scene.materials[kTextured].values.texture = 0;
-    scene.textures.push_back({0, 2, 2, 0});
+    scene.textures.push_back({0, 2, 2, 0, 0, 0, 0});
     for (const uint32_t texel : {0xFF2040C0u, 0xFFE0E0E0u, 0xFF40C020u, 0xFF808080u}) scene.texels.push_back(texel);
+}
+
+// Maps, smaller pictures, second coordinates and tangents as the features say, which the textured material has.
+void add_maps(Scene& scene, const SceneFeatures& features) {
+    if (features.mips) {
+        scene.texels.push_back(0xFF909090u);
+        scene.textures[0].levels = 1;
+    }
+    if (features.uvs2) scene.uvs2 = scene.uvs;
+    const auto add = [&](rt_u32 use) {
+        scene.materials[kTextured].maps[use] = static_cast<rt_u32>(scene.maps.size());
+        scene.maps.push_back({{1, 0, 0, 0, 1, 0.5f}, 0, features.uvs2 ? 1u : 0u, 0.5f, 0});
+    };
+    if (features.maps) add(RT_MAP_OCCLUSION);
+    if (features.tangents) add(RT_MAP_NORMAL);
+    make_tangents(scene);
 }
 
 // In rows above the other objects.
@@ -100,6 +117,7 @@ Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& k
     add_floor(scene, kTextured);
     if (!features.normals) scene.normals = {};
     if (!features.uvs && !features.textures) scene.uvs = {};
+    if (features.textures) add_maps(scene, features);
     if (features.optics.cutouts) {
         scene.materials[kMatt].values.alpha = RT_ALPHA_BLEND;
         scene.materials[kMatt].values.opacity = 0.5f;

@@ -31,6 +31,8 @@ LaneKernel& loader() {
          "sampling/math.h",
          "sampling/warps.h",
          "shading/power.h",
+         "shading/textures.h",
+         "shading/maps.h",
          "shading/material.h",
          "shading/albedo_grazing.h",
          "shading/albedo_sheen.h",
@@ -40,6 +42,7 @@ LaneKernel& loader() {
          "shading/microfacets.h",
          "shading/sheen.h",
          "shading/matter.h",
+         "shading/matter_maps.h",
          "shading/layers.h",
          "shading/bsdf.h",
          "shading/bsdf_of.h"},
@@ -47,7 +50,7 @@ LaneKernel& loader() {
         "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.layers = (const global rt_layers *)(given + 10 * "
         "READS) - 8; "
         "ctx.textures = (const global rt_texture *)(given + 9 * READS);"
-        "ctx.texels = (const global uint *)(given + 9 * READS + 4);"
+        "ctx.texels = (const global uint *)(given + 9 * READS + 7);"
         "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(8)); s.tex_u = in[1]; s.tex_v = in[2];"
         "const rt_bsdf b = rt_bsdf_of(&ctx, &s, RT_MASK(in[3] > 0.5f), rt_vfloat(1.0f), RT_ALL_LANES, rt_vec_of(in[4], in[5], "
         "in[6]));"
@@ -94,8 +97,8 @@ TEST(PathMaterials, BecomeLobes) {
     std::vector<float> rows(9 * kWords);
     std::memcpy(rows.data(), materials, sizeof materials);
     // A texture of 16 texels in a row; texel k has k, 16 + k, and 255 - k.
-    rt_u32 texture[kWords] = {0, 16, 1, 0};
-    for (rt_u32 k = 0; k < 16; ++k) texture[4 + k] = k | (16 + k) << 8 | (255 - k) << 16;
+    rt_u32 texture[kWords] = {0, 16, 1, 0, 0, 0, 0};
+    for (rt_u32 k = 0; k < 16; ++k) texture[7 + k] = k | (16 + k) << 8 | (255 - k) << 16;
     rows.resize(11 * kWords);
     std::memcpy(&rows[9 * kWords], texture, sizeof texture);
     rt_layers layers = default_material().layers;

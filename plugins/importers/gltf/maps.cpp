@@ -1,0 +1,174 @@
+#include "maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt_plugin.hpp"
+#include "tolerant.hpp"
+#include "uri.hpp"
+
+namespace gltf_import {
+namespace {
+
+// A property of a material that is a texture. Sources: glTF 2.0, section 3.9, and the README of each extension.
+struct Use {
+    rt_u32 use;
+    const char *extension, *object;  // NULL: the material itself
+    const char* property;
+    rt_u32 space = RT_SPACE_LINEAR;
+    const char* scale = nullptr;  // the member of the texture's description that is rt_map_desc::scale
+};
+// Of two with the same use the first counts.
+constexpr Use kUses[] = {
+    {RT_MAP_COLOR, "KHR_materials_pbrSpecularGlossiness", nullptr, "diffuseTexture", RT_SPACE_SRGB},
+    {RT_MAP_COLOR, nullptr, "pbrMetallicRoughness", "baseColorTexture", RT_SPACE_SRGB},
+    {RT_MAP_EMISSION, nullptr, nullptr, "emissiveTexture", RT_SPACE_SRGB},
+    {RT_MAP_NORMAL, nullptr, nullptr, "normalTexture", RT_SPACE_LINEAR, "scale"},
+    {RT_MAP_OCCLUSION, nullptr, nullptr, "occlusionTexture", RT_SPACE_LINEAR, "strength"},
+};
+
+Value owner_of(const Value& material, const Use& use) {
+    if (use.extension) return material.object("extensions").object(use.extension);
+    return use.object ? material.object(use.object) : material;
+}
+
+// Calls body(use, description of the texture) for each texture of a material.
+template <class Body>
+void each_use(const Value& material, const Body& body) {
+    std::vector<rt_u32> seen;
+    for (const Use& use : kUses) {
+        const Value owner = owner_of(material, use);
+        if (!owner.has(use.property) || std::find(seen.begin(), seen.end(), use.use) != seen.end()) continue;
+        seen.push_back(use.use);
+        body(use, owner[use.property]);
+    }
+}
+
+uint64_t set_of(const Value& info) {
+    const Value transform = info.object("extensions").object("KHR_texture_transform");
+    return transform.count("texCoord", info.count("texCoord", 0));
+}
+
+// KHR_texture_transform: translation * rotation * scale, counter-clockwise, of coordinates whose v points down. The host's v
+// points up from the lower edge: v' = 1 - v on both sides.
+void read_transform(const Value& info, rt_map_desc& out) {
+    const Value transform = info.object("extensions").object("KHR_texture_transform");
+    const std::array<double, 2> offset = transform.numbers<2>("offset", {0, 0}), scale = transform.numbers<2>("scale", {1, 1});
+    const double angle = transform.number("rotation", 0), c = std::cos(angle), s = std::sin(angle);
+    const double m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+    const double up[6] = {m[0], -m[1], m[1] + m[2], -m[3], m[4], 1 - m[4] - m[5]};
+    for (int k = 0; k < 6; ++k) out.matrix[k] = static_cast<float>(up[k]);
+}
+
+// Paths out of the folder are passed on as they are: the host finds pictures by their names alone, too.
+std::string image_path(const Value& uri, const std::string& folder) {
+    try {
+        return file_of_uri(uri, folder);
+    } catch (const Error&) {
+        return percent_decoded(uri.text());
+    }
+}
+
+}  // namespace
+
+Maps::Maps(const Document& document, Accessors& accessors, const rt_scene_sink& sink)
+    : accessors_(accessors),
+      folder_(document.folder()),
+      textures_(spared_list(document, "textures", sink)),
+      images_(spared_list(document, "images", sink)),
+      samplers_(spared_list(document, "samplers", sink)),
+      sink_(sink) {}
+
+TextureSets Maps::sets(const Value& material) const {
+    TextureSets sets;
+    try {
+        each_use(material, [&](const Use&, const Value& info) {
+            try {
+                sets.push_back(set_of(info));
+            } catch (const Error&) {
+            }
+        });
+    } catch (const Error&) {
+    }
+    std::sort(sets.begin(), sets.end());
+    sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+    if (sets.empty()) sets.push_back(0);
+    if (sets.size() > kMostSets) sets.resize(kMostSets);
+    return sets;
+}
+
+std::vector<rt_map_desc> Maps::read(const Value& material, bool emits) {
+    const TextureSets known = sets(material);
+    std::vector<rt_map_desc> maps;
+    each_use(material, [&](const Use& use, const Value& info) {
+        if (use.use == RT_MAP_EMISSION && !emits) return;
+        spared(sink_, "the material stays without that texture", [&] {
+            rt_map_desc out = rt::map(use.use, texture(info, use.space));
+            spared(sink_, "the texture lies as the coordinates say", [&] { read_transform(info, out); });
+            spared(sink_, "the first set is taken", [&] {
+                const auto at = std::find(known.begin(), known.end(), set_of(info));
+                if (at == known.end())
+                    info["texCoord"].refuse("one of the " + std::to_string(kMostSets) + " sets that a material may use");
+                out.set = static_cast<rt_u32>(at - known.begin());
+            });
+            if (use.scale) out.scale = static_cast<float>(info.number(use.scale, 1));
+            if (out.texture != RT_NONE) maps.push_back(out);
+        });
+    });
+    return maps;
+}
+
+rt_u32 Maps::texture(const Value& info, rt_u32 space) {
+    if (!info.has("index")) return RT_NONE;
+    const Value texture = textures_[info["index"].index(textures_)];
+    const auto image = texture.index("source", images_);
+    if (!image) {
+        // Only an extension names an image, of a kind that the host does not read (WebP, KTX).
+        const std::string text = texture.path() + " has no 'source', so the material stays without it";
+        return rt::warn(sink_, text), RT_NONE;
+    }
+    rt_texture_desc look{};
+    look.struct_bytes = sizeof look;
+    look.space = space;
+    spared(sink_, "the texture repeats", [&] {
+        const auto sampler = texture.index("sampler", samplers_);
+        if (!sampler) return;
+        constexpr uint64_t kNearest = 9728;
+        look.wrap_u = wrap_mode(samplers_[*sampler], "wrapS");
+        look.wrap_v = wrap_mode(samplers_[*sampler], "wrapT");
+        if (samplers_[*sampler].count("magFilter", 0) == kNearest) look.filter = RT_FILTER_NEAREST;
+    });
+    const auto known = ids_.insert({{*image, look.wrap_u, look.wrap_v, space, look.filter}, RT_NONE});
+    rt_u32& id = known.first->second;
+    if (known.second) spared(sink_, "the image is left out", [&] { id = add_image(images_[*image], look); });
+    return id;
+}
+
+rt_u32 Maps::wrap_mode(const Value& sampler, const char* key) const {
+    constexpr std::pair<uint64_t, rt_u32> kModes[] = {{10497, RT_WRAP_REPEAT}, {33071, RT_WRAP_CLAMP}, {33648, RT_WRAP_MIRROR}};
+    const uint64_t code = sampler.count(key, 10497);
+    for (const auto& [known, mode] : kModes)
+        if (known == code) return mode;
+    sampler[key].refuse("10497 (repeat), 33071 (clamp to edge) or 33648 (mirrored repeat)");
+}
+
+rt_u32 Maps::add_image(const Value& image, rt_texture_desc out) {
+    std::string bytes_or_path;
+    std::string_view bytes;
+    if (image.has("bufferView")) {
+        bytes = accessors_.view(image["bufferView"]);
+    } else if (const Value uri = image["uri"]; decode_data_uri(uri, bytes_or_path)) {
+        bytes = bytes_or_path;
+    } else {
+        // The host decides what may be read, and looks in the usual places for textures.
+        bytes_or_path = image_path(uri, folder_);
+        out.path = bytes_or_path.c_str();
+        return sink_.texture(sink_.ctx, &out);
+    }
+    if (bytes.empty()) image.refuse("an empty image", "an encoded one");
+    out.bytes = reinterpret_cast<const uint8_t*>(bytes.data());
+    out.byte_count = bytes.size();
+    return sink_.texture(sink_.ctx, &out);
+}
+
+}  // namespace gltf_import

@@ -1,0 +1,426 @@
+// maps_test.cpp -- textures of all uses against closed forms: sets of coordinates, transforms, light of textures, smaller
+// pictures and maps of normals.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "images/optics.hpp"
+#include "images/path_checks.hpp"
+#include "import/sink/smaller_pictures.hpp"
+#include "render/emitters/map_mean.hpp"
+#include "render/kernels/scene_features.hpp"
+#include "scene/tangents.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+using Texels = std::vector<uint32_t>;
+constexpr uint32_t kRed = 0xff0000ffu, kGreen = 0xff00ff00u, kBlue = 0xffff0000u, kWhite = 0xffffffffu, kBlack = 0xff000000u;
+constexpr double kPi = 3.14159265358979;
+
+rt_u32 add_texture(Scene& scene, rt_u32 width, const Texels& texels, rt_u32 flags = 0) {
+    const auto first = static_cast<rt_u32>(scene.texels.size());
+    const rt_u32 height = static_cast<rt_u32>(texels.size()) / width;
+    scene.texels.append(texels.begin(), texels.end());
+    scene.textures.push_back({first, width, height, 0, flags, 0, 0});
+    return static_cast<rt_u32>(scene.textures.size() - 1);
+}
+
+rt_map& add_map(Scene& scene, rt_u32 material, rt_u32 use, rt_u32 texture, rt_u32 set = 0) {
+    scene.materials[material].maps[use] = static_cast<rt_u32>(scene.maps.size());
+    scene.maps.push_back({{1, 0, 0, 0, 1, 0}, texture, set, 1, 0});
+    return scene.maps.back();
+}
+
+// A square with corners at (0,0) and (2,2) in the xy plane, white; uv is half of the position.
+Scene square(const Affine& placed = kIdentity) {
+    TriangleMesh mesh;
+    const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0),
+                 d = mesh.add_vertex(0, 2, 0);
+    mesh.add_triangle(a, b, c);
+    mesh.add_triangle(a, c, d);
+    Scene scene = scene_of(mesh);
+    scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
+    scene.instances[0].world_from_object = placed;
+    scene.materials[0].values = diffuse(1, 1, 1);
+    return scene;
+}
+
+// Shows exactly the square, lit by ambient light of 1 and a sky of 1.
+View flat_view() {
+    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / kPi);
+    view.background = view.ambient = {1, 1, 1};
+    return view;
+}
+
+// The pictures of Whitted's tracers and of `path`, which are alike.
+std::vector<FloatImage> pictures(const Scene& scene, const View& view = flat_view()) {
+    return {trace(scene, view, 64, 64, 1, {{"lanes", "8"}}).image, trace_paths(scene, view, 16, {{"strategy", "bsdf"}}).mean};
+}
+
+std::array<float, 3> pixel(const FloatImage& image, int x, int y) {
+    const float* const p = &image.pixels[3 * (size_t(y) * image.width + x)];
+    return {p[0], p[1], p[2]};
+}
+
+void expect_color(const FloatImage& image, int x, int y, const std::array<float, 3>& wanted, double room, const char* what) {
+    const auto seen = pixel(image, x, y);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], wanted[k], room) << what << " at " << x << "," << y << ", channel " << k;
+}
+
+void expect_same(const FloatImage& a, const FloatImage& b, double room, const char* what) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    for (size_t i = 0; i < a.pixels.size(); ++i) ASSERT_NEAR(a.pixels[i], b.pixels[i], room) << what << " " << i;
+}
+
+TEST(Maps, ATextureOfOneColourIsTheFactor) {
+    const auto byte = uint32_t(188);  // 0.5029 in linear light
+    Scene mapped = square(), plain = square();
+    mapped.uvs2 = mapped.uvs;
+    add_map(mapped, 0, RT_MAP_COLOR, add_texture(mapped, 1, {0xff000000u | byte | byte << 8 | byte << 16}), 1);
+    plain.materials[0].values = diffuse(0.50289f, 0.50289f, 0.50289f);
+    const auto seen = pictures(mapped), wanted = pictures(plain);
+    for (size_t i = 0; i < seen.size(); ++i) expect_same(seen[i], wanted[i], 0.004, "colour");
+}
+
+// Coordinates of the second set are those of the first, turned by a half.
+TEST(Maps, NameTheirSetOfCoordinates) {
+    for (const rt_u32 set : {0u, 1u}) {
+        Scene scene = square();
+        scene.uvs2 = {1, 1, 0, 1, 0, 0, 1, 0};
+        scene.textures.clear();
+        rt_map& map = add_map(scene, 0, RT_MAP_COLOR, add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}), set);
+        map.matrix[2] = 1e-7f;  // no plain texture
+        for (const FloatImage& image : pictures(scene)) {
+            expect_color(image, 15, 15, set == 0 ? std::array{1.f, 0.f, 0.f} : std::array{1.f, 1.f, 1.f}, 0.06, "top left");
+            expect_color(image, 48, 15, set == 0 ? std::array{0.f, 1.f, 0.f} : std::array{0.f, 0.f, 1.f}, 0.06, "top right");
+        }
+    }
+}
+
+// A quarter of a turn counter-clockwise of the coordinates, and half a picture to the right.
+TEST(Maps, TransformTheirCoordinates) {
+    Scene scene = square();
+    rt_map& map = add_map(scene, 0, RT_MAP_COLOR, add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}));
+    const float matrix[6] = {0, -1, 0.5f, 1, 0, 0};
+    std::copy_n(matrix, 6, map.matrix);
+    // The lower left quarter of the square, (1/4, 1/4), is at (1/4, 1/4) of the picture: blue. The lower right one, (3/4, 1/4),
+    // is at (1/4, 3/4): red. The upper left one, (1/4, 3/4), is at (-1/4, 1/4), that is (3/4, 1/4): white.
+    for (const FloatImage& image : pictures(scene)) {
+        expect_color(image, 15, 48, {0, 0, 1}, 0.06, "bottom left");
+        expect_color(image, 48, 48, {1, 0, 0}, 0.06, "bottom right");
+        expect_color(image, 15, 15, {1, 1, 1}, 0.06, "top left");
+    }
+}
+
+TEST(Maps, ANearestTextureHasEdges) {
+    Scene scene = square();
+    scene.materials[0].values.texture = add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}, RT_TEXTURE_NEAREST);
+    const FloatImage image = pictures(scene)[0];
+    expect_color(image, 31, 10, {1, 0, 0}, 1e-4, "left of the edge");
+    expect_color(image, 32, 10, {0, 1, 0}, 1e-4, "right of it");
+}
+
+TEST(Maps, TexelsOfNumbersAreLinear) {
+    Scene scene = square();
+    scene.materials[0].values.texture = add_texture(scene, 1, {0xff808080u}, RT_TEXTURE_LINEAR);
+    for (const FloatImage& image : pictures(scene)) expect_color(image, 30, 30, {.50196f, .50196f, .50196f}, 1e-3, "grey");
+}
+
+TEST(Maps, OcclusionDimsAmbientLightAlone) {
+    Scene scene = square();
+    add_map(scene, 0, RT_MAP_OCCLUSION, add_texture(scene, 1, {0xff000000u}, RT_TEXTURE_LINEAR)).scale = 0.75f;
+    expect_color(trace(scene, flat_view(), 64, 64, 1).image, 30, 30, {.25f, .25f, .25f}, 1e-4, "ambient");
+    const PathPicture path = trace_paths(scene, flat_view(), 16, {{"strategy", "bsdf"}});
+    EXPECT_NEAR(path.average(), 1, 1e-3) << "paths find what hides the sky themselves";
+}
+
+// ---- light of textures
+
+// A floor, and above it a lamp that faces it, 2 x 2, with its own coordinates.
+Scene lamp(const Texels& texels, rt_u32 flags = RT_TEXTURE_NEAREST) {
+    TriangleMesh mesh;
+    const auto add = [&](double x, double y, double z) { return mesh.add_vertex(x, y, z); };
+    const rt_u32 a = add(-1, 1, -1), b = add(1, 1, -1), c = add(1, 1, 1), d = add(-1, 1, 1);
+    const rt_u32 e = add(-9, 0, -9), f = add(-9, 0, 9), g = add(9, 0, 9), h = add(9, 0, -9);
+    mesh.add_triangle(a, b, c), mesh.add_triangle(a, c, d), mesh.add_triangle(e, f, g), mesh.add_triangle(e, g, h);
+    Scene scene = scene_of(mesh);
+    scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+    scene.materials[0].values = diffuse(0, 0, 0);
+    for (float& channel : scene.materials[0].values.emission) channel = 2;
+    scene.triangle_materials.own() = {0, 0, add_material(scene, diffuse(0.8f, 0.8f, 0.8f)), 1};
+    if (!texels.empty()) add_map(scene, 0, RT_MAP_EMISSION, add_texture(scene, 2, texels, flags));
+    return scene;
+}
+PathPicture lit_floor(const Scene& scene, const char* strategy) {
+    View view = view_from({0, 0.5f, 0}, {0, 0, 0}, 20);
+    view.camera.up = {0, 0, 1};
+    view.background = {0, 0, 0};
+    return trace_paths(scene, view, 64, {{"strategy", strategy}, {"depth", "1"}, {"sampler", "independent"}});
+}
+
+TEST(EmissionMaps, HalfAWhitePictureLightsHalf) {
+    const double whole = lit_floor(lamp({}), "nee").average();
+    EXPECT_GT(whole, 0.3);
+    for (const char* strategy : {"nee", "bsdf", "mis"}) {
+        const PathPicture half = lit_floor(lamp({kWhite, kBlack, kWhite, kBlack}), strategy);
+        EXPECT_NEAR(half.average(), whole / 2, 4 * half.average_error() + 0.002) << strategy;
+        const PathPicture white = lit_floor(lamp({kWhite, kWhite, kWhite, kWhite}), strategy);
+        EXPECT_NEAR(white.average(), whole, 4 * white.average_error() + 0.002) << strategy;
+    }
+}
+
+// The lit half is on the left, so the floor below it is brighter.
+TEST(EmissionMaps, LightComesFromWhereItIs) {
+    for (const char* strategy : {"nee", "bsdf", "mis"}) {
+        Scene scene = lamp({kWhite, kBlack, kWhite, kBlack});
+        View view = view_from({0, 0.9f, 0}, {0, 0, 0}, 90);
+        view.camera.up = {0, 0, 1};
+        view.background = {0, 0, 0};
+        const PathPicture p =
+            trace_paths(scene, view, 64, {{"strategy", strategy}, {"depth", "1"}, {"sampler", "independent"}});
+        double left = 0, right = 0;
+        for (unsigned y = 0; y < p.mean.height; ++y)
+            for (unsigned x = 0; x < p.mean.width; ++x)
+                (x < p.mean.width / 2 ? left : right) += p.mean.pixels[3 * (size_t(y) * p.mean.width + x) + 1];
+        // With `up` = +z, +x is on the left of the picture.
+        EXPECT_GT(right, 1.2 * left) << strategy;
+    }
+}
+
+// As the surface of a mesh that is mirrored: the drawn point and its coordinates belong together.
+TEST(EmissionMaps, FollowAMirroredInstance) {
+    const double plain = lit_floor(lamp({kWhite, kBlack, kBlack, kBlack}), "nee").average();
+    for (const char* strategy : {"nee", "bsdf"}) {
+        Scene scene = lamp({kWhite, kBlack, kBlack, kBlack});
+        scene.instances[0].world_from_object = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+        const PathPicture mirrored = lit_floor(scene, strategy);
+        EXPECT_NEAR(mirrored.average(), plain, 4 * mirrored.average_error() + 0.01 * plain) << strategy;
+    }
+}
+
+TEST(EmissionMaps, TheMeanOfATriangleIsThatOfItsTexels) {
+    Scene scene = lamp({kWhite, kBlack, kWhite, kBlack});
+    EXPECT_NEAR(mean_of_map(scene, 0, 0), 0.5, 0.26);
+    scene.uvs = {0.01f, 0.1f, 0.2f, 0.1f, 0.2f, 0.9f, 0.01f, 0.9f, 0, 0, 0, 0, 0, 0, 0, 0};
+    EXPECT_NEAR(mean_of_map(scene, 0, 0), 1, 0.51);
+    Scene dark = lamp({kBlack, kBlack, kBlack, kBlack});
+    EXPECT_EQ(mean_of_map(dark, 0, 0), 0);
+    EXPECT_EQ(lit_floor(dark, "mis").average(), 0);
+}
+
+// ---- smaller pictures
+
+TEST(SmallerPictures, AreMeansInLinearLight) {
+    Texels texels = {kWhite, 0x00000000u, 0x00000000u, kWhite};
+    rt_texture texture = {0, 2, 2, 0, 0, 0, 0};
+    import::add_smaller_pictures(texels, texture);
+    ASSERT_EQ(texture.levels, 1u);
+    ASSERT_EQ(texels.size(), 5u);
+    EXPECT_EQ(texels[4], 0x80bcbcbcu) << "0.5 is 188 in sRGB; alpha is a plain number";
+    texels.resize(4);
+    texture = {0, 2, 2, 0, RT_TEXTURE_LINEAR, 0, 0};
+    import::add_smaller_pictures(texels, texture);
+    EXPECT_EQ(texels[4], 0x80808080u);
+}
+
+// Sides that are no powers of two: the mean of each level is that of the picture.
+TEST(SmallerPictures, KeepTheMeanOfAnySize) {
+    for (const auto& [width, height] : {std::pair(3u, 1u), std::pair(5u, 7u), std::pair(13u, 64u), std::pair(1u, 9u)}) {
+        Texels texels;
+        double mean = 0;
+        for (rt_u32 i = 0; i < width * height; ++i) {
+            const rt_u32 value = i * 7919 % 251;
+            texels.push_back(0xff000000u | value);
+            mean += double(value) / (width * height);
+        }
+        rt_texture texture = {0, width, height, 0, RT_TEXTURE_LINEAR, 0, 0};
+        import::add_smaller_pictures(texels, texture);
+        EXPECT_EQ(texel_count(texture), texels.size());
+        EXPECT_NEAR(texels.back() & 255u, mean, 1 + texture.levels) << width << " x " << height;
+    }
+}
+
+// A checker of 256 x 256 texels in 8 x 8 pixels is grey: the mean of linear light.
+TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
+    Scene scene = square();
+    Texels texels;
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 256; ++x) texels.push_back((x + y) % 2 ? kWhite : kBlack);
+    rt_texture texture = {0, 256, 256, 0, 0, 0, 0};
+    import::add_smaller_pictures(texels, texture);
+    scene.texels.own() = texels;
+    scene.textures = {texture};
+    scene.materials[0].values.texture = 0;
+    for (const auto& [tracer, lanes] : {std::pair("iterative", "8"), std::pair("wavefront", "1")}) {
+        const FloatImage image = trace(scene, flat_view(), 8, 8, 1, {{"tracer", tracer}, {"lanes", lanes}}).image;
+        for (const float channel : image.pixels) EXPECT_NEAR(channel, 0.5, 0.01) << tracer;
+    }
+    scene.textures[0].levels = 0;
+    const FloatImage sharp = trace(scene, flat_view(), 7, 7, 1).image;  // 8 pixels would each hit where four texels meet
+    EXPECT_TRUE(std::any_of(sharp.pixels.begin(), sharp.pixels.end(), [](float c) { return std::fabs(c - 0.5f) > 0.02f; }))
+        << "without them the picture depends on which texels rays hit";
+}
+
+// Seen as large as it is, the picture itself is shown. An instance of the same size, at any scale of its mesh, shows the same.
+TEST(SmallerPictures, AreNotShownUpClose) {
+    const auto checker = [](const Affine& placed) {
+        Scene scene = square(placed);
+        scene.instances[0].apart = true;
+        for (float& p : scene.positions.own()) p /= placed[0];
+        Texels texels;
+        for (int y = 0; y < 8; ++y)
+            for (int x = 0; x < 8; ++x) texels.push_back((x + y) % 2 ? kWhite : kBlack);
+        rt_texture texture = {0, 8, 8, 0, 0, 0, 0};
+        import::add_smaller_pictures(texels, texture);
+        scene.texels.own() = texels;
+        scene.textures = {texture};
+        scene.materials[0].values.texture = 0;
+        return scene;
+    };
+    for (const float scale : {1.f, 0.01f, 300.f}) {
+        const FloatImage image = trace(checker({scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0}), flat_view(), 64, 64, 1).image;
+        expect_color(image, 3, 3, {0, 0, 0}, 0.13, "a texel, but for a sixteenth along each axis");
+        expect_color(image, 11, 3, {1, 1, 1}, 0.13, "the next one");
+    }
+}
+
+TEST(SmallerPictures, OnlyScenesThatHaveThemPayForThem) {
+    Scene scene = square();
+    scene.materials[0].values.texture = add_texture(scene, 1, {kWhite});
+    EXPECT_FALSE(features_of(scene, {}).mips);
+    EXPECT_FALSE(features_of(scene, {}).maps);
+    scene.textures[0].levels = 1;
+    EXPECT_TRUE(features_of(scene, {}).mips);
+    add_map(scene, 0, RT_MAP_EMISSION, 0);
+    EXPECT_TRUE(features_of(scene, {}).maps);
+}
+
+// ---- maps of normals
+
+// A square whose map of normals is one texel: the direction (x, y, z) in its frame.
+Scene bent(double x, double y, double z, const std::vector<float>& uvs = {0, 0, 1, 0, 1, 1, 0, 1},
+           const Affine& placed = kIdentity) {
+    Scene scene = square(placed);
+    scene.uvs.own() = uvs;
+    const auto byte = [](double c) { return static_cast<uint32_t>(std::lround((c + 1) / 2 * 255)); };
+    const uint32_t texel = 0xff000000u | byte(x) | byte(y) << 8 | byte(z) << 16;
+    add_map(scene, 0, RT_MAP_NORMAL, add_texture(scene, 1, {texel}, RT_TEXTURE_LINEAR));
+    make_tangents(scene);
+    return scene;
+}
+// The light of a sun of Whitted's model from `towards`, on a white square: the cosine to the normal that is seen.
+double cosine_seen(const Scene& scene, const Point& towards, const char* tracer = "iterative") {
+    View view = flat_view();
+    view.background = view.ambient = {0, 0, 0};
+    view.lights = {whitted_light(RT_LIGHT_DIRECTIONAL, towards, {1, 1, 1})};
+    if (std::string(tracer) == "path") return trace_paths(scene, view, 1, {{"depth", "1"}}).average();
+    return trace(scene, view, 16, 16, 1, {{"tracer", tracer}}).at(7, 7)[1];
+}
+// That of the normal with these components, which 8 bits have rounded.
+double cosine_of(std::array<double, 3> n, const Point& towards) {
+    double length = 0, sum = 0;
+    for (double& c : n) c = 2 * std::lround((c + 1) / 2 * 255) / 255.0 - 1;
+    for (int k = 0; k < 3; ++k) length += n[k] * n[k], sum += n[k] * towards[k];
+    return sum / std::sqrt(length);
+}
+
+constexpr Point kSun = {0.36f, 0.48f, 0.8f};
+
+TEST(NormalMaps, TurnTheNormalAlongTheCoordinates) {
+    for (const char* tracer : {"iterative", "wavefront", "path"}) {
+        EXPECT_NEAR(cosine_seen(bent(0.5, 0, 0.8), kSun, tracer), cosine_of({0.5, 0, 0.8}, kSun), 1e-3) << tracer;
+        EXPECT_NEAR(cosine_seen(bent(-0.2, 0.6, 0.7), kSun, tracer), cosine_of({-0.2, 0.6, 0.7}, kSun), 1e-3) << tracer;
+    }
+}
+
+// x follows u and y follows v, however they lie on the square.
+TEST(NormalMaps, FollowTurnedAndMirroredCoordinates) {
+    const std::array<double, 3> n = {0.5, 0.3, 0.75};
+    const double x = n[0], y = n[1], z = n[2];
+    // u along -y, v along x: turned.
+    EXPECT_NEAR(cosine_seen(bent(x, y, z, {0, 0, 0, 1, -1, 1, -1, 0}), kSun), cosine_of({y, -x, z}, kSun), 1e-2);
+    // u along -x, v along y: mirrored.
+    EXPECT_NEAR(cosine_seen(bent(x, y, z, {0, 0, -1, 0, -1, 1, 0, 1}), kSun), cosine_of({-x, y, z}, kSun), 1e-2);
+    // u along x, v along -y.
+    EXPECT_NEAR(cosine_seen(bent(x, y, z, {0, 0, 1, 0, 1, -1, 0, -1}), kSun), cosine_of({x, -y, z}, kSun), 1e-2);
+}
+
+TEST(NormalMaps, FollowAnInstance) {
+    const double x = 0.5, y = 0.3, z = 0.75;
+    const std::vector<float> uvs = {0, 0, 1, 0, 1, 1, 0, 1};
+    // A quarter of a turn about z, and larger: still one mesh, which is flattened into the world or kept apart.
+    for (const bool apart : {false, true}) {
+        Scene scene = bent(x, y, z, uvs, {0, -3, 0, 3, 3, 0, 0, -2, 0, 0, 3, 0});
+        scene.instances[0].apart = apart;
+        EXPECT_NEAR(cosine_seen(scene, kSun), cosine_of({-y, x, z}, kSun), 1e-2) << apart;
+    }
+    // Mirrored in x: the square's front stays in front, and its u goes along -x.
+    EXPECT_NEAR(cosine_seen(bent(x, y, z, uvs, {-1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0}), kSun), cosine_of({-x, y, z}, kSun),
+                1e-2);
+}
+
+// A map that turns the picture turns what it says of directions.
+TEST(NormalMaps, FollowTheTransformOfTheirTexture) {
+    Scene scene = bent(0.5, 0.3, 0.75);
+    const float matrix[6] = {0, 2, 0, -2, 0, 0};  // the picture's right is along the surface's v, its top along -u
+    std::copy_n(matrix, 6, scene.maps[0].matrix);
+    EXPECT_NEAR(cosine_seen(scene, kSun), cosine_of({-0.3, 0.5, 0.75}, kSun), 1e-2);
+}
+
+TEST(NormalMaps, HaveAScale) {
+    Scene scene = bent(0.5, 0.2, 0.8);
+    scene.maps[0].scale = 0.5f;
+    EXPECT_NEAR(cosine_seen(scene, kSun), cosine_of({0.25, 0.1, 0.8}, kSun), 5e-3);
+    scene.maps[0].scale = 0;
+    EXPECT_NEAR(cosine_seen(scene, kSun), 0.8, 1e-3);
+}
+
+TEST(NormalMaps, AFlatOneChangesNothing) {
+    Scene flat = square(), plain = square();
+    add_map(flat, 0, RT_MAP_NORMAL, add_texture(flat, 1, {0xffff8080u}, RT_TEXTURE_LINEAR));  // 128, 128, 255
+    make_tangents(flat);
+    for (const Point& sun : {kSun, Point{0, 0.6f, 0.8f}, Point{0.8f, 0, 0.6f}})
+        EXPECT_NEAR(cosine_seen(flat, sun), cosine_seen(plain, sun), 1.0 / 255);
+}
+
+// A smooth sphere of triangles with a seam: made tangents are those along its parallels.
+TEST(NormalMaps, TangentsAreThoseOfTheCoordinates) {
+    Scene scene = square();
+    add_map(scene, 0, RT_MAP_NORMAL, add_texture(scene, 1, {0xffff8080u}, RT_TEXTURE_LINEAR));
+    make_tangents(scene);
+    Scene given = scene;
+    given.tangents.own().assign(6, 0);
+    const std::vector<float> tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
+    for (const rt_u32 triangle : {0u, 1u}) store_tangents(given, triangle, tangents, 0);
+    EXPECT_EQ(given.tangents.copy(), scene.tangents.copy());
+    EXPECT_NE(scene.tangents[0], 0u);
+    // Those of the file stay.
+    given.tangents.own().assign(6, 0);
+    for (const rt_u32 triangle : {0u, 1u}) store_tangents(given, triangle, {0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1}, 0);
+    const std::vector<rt_u32> before = given.tangents.copy();
+    make_tangents(given);
+    EXPECT_EQ(given.tangents.copy(), before);
+    EXPECT_NE(before, scene.tangents.copy());
+}
+
+// Where a mirrored half meets the other one, each triangle has the tangent of its own side.
+TEST(NormalMaps, AVertexBetweenMirroredHalvesHasTwoTangents) {
+    TriangleMesh mesh;
+    for (const double x : {-1.0, 0.0, 1.0})
+        for (const double y : {0.0, 1.0}) mesh.add_vertex(x, y, 0);
+    mesh.add_triangle(0, 2, 1), mesh.add_triangle(2, 4, 3);
+    Scene scene = scene_of(mesh);
+    scene.uvs = {1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 1};
+    add_map(scene, 0, RT_MAP_NORMAL, add_texture(scene, 1, {0xffff8080u}, RT_TEXTURE_LINEAR));
+    make_tangents(scene);
+    EXPECT_EQ(scene.tangents[0] & 1u, 1u) << "mirrored";
+    EXPECT_EQ(scene.tangents[3] & 1u, 0u);
+    const auto along_edge = [&](size_t corner) { return static_cast<int16_t>(scene.tangents[corner]) >> 1; };
+    EXPECT_EQ(along_edge(1), -16383) << "against the edge from -1 to 0";
+    EXPECT_EQ(along_edge(3), 16383) << "along the edge from 0 to 1";
+}
+
+}  // namespace
