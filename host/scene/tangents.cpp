@@ -82,7 +82,8 @@ constexpr rt_u32 kDirections[] = {RT_MAP_NORMAL, RT_MAP_CLEARCOAT_NORMAL, RT_MAP
 rt_u32 set_of(const Scene& scene, rt_u32 material) {
     for (const rt_u32 use : kDirections)
         if (const rt_u32 map = scene.materials[material].maps[use]; map != RT_NONE) return scene.maps[map].set;
-    return RT_NONE;
+    const MaterialValues& values = scene.materials[material].values;
+    return values.model == RT_MODEL_GLTF && values.layers.anisotropy > 0 ? 0 : RT_NONE;
 }
 
 class Maker {

@@ -17,9 +17,9 @@ namespace clarity {
 void store_tangents(Scene& scene, rt_u32 triangle, const std::vector<float>& tangents, rt_u32 first_vertex);
 
 // Makes the tangents of triangles that need some and have none: those whose material, or that of an instance of their mesh, has
-// a map of normals. As Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", appendix A: at each corner the directions
-// along u of the triangles with the same position, normal, coordinates and handedness, weighted by their angles. (There,
-// triangles also have to be connected by edges; here, those that only share the corner count, too.)
+// a map of normals or a grain. As Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited", appendix A: at each corner the
+// directions along u of the triangles with the same position, normal, coordinates and handedness, weighted by their angles.
+// (There, triangles also have to be connected by edges; here, those that only share the corner count, too.)
 void make_tangents(Scene& scene);
 
 }  // namespace clarity

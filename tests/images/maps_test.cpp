@@ -137,6 +137,28 @@ TEST(Maps, OcclusionDimsAmbientLightAlone) {
     EXPECT_NEAR(path.average(), 1, 1e-3) << "paths find what hides the sky themselves";
 }
 
+// Maps of the surface model of glTF: one texel of half a factor is half the factor.
+TEST(Maps, MultiplyTheSurfaceModel) {
+    const auto model = [](float factor) {
+        Scene scene = square();
+        MaterialValues& values = scene.materials[0].values;
+        values.model = RT_MODEL_GLTF;
+        values.roughness = 0.8f * factor;
+        values.layers.metallic = 0.6f * factor;
+        return scene;
+    };
+    View view = flat_view();
+    view.background = {0, 0, 0};
+    view.lights = {whitted_light(RT_LIGHT_POINT, {1, 1, 2}, {2, 2, 2})};
+    const Pairs settings = {{"depth", "1"}, {"strategy", "nee"}};
+    Scene mapped = model(1);
+    add_map(mapped, 0, RT_MAP_METALLIC_ROUGHNESS, add_texture(mapped, 1, {0xff808000u}, RT_TEXTURE_LINEAR));
+    const FloatImage seen = trace_paths(mapped, view, 4, settings).mean;
+    expect_same(seen, trace_paths(model(128 / 255.f), view, 4, settings).mean, 1e-3, "half");
+    const FloatImage whole = trace_paths(model(1), view, 4, settings).mean;
+    EXPECT_GT(std::fabs(whole.pixels[3 * (32 * 64 + 32)] - seen.pixels[3 * (32 * 64 + 32)]), 0.02) << "the factor counts";
+}
+
 // ---- light of textures
 
 // A floor, and above it a lamp that faces it, 2 x 2, with its own coordinates.

@@ -25,6 +25,19 @@ constexpr Use kUses[] = {
     {RT_MAP_EMISSION, nullptr, nullptr, "emissiveTexture", RT_SPACE_SRGB},
     {RT_MAP_NORMAL, nullptr, nullptr, "normalTexture", RT_SPACE_LINEAR, "scale"},
     {RT_MAP_OCCLUSION, nullptr, nullptr, "occlusionTexture", RT_SPACE_LINEAR, "strength"},
+    {RT_MAP_METALLIC_ROUGHNESS, nullptr, "pbrMetallicRoughness", "metallicRoughnessTexture"},
+    {RT_MAP_TRANSMISSION, "KHR_materials_transmission", nullptr, "transmissionTexture"},
+    {RT_MAP_THICKNESS, "KHR_materials_volume", nullptr, "thicknessTexture"},
+    {RT_MAP_CLEARCOAT, "KHR_materials_clearcoat", nullptr, "clearcoatTexture"},
+    {RT_MAP_CLEARCOAT_ROUGHNESS, "KHR_materials_clearcoat", nullptr, "clearcoatRoughnessTexture"},
+    {RT_MAP_CLEARCOAT_NORMAL, "KHR_materials_clearcoat", nullptr, "clearcoatNormalTexture", RT_SPACE_LINEAR, "scale"},
+    {RT_MAP_SPECULAR, "KHR_materials_specular", nullptr, "specularTexture"},
+    {RT_MAP_SPECULAR_COLOR, "KHR_materials_specular", nullptr, "specularColorTexture", RT_SPACE_SRGB},
+    {RT_MAP_SHEEN_COLOR, "KHR_materials_sheen", nullptr, "sheenColorTexture", RT_SPACE_SRGB},
+    {RT_MAP_SHEEN_ROUGHNESS, "KHR_materials_sheen", nullptr, "sheenRoughnessTexture"},
+    {RT_MAP_ANISOTROPY, "KHR_materials_anisotropy", nullptr, "anisotropyTexture"},
+    {RT_MAP_IRIDESCENCE, "KHR_materials_iridescence", nullptr, "iridescenceTexture"},
+    {RT_MAP_IRIDESCENCE_THICKNESS, "KHR_materials_iridescence", nullptr, "iridescenceThicknessTexture"},
 };
 
 Value owner_of(const Value& material, const Use& use) {
