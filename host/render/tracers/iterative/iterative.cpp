@@ -27,6 +27,7 @@ const std::vector<const char*> kOnePixel = {"shading/textures.h",
                                             "shading/material.h",
                                             "shading/cutouts.h",
                                             "tracers/iterative/ray_queue.h",
+                                            "shading/power.h",
                                             "shading/shading.h",
                                             "tracers/ray_step.h",
                                             "tracers/iterative/iterative_single.h"};
@@ -45,7 +46,7 @@ std::vector<const char*> headers_by_generations(bool recorded) {
     std::vector<const char*> headers = {"shading/textures.h", "shading/maps.h", "shading/material.h", "shading/cutouts.h",
                                         "tracers/iterative/ray_queue.h"};
     if (recorded) headers.emplace_back("tracers/inspect/recorder.h");
-    headers.emplace_back("shading/shading.h");
+    headers.insert(headers.end(), {"shading/power.h", "shading/shading.h"});
     if (recorded) headers.emplace_back("tracers/inspect/record_hits.h");
     headers.emplace_back("tracers/iterative/generations.h");
     return headers;
