@@ -145,7 +145,9 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
     uint kind = e->kind;
     *flags = 0u;
     *map = -1;
+#ifdef RT_HAS_MAPS
     for (int k = 0; k < 6; ++k) RT_LIT(RT_LIT_UV + k) = 0.0f;
+#endif
     RT_LIT(RT_LIT_PICK) = e->pick;
     RT_LIT(RT_LIT_AREA) = 0.0f;
     RT_LIT(RT_LIT_RADIUS) = 0.0f;

@@ -26,10 +26,6 @@ typedef struct rt_matter {
 #endif
 } rt_matter;
 
-#ifdef RT_HAS_MAPS
-RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vmask mine, rt_matter *m); /* in matter_maps.h */
-#endif
-
 RT_INLINE rt_matter rt_no_matter(void)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);

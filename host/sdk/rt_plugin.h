@@ -25,8 +25,8 @@
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
  *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky and sky_kind of
- *      rt_scene_sink; colors, uvs2 and tangents of meshes; space and filter of textures; maps
- *      of materials; RT_TRAVERSES_SINGLE_RAYS. */
+ *      rt_scene_sink; colors, uvs2 and tangents of meshes; space and filter of textures; maps of
+ *      materials; RT_TRAVERSES_SINGLE_RAYS. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
