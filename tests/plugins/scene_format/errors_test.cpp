@@ -53,7 +53,7 @@ const Case kCases[] = {
     {"light", "1:6: the line ends here; expected kind of light: " LIGHTS},
     {"light torch", "1:7: `torch` is no kind of light (expected: " LIGHTS ")"},
     {"light pont", "1:7: `pont` is no kind of light; did you mean `point`? (expected: " LIGHTS ")"},
-    {"light point direction 0 0 1", "1:13: unknown key `direction` (keys of light: position, color, falloff, intensity, name)"},
+    {"light point direction 0 0 1", "1:13: unknown key `direction` (keys of light: position, color, falloff, range, intensity, name)"},
     {"light spot angle 190", "1:18: `190` is out of range; expected `angle` (degrees) between 0 and 180"},
     {"light rect u 0 0 0", "1:14: the zero vector has no direction; expected another for `u` (x y z, half an edge)"},
     {"light disc radius 0", "1:19: `0` is out of range; expected `radius` (greater than 0) of 1e-12 at least"},
