@@ -185,12 +185,12 @@ typedef struct rt_texture {
 
 #define RT_MOST_NUMBERS 16
 
-/* Values that may change from frame to frame while program and scene stay the same. 276 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 288 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
-    rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
+    rt_f32 pixel_x;  /* 1 / width of the whole picture. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
     rt_f32 right[3]; /* unit vector to the right * tan(fov / 2) * width / height */
-    rt_f32 pixel_y;  /* 1 / height */
+    rt_f32 pixel_y;  /* 1 / height of the whole picture */
     rt_f32 up[3];    /* unit vector upwards * tan(fov / 2) */
     rt_u32 width;
     rt_f32 forward[3]; /* unit */
@@ -212,6 +212,8 @@ typedef struct rt_frame {
     rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
     rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
+    rt_u32 first_x, first_y; /* the film is a part of the whole picture: its first pixel there */
+    rt_u32 whole_width;      /* of the whole picture */
     rt_u32 samples;    /* `path`: of this launch, this one first; they are added to the film in their order */
     rt_u32 path_flags; /* RT_PATH_* */
     rt_f32 focus;          /* thin lens: distance along `forward` that is sharp */
