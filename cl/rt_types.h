@@ -94,7 +94,7 @@ typedef struct rt_light {
     rt_f32 cos_inner;   /* spot: cosine of the half angle within which it has its full intensity */
     rt_f32 cos_outer;   /* spot: beyond this half angle it has none. sun: cosine of the half of its angle */
     rt_f32 inner, angle; /* degrees: whole angles of which the two cosines are, as users write them; the host's */
-    rt_u32 pad;
+    rt_f32 range;       /* point, spot with falloff: there it ends; 0: nowhere */
 } rt_light;
 
 /* What emits light, for `path`: a light, an emissive primitive or the sky. The lights of the frame come first, then the sky if it

@@ -12,7 +12,7 @@
 #define RT_LIGHT_OF_SKY 0x40000001
 
 /* The emitters of all lanes. kind: RT_LIGHT_*, RT_EMITTER_SKY, or RT_EMITTER_SURFACE for a triangle.
- *   point, spot        p = position; a spot's axis is u
+ *   point, spot        p = position, radius = range; a spot's axis is u
  *   directional, sun   p = unit vector towards it
  *   rect               p = middle, u and v lead to the middles of its edges
  *   disc               p = middle, u and v are perpendicular radii
@@ -157,7 +157,7 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
         const global rt_light *light = ctx->lights + e->at;
         *flags = light->flags;
         RT_LIT_3(RT_LIT_COLOR, light->color[0], light->color[1], light->color[2]);
-        RT_LIT(RT_LIT_RADIUS) = light->radius;
+        RT_LIT(RT_LIT_RADIUS) = (1u << kind & RT_LIGHTS_POINTS) != 0u ? light->range : light->radius;
         RT_LIT(RT_LIT_INNER) = light->cos_inner;
         RT_LIT(RT_LIT_OUTER) = light->cos_outer;
         for (int k = 0; k < 3; ++k) {

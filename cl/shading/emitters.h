@@ -216,7 +216,7 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
         const rt_vec towards = rt_scale(scale, to);
         /* KHR_lights_punctual: the square of a linear ramp between the cosines of both angles. */
         const vfloat ramp = clamp((-rt_dot(lit.u, towards) - lit.cos_outer) / rt_max(lit.cos_inner - lit.cos_outer, rt_vfloat(1e-3f)), zero, one);
-        const vfloat strength = rt_select(spot, ramp * ramp, one) * rt_select(lit.falloff, one / rt_max(d2, rt_vfloat(1e-30f)), rt_vfloat(RT_PI));
+        const vfloat strength = rt_select(spot, ramp * ramp, one) * rt_select(lit.falloff, rt_fall_off(d2, lit.radius), rt_vfloat(RT_PI));
         out.towards = rt_choose(point, towards, out.towards);
         out.distance = rt_select(point, sqrt(d2), out.distance);
         light = rt_choose(point, rt_scale(strength, lit.color), light);

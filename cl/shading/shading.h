@@ -28,7 +28,7 @@ RT_INLINE vfloat rt_light_strength(const global rt_light *light, rt_vec at, rt_v
         const float width = max(light->cos_inner - light->cos_outer, 1e-3f);
         const vfloat ramp = clamp((cosine - rt_vfloat(light->cos_outer)) / rt_vfloat(width), zero, one);
         const vfloat cone = kind == RT_LIGHT_SPOT ? ramp * ramp : one;
-        return fades ? cone * rt_vfloat(by_pi) / rt_max(squared, least) : cone;
+        return fades ? cone * rt_vfloat(by_pi) * rt_fall_off(squared, rt_vfloat(light->range)) : cone;
     }
     const float radius2 = light->radius * light->radius;
     if (kind == RT_LIGHT_SPHERE) return rt_vfloat(radius2) / rt_max(squared, rt_vfloat(radius2));

@@ -33,6 +33,12 @@ Key falloff_key() {
         "`none`: not at all, as Whitted has it; the colour is an irradiance divided by pi. `square`: by the inverse square; "
         "the colour is an intensity, W/sr");
 }
+Key range_key() {
+    Key key = shown(number_key("range", offsetof(L, range), 0, kMostNumber, 0), "Range", "where light that falls off ends",
+                    "0: nowhere");
+    key.moves = Moves::length;
+    return key;
+}
 Key angle_key(const char* name, size_t offset, double max, float def, const char* help, const char* more) {
     return shown(number_key(name, offset, 0, max, def), std::strcmp(name, "inner") == 0 ? "Inner angle" : "Angle", help, more);
 }
@@ -160,14 +166,14 @@ std::vector<LightKind> make_kinds() {
     legacy.reversed_in_edits = true;
     return {
         kind(RT_LIGHT_POINT, "point", "lamp", "a point", power_of_point,
-             {place_key("position", "where it is"), color, falloff_key()}),
+             {place_key("position", "where it is"), color, falloff_key(), range_key()}),
         far_away(
             kind(RT_LIGHT_DIRECTIONAL, "directional", "directional", "parallel light", power_of_directional, {legacy, color})),
         completed(kind(RT_LIGHT_SPOT, "spot", "spot", "a point with a cone", power_of_spot,
                        {place_key("position", "where it is"), into, color,
                         angle_key("angle", angle, 180, 60, "degrees", "of the whole cone; beyond it there is no light"),
                         angle_key("inner", inner, 180, 45, "degrees", "of the cone within which it has its full intensity"),
-                        falloff_key()}),
+                        falloff_key(), range_key()}),
                   complete_spot),
         completed(far_away(kind(RT_LIGHT_SUN, "sun", "sun", "a disc in the sky", power_of_sun,
                                 {towards, irradiance, alias(light_color("color", "Irradiance", "another name of `irradiance`")),

@@ -104,11 +104,15 @@ TEST(Light, OtherKindsLightAsTheirUnitsSay) {
         rt_u32 kind, flags;
         // at: strength of a colour of 1, by the squared distance and the cosine at the light
         std::function<double(double, double)> strength;
+        float range = 0;
     };
     const double outer = std::cos(25 * pi / 180), inner = std::cos(10 * pi / 180), disc = 0.25;
     const auto ramp = [&](double cosine) { return std::pow(std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0), 2); };
     const Case cases[] = {
         {RT_LIGHT_POINT, RT_LIGHT_FALLOFF, [&](double d2, double) { return 1 / (pi * d2); }},
+        // KHR_lights_punctual: nothing beyond the range, which is 2.4 here.
+        {RT_LIGHT_POINT, RT_LIGHT_FALLOFF,
+         [&](double d2, double) { return std::max(0.0, 1 - std::pow(d2 / (2.4 * 2.4), 2)) / (pi * d2); }, 2.4f},
         {RT_LIGHT_SPOT, 0, [&](double, double cosine) { return ramp(cosine); }},
         {RT_LIGHT_SPOT, RT_LIGHT_FALLOFF, [&](double d2, double cosine) { return ramp(cosine) / (pi * d2); }},
         {RT_LIGHT_SUN, 0, [&](double, double) { return 1 / pi; }},
@@ -129,6 +133,7 @@ TEST(Light, OtherKindsLightAsTheirUnitsSay) {
         light.angle = 50;
         light.inner = 20;
         light.radius = 0.5f;
+        light.range = c.range;
         ASSERT_TRUE(make_sound(light));
         View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
         view.lights = {light};

@@ -59,16 +59,24 @@ void read_camera(Camera& camera, const std::string& text, const std::array<doubl
     camera.focus = numbers->focus;
 }
 
-bool is_number(const Key& key) {
-    return !key.alias && key.kind != RT_KEY_WORD && key.kind != RT_KEY_FLAG;
+bool is_word(const Key& key) {
+    return key.kind == RT_KEY_WORD || key.kind == RT_KEY_FLAG;
+}
+// The keys of a kind whose numbers follow its name: those before the first word. Others have edits of their own.
+std::vector<Key> listed_keys(const LightKind& kind) {
+    std::vector<Key> keys;
+    for (const Key& key : kind.keys) {
+        if (is_word(key)) break;
+        if (!key.alias) keys.push_back(key);
+    }
+    return keys;
 }
 
 // "x,y,z,r,g,b": the numbers of a kind of lights, and how many they are.
 std::string numbers_form(const LightKind& kind, size_t& count) {
     std::string form;
     count = 0;
-    for (const Key& key : kind.keys) {
-        if (!is_number(key)) continue;
+    for (const Key& key : listed_keys(kind)) {
         const char* what = count_of(key) == 1 ? key.name : key.kind == RT_KEY_COLOR ? "r,g,b" : "x,y,z";
         form += (form.empty() ? "" : ",") + std::string(what);
         count += count_of(key);
@@ -103,8 +111,7 @@ rt_light read_light_numbers(const LightKind& kind, const std::string& name, cons
     std::vector<std::string> parts = split(numbers, ',');
     if (parts.size() != count) refuse_value(name, numbers, number_word(count) + " numbers after its kind: " + form);
     size_t at = 0;
-    for (const Key& key : kind.keys) {
-        if (!is_number(key)) continue;
+    for (const Key& key : listed_keys(kind)) {
         std::string text = parts[at];
         for (size_t k = 1; k < count_of(key); ++k) text += "," + parts[at + k];
         at += count_of(key);
@@ -241,9 +248,11 @@ void add_light_words(const rt_light& light, size_t number, const std::array<doub
     const std::string name = "light." + std::to_string(number);
     std::string text = light_kind_of(light).name;
     std::vector<Word> further;
+    const size_t listed = listed_keys(light_kind_of(light)).size();
+    size_t seen = 0;
     for (const Key& key : light_kind_of(light).keys) {
         const std::array<float, 3> value = edit_value(key, light);
-        if (is_number(key))
+        if (!key.alias && seen++ < listed)
             text += "," + (key.moves == Moves::point ? point_text(value.data(), origin, ",") : value_text(key, value, ","));
         else if (!key.alias && value != key.def)
             further.push_back({name + "." + key.name, value_text(key, value, ",")});

@@ -25,9 +25,9 @@ enum class Unit { relative, physical };
 // The lights of a file. Relative ones are scaled until the brightest of them is 1; physical ones stay as they are.
 class Lights {
  public:
-    // intensity: what the colour is multiplied by. cone: of a spot.
+    // intensity: what the colour is multiplied by. cone: of a spot. range: where physical light ends; 0: nowhere.
     void add(rt_light_desc light, const std::string& name, const double (&color)[3], double intensity, Unit unit,
-             const Cone& cone = {}) {
+             const Cone& cone = {}, double range = 0) {
         for (int k = 0; k < 3; ++k) {
             const double c = color[k] * intensity;
             light.color[k] = std::isfinite(c) ? static_cast<float>(std::clamp(c, 0.0, 1e12)) : 0;
@@ -38,7 +38,7 @@ class Lights {
         const bool is_spot = light.kind == RT_LIGHT_SPOT;
         if (is_spot) added.values = {rt::value("angle", degrees(cone.angle)), rt::value("inner", degrees(cone.inner))};
         if (unit == Unit::physical && (is_spot || light.kind == RT_LIGHT_POINT))
-            added.values.push_back(rt::value("falloff", 1));
+            added.values.insert(added.values.end(), {rt::value("falloff", 1), rt::value("range", static_cast<float>(range))});
         if (light.kind == RT_LIGHT_SUN) added.values.push_back(rt::value("angle", 0));
         added.desc = light;
     }

@@ -1,6 +1,8 @@
 // views.cpp -- cameras and lights. Both look along -z of their node.
 #include "../common/views.hpp"
 
+#include <algorithm>
+
 #include "nodes.hpp"
 #include "rt_plugin.hpp"
 #include "tolerant.hpp"
@@ -57,7 +59,8 @@ void add_light(const Value& light, const NodeTree& tree, size_t node, importers:
     // The angles are those between the axis and the cone.
     const Value spot = light.object("spot");
     const importers::Cone cone = {2 * spot.number("outerConeAngle", 0.7853981633974483), 2 * spot.number("innerConeAngle", 0)};
-    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity, importers::Unit::physical, cone);
+    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity, importers::Unit::physical, cone,
+               std::clamp(light.number("range", 0), 0.0, 1e15));
 }
 
 }  // namespace

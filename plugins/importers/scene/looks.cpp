@@ -211,13 +211,16 @@ void read_light_edits(Statement& s, const std::string& key, Document& document) 
     }
     std::vector<Edit> further;
     std::string numbers = kind->id;
+    // The numbers before the first word follow the kind; other keys are edits of their own.
+    const size_t listed = static_cast<size_t>(
+        std::find_if(keys.begin(), keys.end(), [](const rt_key* key) { return is_word(*key); }) - keys.begin());
     while (!s.done()) {
         const size_t i = s.key();
         values[places[i]] = read_look(s, *keys[i]);
-        if (is_word(*keys[i])) further.push_back({key + "." + keys[i]->name, look_text(*keys[i], values[i]), s.position()});
+        if (i >= listed) further.push_back({key + "." + keys[i]->name, look_text(*keys[i], values[i]), s.position()});
     }
-    for (size_t i = 0; i < keys.size(); ++i)
-        if (!is_word(*keys[i]) && places[i] == i) numbers += "," + text_of(values[i].data(), count_of(*keys[i]));
+    for (size_t i = 0; i < listed; ++i)
+        if (places[i] == i) numbers += "," + text_of(values[i].data(), count_of(*keys[i]));
     document.edits.push_back({key, numbers, s.position()});
     document.edits.insert(document.edits.end(), further.begin(), further.end());
 }

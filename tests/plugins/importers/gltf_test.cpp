@@ -100,7 +100,7 @@ TEST_F(Gltf, LightsKeepTheirUnits) {
     model.indices({0, 1, 2});
     model["extensions"] = {{"KHR_lights_punctual",
                             {{"lights",
-                              {{{"type", "point"}, {"intensity", 800}, {"color", {1, 0.5, 0.25}}},
+                              {{{"type", "point"}, {"intensity", 800}, {"color", {1, 0.5, 0.25}}, {"range", 12.5}},
                                {{"type", "spot"}, {"intensity", 20}},
                                {{"type", "directional"}, {"intensity", 3}},
                                {{"type", "point"}}}}}},
@@ -120,6 +120,8 @@ TEST_F(Gltf, LightsKeepTheirUnits) {
     EXPECT_EQ(light(0).flags, RT_LIGHT_FALLOFF);
     EXPECT_EQ(light(0).color[0], 800);
     EXPECT_EQ(light(0).color[2], 200);
+    EXPECT_EQ(light(0).range, 12.5f);
+    EXPECT_EQ(light(1).range, 0);
     EXPECT_EQ(light(1).kind, RT_LIGHT_SPOT);
     EXPECT_EQ(light(1).flags, RT_LIGHT_FALLOFF);
     EXPECT_EQ(light(1).color[1], 20);

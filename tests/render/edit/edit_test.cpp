@@ -206,7 +206,7 @@ TEST(Edit, RefusalsNameTheAllowedValues) {
         {"light.x", "off", "counts from 0"},
         {"light.0", "beam,1,2,3,1,1,1", "point,x,y,z"},
         {"light.0", "spot,1,2,3,1,1,1", "11 numbers"},
-        {"light.0.radius", "1", "position, color, falloff"},
+        {"light.0.radius", "1", "position, color, falloff, range"},
         {"light.2.color", "1,1,1", "2 lights"},
         {"light.0", "rect,0,1,0,1,0,0,1,0,0,1,1,1", "has a size"},
         {"material.0.model", "wood", "conductor"},

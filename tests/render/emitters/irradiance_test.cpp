@@ -38,6 +38,13 @@ const Vec kUp = {0, 1, 0};
 TEST(Irradiance, PointAndSpotOfGltf) {
     // 10 cd at 2 m: 2.5 lx.
     expect_irradiance(empty_scene(), lit_by(point_light({0, 2, 0}, 10)), {0, 0, 0}, kUp, 2.5);
+    // With a range of 4 m: 1 - (2 / 4)^4 of it.
+    rt_light near = point_light({0, 2, 0}, 10);
+    near.range = 4;
+    expect_irradiance(empty_scene(), lit_by(near), {0, 0, 0}, kUp, 2.5 * 15 / 16);
+    near.range = 2;
+    LightBench beyond(empty_scene(), lit_by(near));
+    EXPECT_EQ(beyond.irradiance({0, 0, 0}, kUp, even_numbers(64, 1)), 0);
     const Point at_30 = {float(2 * std::tan(kPi / 6)), 0, 0};
     for (const double inner : {0.0, 20.0}) {
         const rt_light spot = spot_light({0, 2, 0}, {0, -1, 0}, 10, inner, 45);
