@@ -29,9 +29,9 @@ RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vma
 #ifdef RT_HAS_TANGENTS
     /* Without a map of its own the varnish is smooth, whatever is below. */
     const global rt_map *coat = RT_MAP(RT_MAP_CLEARCOAT_NORMAL);
-    rt_vec local = rt_splat(0.0f, 0.0f, 1.0f), tangent, bitangent;
-    if (coat) local = rt_mapped_normal(ctx, coat, s, mine);
-    const rt_vec placed = rt_normalize(rt_along(local.x, s->tangent, rt_along(local.y, s->bitangent, rt_scale(local.z, s->unmapped))));
+    rt_vec mapped = rt_splat(0.0f, 0.0f, 1.0f), tangent, bitangent;
+    if (coat) mapped = rt_mapped_normal(ctx, coat, s, mine);
+    const rt_vec placed = rt_normalize(rt_along(mapped.x, s->tangent, rt_along(mapped.y, s->bitangent, rt_scale(mapped.z, s->unmapped))));
     rt_basis(s->normal, &tangent, &bitangent);
     rt_turn_frame(s, s->normal, &tangent, &bitangent);
     m->coat_normal = rt_choose(mine, rt_to_local(tangent, bitangent, s->normal, placed), m->coat_normal);

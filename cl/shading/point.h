@@ -34,6 +34,14 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     p.normal = rt_scale(side, s->normal);
     /* At silhouettes an interpolated normal may point away from the viewer. Then the geometric normal replaces it. */
     p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
+#if defined(RT_HAS_TANGENTS) && defined(RT_HAS_MAPS)
+    /* A mapped normal may mirror the ray into the surface, which would be black there. It is turned until the mirrored ray grazes the
+     * surface (Keller et al. 2017, The Iray Light Transport Simulation and Rendering System, on shading normals). */
+    const rt_vec mirrored = rt_along(rt_vfloat(-2.0f) * rt_dot(p.normal, p.incoming), p.normal, p.incoming);
+    const vfloat lift = rt_vfloat(0.01f) - rt_dot(mirrored, p.geometric);
+    const vmask turns = RT_MASK(lift > zero) & RT_MASK(rt_dot(s->normal, s->unmapped) < rt_vfloat(0.9999f));
+    p.normal = rt_choose(turns, rt_normalize(rt_sub(rt_normalize(rt_along(lift, p.geometric, mirrored)), p.incoming)), p.normal);
+#endif
     p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
     const vfloat height = side * s->height;
     p.outward = rt_max(s->error - height, zero);
