@@ -107,6 +107,7 @@ const Defect kDefects[] = {
     {"sign_of_d", "hits.axes", {"hit nothing"}},
     {"rounds_boxes", "hits.edges", {"are wrong"}},
     {"not_far", "hits.distant", {"hit nothing"}},
+    {"ends_at_a_million", "hits.scales", {"hit nothing"}},
     {"not_inside", "hits.inside", {"behind the nearest"}},
     // culls a little too much
     {"culls_closely", "hits.decals", {"are lost when t_max is just behind them"}},
