@@ -70,7 +70,9 @@ typedef struct rt_packed_prim {
 #define RT_MODEL_LAMBERT 1u
 #define RT_MODEL_CONDUCTOR 2u  /* GGX, with what is scattered several times between its facets */
 #define RT_MODEL_DIELECTRIC 3u /* smooth, or rough as GGX */
-#define RT_MODEL_KINDS 4u
+#define RT_MODEL_GLTF 4u       /* glTF's metallic-roughness with its layers */
+#define RT_MODEL_UNLIT 5u      /* shows its colour where a camera or a smooth mirror sees it; neither lit nor lighting */
+#define RT_MODEL_KINDS 6u
 
 /* Flags of materials, in rt_material_desc and in the kernels' rt_material. */
 #define RT_MATERIAL_CHECKER 1u        /* a unit checkerboard of color and a third of it, in world x and z; for planes */

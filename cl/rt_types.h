@@ -58,6 +58,27 @@ typedef struct rt_material {
 #define RT_ALPHA_MASK 1u
 #define RT_ALPHA_BLEND 2u  /* the share of the surface that is there; through the rest one sees what is behind */
 
+/* What only RT_MODEL_GLTF has, one for each rt_material, whose color, roughness and ior it shares. 96 B. */
+typedef struct rt_layers {
+    rt_f32 specular_color[3]; /* of the reflection of what is no metal, straight on */
+    rt_f32 specular_weight;   /* 0..1, of that reflection */
+    rt_f32 sheen_color[3];    /* of fibres on top: their reflectance */
+    rt_f32 sheen_roughness;   /* 0..1 */
+    rt_f32 metallic;          /* 0..1, share of metal */
+    rt_f32 transmission;      /* 0..1, share of what is no metal that light goes through */
+    rt_f32 clearcoat;         /* 0..1, share of the surface with a layer of varnish of ior 1.5 */
+    rt_f32 clearcoat_roughness;
+    rt_f32 anisotropy;          /* 0..1: the roughness along the grain grows from roughness^2 to 1 with its square */
+    rt_f32 anisotropy_rotation; /* of the grain, in degrees, counter-clockwise from the tangent */
+    rt_f32 iridescence;         /* 0..1, share of the surface with a thin film */
+    rt_f32 iridescence_ior;     /* of the film */
+    rt_f32 iridescence_thickness;     /* of the film, in nm; with a texture the greatest */
+    rt_f32 iridescence_thickness_min; /* with a texture the least */
+    rt_u32 flags;                     /* RT_LAYERS_* */
+    rt_u32 pad[5];
+} rt_layers;
+#define RT_LAYERS_SOLID 1u /* the surface bounds a solid, so light that goes through is refracted; else it is a thin sheet */
+
 /* A light. What `color` is depends on the kind: see RT_LIGHT_* in rt_shared.h. 96 B. */
 typedef struct rt_light {
     rt_f32 position[3]; /* world; of an area light its middle. directional, sun: unit vector towards the light */
@@ -103,7 +124,14 @@ typedef struct rt_emitter {
 #define RT_LOBE_GLASS 4u
 #define RT_LOBE_FROSTED 8u  /* rough glass */
 #define RT_LOBE_ABSORBS 16u /* glass that takes light on its way through */
-#define RT_LOBES_ALL 31u
+#define RT_LOBE_LAYERS 32u  /* RT_MODEL_GLTF; the following bits are its own */
+#define RT_LOBE_COAT 64u
+#define RT_LOBE_SHEEN 128u
+#define RT_LOBE_THIN 256u   /* transmission by thin sheets */
+#define RT_LOBE_GRAIN 512u  /* anisotropy */
+#define RT_LOBE_FILM 1024u  /* iridescence */
+#define RT_LOBE_UNLIT 2048u /* RT_MODEL_UNLIT */
+#define RT_LOBES_ALL 4095u
 #ifdef __OPENCL_VERSION__
 #ifndef RT_LIGHTS
 #define RT_LIGHTS RT_LIGHTS_ALL
@@ -126,7 +154,7 @@ typedef struct rt_emitter_run {
     rt_u32 first_prim, first_emitter;
 } rt_emitter_run;
 
-/* The table of emitters as a whole, and the sky. 88 B. */
+/* The table of emitters as a whole, and the sky. 96 B. */
 typedef struct rt_lighting {
     rt_u32 emitter_count, cell_bits; /* the table has 2^cell_bits entries; those beyond emitter_count are cells only */
     rt_u32 run_count;                /* another run follows these, as their end */
@@ -138,6 +166,8 @@ typedef struct rt_lighting {
     rt_f32 sky_turn;                 /* by which it is turned about +Y, in turns, counter-clockwise from above */
     rt_f32 sky_color[3];             /* radiance; of a gradient at the zenith; factor of a picture */
     rt_f32 sky_horizon[3], sky_ground[3];
+    rt_u32 sky_below;                /* of RT_PICKS: how many draw a direction below a gradient's horizon */
+    rt_f32 sky_horizon_share;        /* of a gradient: mean color of horizon / (horizon + zenith) */
     rt_f32 background[3];
 } rt_lighting;
 
@@ -155,12 +185,12 @@ typedef struct rt_texture {
 
 #define RT_MOST_NUMBERS 16
 
-/* Values that may change from frame to frame while program and scene stay the same. 276 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 288 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
-    rt_f32 pixel_x;  /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
+    rt_f32 pixel_x;  /* 1 / width of the whole picture. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
     rt_f32 right[3]; /* unit vector to the right * tan(fov / 2) * width / height */
-    rt_f32 pixel_y;  /* 1 / height */
+    rt_f32 pixel_y;  /* 1 / height of the whole picture */
     rt_f32 up[3];    /* unit vector upwards * tan(fov / 2) */
     rt_u32 width;
     rt_f32 forward[3]; /* unit */
@@ -182,6 +212,8 @@ typedef struct rt_frame {
     rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
     rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
     rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
+    rt_u32 first_x, first_y; /* the film is a part of the whole picture: its first pixel there */
+    rt_u32 whole_width;      /* of the whole picture */
     rt_u32 samples;    /* `path`: of this launch, this one first; they are added to the film in their order */
     rt_u32 path_flags; /* RT_PATH_* */
     rt_f32 focus;          /* thin lens: distance along `forward` that is sharp */

@@ -9,7 +9,7 @@
  *   planar      uniform by area; density distance^2 / (area cos)
  *   sphere      uniform in the cone that it fills; from within, or from its surface, uniform in all directions
  *   sun         uniform in its cone
- *   sky         uniform in all directions, or by a picture's radiance (sky.h) */
+ *   sky         uniform in all directions, or by the radiance of a gradient or a picture (sky.h) */
 #ifndef RT_EMITTERS_H
 #define RT_EMITTERS_H
 

@@ -2,7 +2,8 @@
  *
  * A direction d sees the point u = 1/2 + atan2(d.z, d.x) / 2 pi, v = acos(d.y) / pi of a picture, v from the top: +X is in the middle, +Z a
  * quarter to the right of it. Between the middles of texels the radiance is bilinear; it repeats along u. Directions are drawn by rows and
- * then by cells of a row (ctx->sky_picks: running sums of shares of RT_PICKS), evenly in u and v within a cell. */
+ * then by cells of a row (ctx->sky_picks: running sums of shares of RT_PICKS), evenly in u and v within a cell. Directions to a gradient
+ * are drawn in proportion to its mean color, by inversion. */
 #ifndef RT_SKY_H
 #define RT_SKY_H
 
@@ -105,6 +106,38 @@ RT_INLINE rt_vec rt_draw_sky_picture(const rt_ctx *ctx, vfloat u1, vfloat u2)
 }
 #endif
 
+/* How much brighter than their mean, zenith and horizon together, a gradient is at an elevation above the horizon, of which y is the sine. */
+RT_INLINE vfloat rt_gradient_shape(const global rt_lighting *sky, vfloat y)
+{
+    const float horizon = sky->sky_horizon_share;
+    return rt_vfloat(2.0f) * fma(y, rt_vfloat(1.0f - 2.0f * horizon), rt_vfloat(horizon));
+}
+
+/* The density with which directions to a gradient are drawn. Below the horizon it is even. */
+RT_INLINE vfloat rt_gradient_density(const global rt_lighting *sky, vfloat y)
+{
+    const float below = (float)sky->sky_below * (1.0f / RT_PICKS);
+    return rt_vfloat(0.5f * RT_INVERSE_PI) *
+           rt_select(RT_MASK(y < rt_vfloat(0.0f)), rt_vfloat(below), rt_vfloat(1.0f - below) * rt_gradient_shape(sky, y));
+}
+
+RT_INLINE rt_vec rt_draw_gradient(const global rt_lighting *sky, vfloat u1, vfloat u2)
+{
+    const vfloat one = rt_vfloat(1.0f), number = rt_min(u1 * rt_vfloat((float)RT_PICKS), rt_vfloat((float)(RT_PICKS - 1)));
+    const vfloat first_above = rt_vfloat((float)sky->sky_below), middle = rt_vfloat(0.5f); /* of the part of [0, 1) that has the number */
+    const float horizon = sky->sky_horizon_share;
+    const vfloat depth = (number + middle) / rt_max(first_above, one);
+    /* The share v of the light above the horizon is below y: 2 horizon y + (1 - 2 horizon) y^2 = v. */
+    const vfloat v = (number - first_above + middle) / rt_max(rt_vfloat((float)RT_PICKS) - first_above, one);
+    const vfloat root = sqrt(rt_max(fma(v, rt_vfloat(1.0f - 2.0f * horizon), rt_vfloat(horizon * horizon)), rt_vfloat(0.0f)));
+    const vfloat height = v / rt_max(rt_vfloat(horizon) + root, rt_vfloat(1e-9f));
+    const vfloat y = rt_min(rt_max(rt_select(RT_MASK(number < first_above), -depth, height), -one), one);
+    const vfloat radius = sqrt((one - y) * (one + y));
+    vfloat sine, cosine;
+    rt_sin_cos_turns(u2, &sine, &cosine);
+    return rt_vec_of(radius * cosine, y, radius * sine);
+}
+
 /* The radiance of the sky in unit directions of the lanes, and the density with which rt_draw_sky() draws them. */
 RT_INLINE rt_vec rt_sky_radiance(const rt_ctx *ctx, rt_vec direction, vmask lanes, vfloat *density)
 {
@@ -112,9 +145,10 @@ RT_INLINE rt_vec rt_sky_radiance(const rt_ctx *ctx, rt_vec direction, vmask lane
 #ifdef RT_HAS_SKY_PICTURE
     if (sky->sky_kind == RT_SKY_PICTURE) return rt_sky_picture(ctx, direction, lanes, density);
 #endif
-    *density = rt_vfloat(0.25f * RT_INVERSE_PI);
     const rt_vec color = rt_spread(sky->sky_color);
+    *density = rt_vfloat(0.25f * RT_INVERSE_PI);
     if (sky->sky_kind == RT_SKY_CONSTANT) return color;
+    *density = rt_gradient_density(sky, direction.y);
     const rt_vec horizon = rt_spread(sky->sky_horizon);
     const rt_vec above = rt_along(rt_max(direction.y, rt_vfloat(0.0f)), rt_sub(color, horizon), horizon);
     return rt_choose(RT_MASK(direction.y < rt_vfloat(0.0f)), rt_spread(sky->sky_ground), above);
@@ -126,6 +160,7 @@ RT_INLINE rt_vec rt_draw_sky(const rt_ctx *ctx, vfloat u1, vfloat u2)
 #ifdef RT_HAS_SKY_PICTURE
     if (ctx->lighting->sky_kind == RT_SKY_PICTURE) return rt_draw_sky_picture(ctx, u1, u2);
 #endif
+    if (ctx->lighting->sky_kind == RT_SKY_GRADIENT) return rt_draw_gradient(ctx->lighting, u1, u2);
     return rt_warp_cone(u1, u2, rt_vfloat(2.0f));
 }
 

@@ -106,11 +106,12 @@ RT_INLINE void rt_camera_rays_through(const constant rt_frame *frame, vfloat px,
     r->t_min = rt_vfloat(0.0f);
 }
 
-/* Computes the camera rays through pixels (x, y) of the picture. A sample's rays go through the same point of every pixel, which
+/* Computes the camera rays through pixels (x, y) of the film. A sample's rays go through the same point of every pixel, which
  * the frame holds. So a picture does not depend on which device renders which pixel when, and packets stay coherent. */
 RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
 {
-    rt_camera_rays_through(frame, rt_to_float(x) + rt_vfloat(frame->within_x), rt_to_float(y) + rt_vfloat(frame->within_y), r);
+    rt_camera_rays_through(frame, rt_to_float(x + rt_vint((int)frame->first_x)) + rt_vfloat(frame->within_x),
+                           rt_to_float(y + rt_vint((int)frame->first_y)) + rt_vfloat(frame->within_y), r);
 }
 
 #if RT_STREAM > 1 && !RT_HAS_PLANES
@@ -119,8 +120,8 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
 RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
 {
     /* The packet's corners, one in each lane, with the x and y of rt_camera_rays(). */
-    const float4 px = convert_float(origin.x) + (float4)(0.0f, 1.0f, 0.0f, 1.0f) * convert_float(RT_PACKET_W(frame) - 1u) + frame->within_x;
-    const float4 py = convert_float(origin.y) + (float4)(0.0f, 0.0f, 1.0f, 1.0f) * convert_float(RT_PACKET_H(frame) - 1u) + frame->within_y;
+    const float4 px = convert_float(origin.x + frame->first_x) + (float4)(0.0f, 1.0f, 0.0f, 1.0f) * convert_float(RT_PACKET_W(frame) - 1u) + frame->within_x;
+    const float4 py = convert_float(origin.y + frame->first_y) + (float4)(0.0f, 0.0f, 1.0f, 1.0f) * convert_float(RT_PACKET_H(frame) - 1u) + frame->within_y;
     const float4 sx = px * (2.0f * frame->pixel_x) - 1.0f, sy = py * (-2.0f * frame->pixel_y) + 1.0f;
     float enter = 0.0f, leave = MAXFLOAT;
     for (uint k = 0; k < 3u; ++k) {

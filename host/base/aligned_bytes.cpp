@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <mutex>
 
 #include "base/physical_memory.hpp"
+#include "clarity_bvh/base/spare_blocks.hpp"
 
 namespace clarity {
 namespace {
@@ -38,58 +38,9 @@ void* map_large(size_t bytes) {
     return first + before;
 }
 
-// Freed blocks, the latest one last. A block is reused only for exactly its size. Thread-safe.
-class SpareBlocks {
- public:
-    void* take(size_t bytes) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        for (size_t i = count_; i-- > 0;)
-            if (blocks_[i].bytes == bytes) return remove(i);
-        return nullptr;
-    }
-    void give(void* p, size_t bytes) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        const size_t most = AlignedBytes::most_kept();
-        if (bytes > most) {
-            munmap(p, bytes);
-            return;
-        }
-        if (bytes >= kLargePage) madvise(p, bytes, MADV_FREE);  // the system may take the pages, and reads then give zeros
-        while (count_ == kMost || sum_ + bytes > most) {
-            const size_t oldest = blocks_[0].bytes;
-            munmap(remove(0), oldest);
-        }
-        blocks_[count_++] = {p, bytes};
-        sum_ += bytes;
-    }
-    size_t sum() {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        return sum_;
-    }
-
- private:
-    struct Block {
-        void* p;
-        size_t bytes;
-    };
-    static constexpr size_t kMost = 24;
-
-    void* remove(size_t i) {
-        void* const p = blocks_[i].p;
-        sum_ -= blocks_[i].bytes;
-        std::copy(blocks_ + i + 1, blocks_ + count_, blocks_ + i);
-        --count_;
-        return p;
-    }
-
-    std::mutex mutex_;
-    Block blocks_[kMost];
-    size_t count_ = 0, sum_ = 0;
-};
-
-// Never destroyed, because static objects may still free memory after main.
-SpareBlocks& spare_blocks() {
-    static SpareBlocks& blocks = *new SpareBlocks;
+bvh::SpareBlocks& spare_blocks() {
+    static bvh::SpareBlocks& blocks =
+        *new bvh::SpareBlocks(AlignedBytes::most_kept(), [](void* p, size_t bytes) { munmap(p, bytes); });
     return blocks;
 }
 

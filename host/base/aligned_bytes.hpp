@@ -40,7 +40,7 @@ class AlignedBytes {
 
     // Freed mapped blocks are kept for the next build of the same scene, the latest ones first, up to this many bytes in all:
     // the system would have to clear new pages, which takes longer than the build of a large scene. It may take pages of large
-    // blocks back when memory is short.
+    // blocks back when memory is short and nobody has used them for some seconds (clarity_bvh/base/spare_blocks.hpp).
     static size_t most_kept();
     // Bytes of the freed blocks that are kept now.
     static size_t kept();

@@ -49,14 +49,17 @@ struct RenderOptions {
     bool skip_existing = false;  // pictures that are there already, with a record that fits, are not rendered again
     // Files from which an interrupted picture goes on; # as in `output`. "": none.
     std::string checkpoint, resume;
-    double every_s = 60;     // time between two checkpoints
-    bool all_aovs = false;   // --aov all, which is taken out of trace.settings: colours and layers of the first hit
-    bool verify = false;     // scene.files are records of frames: they are rendered again and compared
-    bool mpi = false;        // this process is one of several that mpirun has started
-    unsigned repeat = 1;     // how often each picture is traced, for timing
-    std::string reference;   // picture to compare with; "": none
-    std::string stats_file;  // file for the statistics; "-": stdout; "": none
-    bool watch = false;      // render again after each change of a kernel, plugin library or scene file
+    double every_s = 60;       // time between two checkpoints
+    bool all_aovs = false;     // --aov all, which is taken out of trace.settings: colours and layers of the first hit
+    bool verify = false;       // scene.files are records of frames: they are rendered again and compared
+    bool mpi = false;          // this process is one of several that mpirun has started
+    double error = 0;          // a picture ends when its estimated error is at most that; 0: after its samples
+    double time_budget_s = 0;  // a picture ends after so much time of tracing; 0: after its samples
+    unsigned repeat = 1;       // how often each picture is traced, for timing
+    std::string crop;          // x,y,width,height: the part of the picture that is rendered; "": all of it
+    std::string reference;     // picture to compare with; "": none
+    std::string stats_file;    // file for the statistics; "-": stdout; "": none
+    bool watch = false;        // render again after each change of a kernel, plugin library or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);

@@ -2,9 +2,6 @@
 //
 // Some machines have platforms without devices (Mesa's rusticl without a GPU), drivers that fail, or no driver. Each of these
 // causes one warning and never an error.
-#include <sched.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
@@ -18,6 +15,7 @@
 #include "base/lower.hpp"
 #include "base/problem.hpp"
 #include "device/pocl_cache.hpp"
+#include "device/pocl_threads.hpp"
 
 namespace clarity {
 
@@ -27,18 +25,7 @@ bool says(const std::string& text, const std::string& part) {
 
 namespace {
 
-// Lets PoCL pin its threads to cores. Otherwise two of its threads may share a core, which halves the speed of a frame of a few
-// milliseconds, because the system's scheduler needs longer than that to separate them. PoCL pins thread i to core i if it is
-// told before it starts. It aborts if it cannot use that core, so only a process that may use all cores asks for pinning. A
-// value set by the user is kept.
-void pin_pocl_threads() {
-    cpu_set_t allowed;
-    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
-    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    for (long core = 0; core < cores; ++core)
-        if (core >= CPU_SETSIZE || !CPU_ISSET(static_cast<size_t>(core), &allowed)) return;
-    setenv("POCL_AFFINITY", "1", 0);
-}
+constexpr const char* kPocl = "Portable Computing Language";
 
 // Removes the blanks and zero bytes with which drivers pad names.
 std::string trimmed(std::string text) {
@@ -92,7 +79,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsi
     info.cache_bytes = ask<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_CACHE_SIZE);
     info.local_bytes = ask<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
     info.cache_line_bytes = ask<cl_uint>(device, CL_DEVICE_GLOBAL_MEM_CACHELINE_SIZE);
-    info.pocl = says(info.platform, "Portable Computing Language");
+    info.pocl = says(info.platform, kPocl);
     info.nvidia = says(info.vendor, "NVIDIA");
     info.llvmpipe = info.platform == "rusticl" && says(info.name, "llvmpipe");
     return info;
@@ -110,8 +97,15 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
     std::string name = "platform " + std::to_string(index);
     std::vector<cl::Device> devices;
     try {
-        name += " (" + trimmed(platform.getInfo<CL_PLATFORM_NAME>()) + ")";
+        const std::vector<pid_t> before = thread_ids();
+        const std::string title = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+        name += " (" + title + ")";
         platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+        if (says(title, kPocl)) {
+            size_t units = 0;
+            for (const cl::Device& device : devices) units += ask<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
+            pin_threads_since(before, units);
+        }
         if (devices.empty()) throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
     } catch (const cl::Error& e) {
         warn(name + " is skipped: " + error_name(e.err()), e.err() == CL_DEVICE_NOT_FOUND);
@@ -136,10 +130,7 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
 std::vector<DeviceInfo> list_devices(std::vector<DeviceWarning>* warnings) {
     static std::once_flag once;
     static std::string cache_warning;  // once, and only if PoCL is there
-    std::call_once(once, [] {
-        pin_pocl_threads();
-        cache_warning = prepare_pocl_cache();
-    });
+    std::call_once(once, [] { cache_warning = prepare_pocl_cache(); });
     const auto warn = [&](const std::string& text, bool is_minor = false) {
         if (warnings) warnings->push_back({text, is_minor});
     };

@@ -25,7 +25,7 @@ struct WireInstance {
 };
 struct WireMaterial {
     uint32_t name_bytes;
-    rt_material values;
+    MaterialValues values;
 };
 struct WireLight {
     uint32_t name_bytes, node;

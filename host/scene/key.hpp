@@ -29,8 +29,10 @@ struct Key {
     bool inverted = false;               // the bit is set where the value is 0; the vector points the other way
     Moves moves = Moves::never;
     bool logarithmic = false;        // slider
+    float step = 0;                  // of a field that is dragged; 0: a slider, or a step by the scene's size
     bool alias = false;              // another name for the member of the key before it
     bool follows_model = false;      // the model of a material changes it, too
+    rt_u32 models = 0;               // 1 << RT_MODEL_* of the models that have it; 0: of all
     bool reversed_in_edits = false;  // edits have the opposite vector, as those of older versions do
 };
 

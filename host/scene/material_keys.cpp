@@ -9,7 +9,7 @@ namespace {
 
 using M = rt_material;
 
-constexpr const char* kModels[] = {"whitted", "lambert", "conductor", "dielectric", nullptr};
+constexpr const char* kModels[] = {"whitted", "lambert", "conductor", "dielectric", "gltf", "unlit", nullptr};
 constexpr const char* kAlphas[] = {"opaque", "mask", "blend", nullptr};
 
 // More than a surface can send back, but files have such colours. A colour of 8 bits a channel is beyond it.
@@ -24,14 +24,56 @@ Key on_log_scale(Key key) {
     return key;
 }
 
-std::vector<Key> make_keys() {
+// A key of rt_layers.
+Key of_layers(Key key) {
+    key.offset += sizeof(M);
+    key.models = 1u << RT_MODEL_GLTF;
+    return key;
+}
+
+std::vector<Key> layer_keys() {
+    using L = rt_layers;
+    // Khronos' specification of glTF 2.0, appendix B, and of its extensions KHR_materials_*.
     return {
+        shown(number_key("metallic", offsetof(L, metallic), 0, 1, 0), "Metallic", "share of metal",
+              "whose reflectance is `color`"),
+        shown(number_key("specular_weight", offsetof(L, specular_weight), 0, 1, 1), "Reflection",
+              "weight of what a surface that is no metal reflects"),
+        shown(color_key("specular_color", offsetof(L, specular_color), kMostColor, 1), "Reflection colour", "r g b",
+              "of that reflection, straight on"),
+        shown(number_key("clearcoat", offsetof(L, clearcoat), 0, 1, 0), "Clearcoat",
+              "share that has a layer of varnish on top"),
+        shown(number_key("clearcoat_roughness", offsetof(L, clearcoat_roughness), 0, 1, 0), "Coat roughness", "of the varnish"),
+        shown(color_key("sheen_color", offsetof(L, sheen_color), 1, 0), "Sheen", "r g b",
+              "reflectance of fibres on top, as of velvet"),
+        shown(number_key("sheen_roughness", offsetof(L, sheen_roughness), 0, 1, 0), "Sheen roughness", "of the fibres"),
+        shown(number_key("transmission", offsetof(L, transmission), 0, 1, 0), "Transmission",
+              "share of light that goes through what is no metal"),
+        shown(flag_key("thin", offsetof(L, flags), RT_LAYERS_SOLID, true), "Thin",
+              "whether it is a sheet that light goes straight through", "otherwise it bounds a solid that refracts by `ior`"),
+        shown(number_key("anisotropy", offsetof(L, anisotropy), 0, 1, 0), "Anisotropy", "strength",
+              "how much wider highlights are along the grain"),
+        shown(number_key("anisotropy_rotation", offsetof(L, anisotropy_rotation), -360, 360, 0), "Grain", "angle in degrees",
+              "of the grain, counter-clockwise from the tangent"),
+        shown(number_key("iridescence", offsetof(L, iridescence), 0, 1, 0), "Iridescence",
+              "share that has a film of the thickness of a wave of light"),
+        shown(number_key("iridescence_ior", offsetof(L, iridescence_ior), 1e-3, 100, 1.3f), "Film index",
+              "index of refraction of the film"),
+        shown(number_key("iridescence_thickness", offsetof(L, iridescence_thickness), 0, 1e5, 400), "Film thickness",
+              "in nanometres; where a texture has it, the greatest"),
+        shown(number_key("iridescence_thickness_min", offsetof(L, iridescence_thickness_min), 0, 1e5, 100), "Film least",
+              "least thickness, where a texture has it"),
+    };
+}
+
+std::vector<Key> make_keys() {
+    std::vector<Key> keys = {
         shown(word_key("model", offsetof(M, model), 0, kModels), "Model", "what `path` takes the surface for",
-              "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `whitted` is the mixture "
-              "below"),
+              "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `gltf` has the layers of "
+              "glTF; `unlit` shows its colour and neither gets nor gives light; `whitted` is the mixture below"),
         shown(color_key("color", offsetof(M, color), kMostColor, 0.7f), "Colour", "r g b",
               "share of light that is scattered; also tints what is refracted. Of a conductor: what it mirrors straight on"),
-        shown(number_key("roughness", offsetof(M, roughness), 0, 1, 0), "Roughness", "of a conductor or dielectric",
+        shown(number_key("roughness", offsetof(M, roughness), 0, 1, 0), "Roughness", "of a conductor, dielectric or `gltf`",
               "0 is smooth; GGX with alpha = roughness^2"),
         of_model(shown(number_key("reflect", offsetof(M, reflect), 0, 1, 0), "Mirror", "share that is mirrored")),
         of_model(shown(number_key("refract", offsetof(M, refract), 0, 1, 0), "Refraction",
@@ -59,15 +101,32 @@ std::vector<Key> make_keys() {
         shown(flag_key("checker", offsetof(M, flags), RT_MATERIAL_CHECKER), "Checker", "whether it is a board of unit squares",
               "in world x and z, of `color` and a third of it; for floors"),
     };
+    for (const Key& key : layer_keys()) keys.push_back(of_layers(key));
+    return keys;
+}
+
+// Whitted's share of the layers of glTF: a smooth metal mirrors, a rough one is diffuse in its own colour.
+void show_layers(MaterialValues& m) {
+    const float smooth = 1 - m.roughness, metallic = m.layers.metallic;
+    m.refract = m.layers.transmission;
+    m.reflect = std::min(metallic * smooth, 1 - m.refract);
+    // Blinn's exponent for a GGX roughness (alpha = roughness^2): 2 / alpha^2 - 2.
+    const float alpha2 = std::max(1e-3f, m.roughness * m.roughness * m.roughness * m.roughness);
+    m.shininess = std::clamp(2 / alpha2 - 2, 1.0f, 1000.0f);
+    for (int k = 0; k < 3; ++k) m.specular[k] = smooth * (0.04f + metallic * (m.color[k] - 0.04f));
 }
 
 // What Whitted's tracers read, as the material's model has it. Unchanged if that is Whitted's own.
-rt_material whitted_view(const rt_material& material) {
-    rt_material m = material;
+MaterialValues whitted_view(const MaterialValues& material) {
+    MaterialValues m = material;
     if (m.model == RT_MODEL_WHITTED) return m;
+    if (m.model == RT_MODEL_GLTF || m.model == RT_MODEL_UNLIT) {
+        show_layers(m);
+        return m;
+    }
     m.reflect = m.model == RT_MODEL_CONDUCTOR ? 1 - m.roughness : 0.0f;
     m.refract = m.model == RT_MODEL_DIELECTRIC ? 1.0f : 0.0f;
-    const rt_material usual = default_material();
+    const MaterialValues usual = default_material();
     const bool is_smooth = m.roughness == 0, is_metal = m.model == RT_MODEL_CONDUCTOR;
     for (int k = 0; k < 3; ++k)
         m.specular[k] = m.model == RT_MODEL_DIELECTRIC ? usual.specular[k] : is_metal && !is_smooth ? m.color[k] : 0.0f;
@@ -77,7 +136,7 @@ rt_material whitted_view(const rt_material& material) {
     return m;
 }
 
-bool same_bytes(const rt_material& a, const rt_material& b) {
+bool same_bytes(const MaterialValues& a, const MaterialValues& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
@@ -97,22 +156,31 @@ const rt_primitive_kind* material_kind_for_plugins() {
     return &keys.kind;
 }
 
-rt_material default_material() {
-    rt_material m{};
+bool has_key(rt_u32 model, const Key& key) {
+    return key.models == 0 || (key.models >> model & 1u) != 0;
+}
+
+MaterialValues::MaterialValues(const rt_material& plain) : rt_material(plain), layers{} {
+    static const std::vector<Key> keys = layer_keys();
+    for (const Key& key : keys) set_value(key, &layers, key.def);
+}
+
+MaterialValues default_material() {
+    MaterialValues m;
     m.texture = RT_NONE;
     for (const Key& key : material_keys()) set_value(key, &m, key.def);
     return m;
 }
 
-void set_material_value(rt_material& material, const Key& key, const std::array<float, 3>& value) {
+void set_material_value(MaterialValues& material, const Key& key, const std::array<float, 3>& value) {
     const bool follows = same_bytes(material, whitted_view(material));
     set_value(key, &material, value);
     if (follows && !key.follows_model) material = whitted_view(material);
     if (std::strcmp(key.name, "model") == 0) material = whitted_view(material);
 }
 
-rt_material material_of(const rt_material_desc& d, std::string& problem) {
-    rt_material m = default_material();
+MaterialValues material_of(const rt_material_desc& d, std::string& problem) {
+    MaterialValues m = default_material();
     std::copy_n(d.color, 3, m.color);
     std::copy_n(d.emission, 3, m.emission);
     std::copy_n(d.specular, 3, m.specular);
@@ -141,7 +209,7 @@ rt_material material_of(const rt_material_desc& d, std::string& problem) {
     return m;
 }
 
-Problem material_fault(const rt_material& material) {
+Problem material_fault(const MaterialValues& material) {
     return fault_of(material_keys(), &material);
 }
 

@@ -93,9 +93,16 @@ struct ShapePart {
     std::array<float, RT_SHAPE_NUMBERS> numbers{};
     rt_u32 first_more = 0, more_count = 0;  // range in Scene::shape_numbers
 };
+// All numbers of a material. Keys reach both structs by their offsets from the first one.
+struct MaterialValues : rt_material {
+    MaterialValues() : MaterialValues(rt_material{}) {}
+    MaterialValues(const rt_material& plain);  // with the defaults of layers
+    rt_layers layers;
+};
+static_assert(sizeof(MaterialValues) == sizeof(rt_material) + sizeof(rt_layers), "layers follow at once");
 struct Material {
     std::string name;
-    rt_material values{};
+    MaterialValues values{};
 };
 struct Light {
     std::string name;
@@ -182,7 +189,7 @@ Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 // Box of a shape's parts in its own space.
 Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
-rt_material default_material();  // in material_keys.cpp
+MaterialValues default_material();  // in material_keys.cpp
 // A light without falloff. kind: RT_LIGHT_POINT at a position, or RT_LIGHT_DIRECTIONAL from a unit vector towards it.
 rt_light whitted_light(rt_u32 kind, const std::array<float, 3>& position, const std::array<float, 3>& color);
 

@@ -24,8 +24,8 @@
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
- *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky of rt_scene_sink; colors of
- *      meshes. */
+ *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky and sky_kind of
+ *      rt_scene_sink; colors of meshes; RT_TRAVERSES_SINGLE_RAYS. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -210,7 +210,8 @@ enum {
     RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp visit the same nodes, on GPUs */
     RT_REQUEUES_LONG_RAYS = 8, /* RT_TRAVERSE_REQUEUED: many work-items trace one long ray, on GPUs */
     RT_SPLITS_INCOHERENT = 16, /* reads ray->incoherent: traces incoherent packets ray by ray, on CPUs */
-    RT_BUILDS_GROUPS = 32      /* `build` obeys rt_build_input::wanted */
+    RT_BUILDS_GROUPS = 32,     /* `build` obeys rt_build_input::wanted */
+    RT_TRAVERSES_SINGLE_RAYS = 64 /* appended: RT_TRAVERSE traces one ray, and the host spreads packets over it, on CPUs */
 };
 /* How the time of a ray grows with the number n of primitives: like log n, as with trees, or like n. Tests and benches leave out
  * structures of linear cost where a scene is large. */
@@ -629,7 +630,7 @@ typedef struct rt_scene_sink {
     int32_t (*skin)(void *ctx, const rt_skin_desc *);
     int32_t (*vertex_frames)(void *ctx, const rt_vertex_frames *);
     /* Appended. A change of what the file holds together with the files that it loads, in the words of `clarity render --set`:
-     * "instance.3.translate" and "1,0,0". Keys are instance.N..., material.N... and light.N, counted as `clarity info` counts them.
+     * "instance.3.translate" and "1,0,0". Keys are instance.N..., material.N..., light.N and sky..., counted as `clarity info` counts them.
      * where: "FILE:LINE:COLUMN" of the statement, or NULL. Returns RT_OK, or RT_FAILED with the error recorded. */
     int32_t (*edit)(void *ctx, const char *key, const char *value, const char *where);
     /* Appended. The keys of lights of a kind: RT_LIGHT_POINT, ...; NULL: there is no such kind. And those of materials. */
@@ -638,6 +639,8 @@ typedef struct rt_scene_sink {
     /* Appended. The first file that states a sky counts. A missing or broken picture is a warning. RT_OK, or RT_FAILED with the error
      * recorded. */
     int32_t (*sky)(void *ctx, const rt_sky_desc *);
+    /* Appended. The keys of skies of a kind: RT_SKY_CONSTANT, ...; NULL: there is no such kind. */
+    const rt_primitive_kind *(*sky_kind)(void *ctx, rt_u32 kind);
 } rt_scene_sink;
 
 #define RT_IMPORTER_TAKES_CONTENT 1u /* it reads rt_host::content if there is some; others get no packed files */

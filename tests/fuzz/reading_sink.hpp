@@ -10,6 +10,7 @@
 #include "rt_plugin.h"
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
+#include "scene/sky_kinds.hpp"
 
 namespace clarity::fuzz {
 
@@ -101,6 +102,7 @@ inline ReadingSink::ReadingSink() {
     sink_.warn = [](void* ctx, const char* text) { static_cast<ReadingSink*>(ctx)->check_message(text); };
     sink_.light_kind = [](void*, rt_u32 kind) { return clarity::light_kind_for_plugins(kind); };
     sink_.material_kind = [](void*) { return clarity::material_kind_for_plugins(); };
+    sink_.sky_kind = [](void*, rt_u32 kind) { return clarity::sky_kind_for_plugins(kind); };
     sink_.primitive_kind = [](void*, rt_u32) { return static_cast<const rt_primitive_kind*>(nullptr); };
 }
 

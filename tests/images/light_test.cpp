@@ -7,6 +7,8 @@
 
 #include "images/optics.hpp"
 #include "scene/light_kinds.hpp"
+#include "support/scenes.hpp"
+#include "support/scratch.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -140,6 +142,41 @@ TEST(Light, OtherKindsLightAsTheirUnitsSay) {
             },
             1e-5, 64 * 48);
     }
+}
+
+// A file's lights give what their units say: KHR_lights_punctual's candela at 2 m above a Lambert plane of albedo 0.5, I a cos
+// / (pi d^2), and lux, E a cos / pi. With Whitted's tracer and with `path`.
+TEST(Light, OfGltfFilesInCandelaAndLux) {
+    const auto light_of = [](const std::string& type, double intensity) {
+        const Scratch folder;
+        const std::string light = "{\"type\":\"" + type + "\",\"intensity\":" + std::to_string(intensity) + "}";
+        const std::string path = folder.write(
+            "lamp.gltf",
+            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"translation\":"
+            "[0,0,2],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],\"extensions\":{"
+            "\"KHR_lights_punctual\":{\"lights\":[" +
+                light + "]}}}");
+        return load_scene(path)->lights.at(0).values;
+    };
+    for (const char* tracer : {"iterative", "path"})
+        for (const char* type : {"point", "spot", "directional"}) {
+            SCOPED_TRACE(std::string(tracer) + ", " + type);
+            // Samples of `path` are anywhere in their pixels, so it sees one point.
+            const bool is_path = std::string(tracer) == "path";
+            View view = black_view({0, 0, 1}, {0, 0, 0}, is_path ? 0.01 : 90);
+            view.lights = {light_of(type, 40)};
+            const bool is_far = std::string(type) == "directional", is_spot = std::string(type) == "spot";
+            const double pi = std::acos(-1.0), outer = std::cos(pi / 4);
+            expect_picture(
+                trace(plane_scene(), view, 32, 24, 1, {{"tracer", tracer}, {"spp", "1"}}), view,
+                [&](const Ray& line) {
+                    const Vec p = line.at(-line.origin[2] / line.direction[2]), to = Vec{0, 0, 2} - p;
+                    const double d2 = dot(to, to), cosine = is_far ? 1 : 2 / std::sqrt(d2);
+                    const double ramp = is_spot ? std::pow(std::clamp((cosine - outer) / (1 - outer), 0.0, 1.0), 2) : 1;
+                    return 0.5 * 40 / pi * ramp * cosine / (is_far ? 1 : d2);
+                },
+                2e-5, 32 * 24);
+        }
 }
 
 // The side of a light that does not emit gives nothing, and a second side does.

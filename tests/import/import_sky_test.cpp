@@ -71,6 +71,15 @@ TEST(ImportSky, TheFirstOfLoadedFilesCounts) {
     EXPECT_EQ(outer->sky.values.color[0], 5);
 }
 
+TEST(ImportSky, EditsOfLoadedFilesAreLeftOut) {
+    const Scratch folder;
+    folder.write("inner.scene", "sky constant 1 2 3\nedit sky constant strength 5\nsphere\n");
+    const ScenePtr scene = load_scene(folder.write("a.scene", "load inner.scene\nedit sky constant visible false\n"));
+    EXPECT_TRUE(warned(*scene, "edits of lights and sky are left out"));
+    ASSERT_EQ(scene->edits.size(), 2u);
+    EXPECT_EQ(scene->edits[1].key, "sky.visible");
+}
+
 TEST(ImportSky, BadPicturesAreWarnings) {
     const Scratch folder;
     const ScenePtr missing = load_scene(folder.write("a.scene", "sky gone.hdr\nsphere\n"));

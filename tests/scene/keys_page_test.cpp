@@ -1,4 +1,5 @@
-// The tables of lights and materials in docs/scene_format.md are those of the program. CLARITY_WRITE_PAGES=1 writes them.
+// The tables of lights, skies and materials in docs/scene_format.md are those of the program. CLARITY_WRITE_PAGES=1 writes
+// them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include "base/numbers.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
+#include "scene/sky_kinds.hpp"
 
 namespace clarity {
 namespace {
@@ -45,9 +47,11 @@ std::string material_table() {
     return table;
 }
 
-std::string light_table() {
-    std::string table = "| light | key | default | meaning |\n|---|---|---|---|\n";
-    for (const LightKind& kind : light_kinds()) {
+// The kinds of lights or skies, with their keys.
+template <class Kind>
+std::string kind_table(const char* what, const std::vector<Kind>& kinds) {
+    std::string table = "| " + std::string(what) + " | key | default | meaning |\n|---|---|---|---|\n";
+    for (const Kind& kind : kinds) {
         std::string first = " **" + std::string(kind.name) + "**, " + kind.help + " |";
         for (const Key& key : kind.keys) {
             table += row(key, first);
@@ -73,7 +77,11 @@ void expect_in_page(const std::string& name, const std::string& table) {
 }
 
 TEST(KeysPage, HasTheLights) {
-    expect_in_page("lights", light_table());
+    expect_in_page("lights", kind_table("light", light_kinds()));
+}
+
+TEST(KeysPage, HasTheSky) {
+    expect_in_page("sky", kind_table("sky", sky_kinds()));
 }
 
 TEST(KeysPage, HasTheMaterial) {

@@ -133,7 +133,7 @@ TEST(Keys, ALightWithoutSizeIsRefused) {
 }
 
 TEST(Keys, SharesFollowTheModelUntilTheyAreSet) {
-    rt_material m = default_material();
+    MaterialValues m = default_material();
     const auto set = [&](const char* key, float x) { set_material_value(m, material_key(key), {x, x, x}); };
     set("roughness", 0.5f);
     EXPECT_EQ(m.reflect, 0) << "Whitted's own mixture stays";
@@ -149,6 +149,30 @@ TEST(Keys, SharesFollowTheModelUntilTheyAreSet) {
     set("model", RT_MODEL_LAMBERT);
     EXPECT_EQ(m.reflect, 0);
     EXPECT_EQ(m.specular[1], 0);
+    set("model", RT_MODEL_GLTF);
+    EXPECT_EQ(m.reflect, 0) << "no metal";
+    set("metallic", 1);
+    set("roughness", 0.25f);
+    EXPECT_EQ(m.reflect, 0.75f);
+    set("transmission", 0.5f);
+    EXPECT_EQ(m.refract, 0.5f);
+    EXPECT_EQ(m.reflect, 0.5f) << "no more than is left";
+}
+
+TEST(Keys, LayersFollowThePlainValues) {
+    MaterialValues m = default_material();
+    EXPECT_EQ(m.layers.specular_weight, 1);
+    EXPECT_EQ(m.layers.iridescence_thickness, 400);
+    EXPECT_EQ(m.layers.flags, 0u) << "thin";
+    EXPECT_EQ(MaterialValues(rt_material{}).layers.iridescence_ior, 1.3f);
+    set_material_value(m, material_key("clearcoat"), {0.5f, 0, 0});
+    set_material_value(m, material_key("thin"), {0, 0, 0});
+    EXPECT_EQ(m.layers.clearcoat, 0.5f);
+    EXPECT_EQ(m.layers.flags, RT_LAYERS_SOLID);
+    m.layers.sheen_roughness = 2;
+    EXPECT_EQ(material_fault(m), "`sheen_roughness` is 2, expected from 0 to 1");
+    EXPECT_TRUE(has_key(RT_MODEL_GLTF, material_key("metallic")) && has_key(RT_MODEL_LAMBERT, material_key("color")));
+    EXPECT_FALSE(has_key(RT_MODEL_LAMBERT, material_key("metallic")));
 }
 
 }  // namespace

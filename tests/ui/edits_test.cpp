@@ -181,5 +181,31 @@ TEST_F(Edits, ASavedFileIsReadAgain) {
     ASSERT_TRUE(changes(blue)) << window->errors();
 }
 
+// The sky of `path`: each change gives the picture of the command line, is one step, and is saved.
+TEST_F(Edits, TheSkyIsEditedUndoneAndSaved) {
+    for (const char* command : {"set tracer path", "set spp 4", "edit light.0 off"}) ASSERT_EQ(window->command(command), "");
+    window->settle();
+    const Pixels before = window->picture();
+    for (const char* command :
+         {"edit sky gradient", "edit sky.zenith 0,0,4", "edit sky.horizon 1,0.5,0", "edit sky.visible false"}) {
+        SCOPED_TRACE(command);
+        const Pixels last = window->picture();
+        ASSERT_EQ(window->command(command), "");
+        window->settle();
+        EXPECT_EQ(window->state()["undo"], "Sky");
+        EXPECT_GT(difference(window->picture(), last, 8), 0.02);
+    }
+    expect_as_command();
+    const Pixels edited = window->picture();
+    const std::string saved = folder.path() + "/saved.scene";
+    ASSERT_EQ(window->command("save_scene " + saved), "");
+    for (int i = 0; i < 4; ++i) window->key("ctrl+z");
+    window->settle();
+    EXPECT_EQ(difference(window->picture(), before, 1), 0);
+    ASSERT_EQ(window->command("open " + saved), "");
+    window->settle();
+    EXPECT_LE(difference(window->picture(), edited, 1), 0);
+}
+
 }  // namespace
 }  // namespace clarity::ui

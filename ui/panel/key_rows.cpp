@@ -28,6 +28,7 @@ bool flag_row(const char* id, float& value) {
 }
 
 bool number_row(const Key& key, const char* id, float& value, float size) {
+    if (key.step > 0) return ImGui::DragFloat(id, &value, key.step, 0, 0, "%.6g");
     if (key.max >= kMostNumber) return ImGui::DragFloat(id, &value, size * 0.002f, 0, 0, "%.3g");
     return slider(id, value, static_cast<float>(key.min), static_cast<float>(key.max), "%.3f", key.logarithmic);
 }

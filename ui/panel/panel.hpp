@@ -17,6 +17,7 @@ void draw_scene_tree(Session& session, UiState& state);
 void draw_material_rows(Session& session);
 void draw_object_rows(Session& session, UiState& state);
 void draw_light_rows(Session& session, UiState& state);
+void draw_sky_rows(Session& session);
 void draw_bookmark_rows(Session& session, UiState& state);
 void draw_inspect_tab(Session& session, UiState& state);
 void draw_statistics_tab(Session& session);

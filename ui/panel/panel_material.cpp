@@ -33,9 +33,10 @@ void choose_material(Session& session, const Scene& scene, size_t current) {
     ImGui::EndCombo();
 }
 
-bool value_rows(rt_material& values, float size) {
+bool value_rows(MaterialValues& values, float size) {
     bool changed = false;
     for (const Key& key : material_keys()) {
+        if (!has_key(values.model, key)) continue;
         std::array<float, 3> value = value_of(key, &values);
         if (!key_row(key, value, size)) continue;
         set_material_value(values, key, value);
@@ -56,12 +57,12 @@ void draw_material_rows(Session& session) {
     }
     const auto index = static_cast<rt_u32>(session.selection.material);
     choose_material(session, scene, index);
-    rt_material values = material(session, index);
+    MaterialValues values = material(session, index);
     ImGui::PushID(static_cast<int>(index));
     if (value_rows(values, scene_size(session))) edited_material(session, index) = values;
     ImGui::PopID();
     if (values.texture != RT_NONE) dim_text("a texture multiplies the colour");
-    const rt_material& own = scene.materials[index].values;
+    const MaterialValues& own = scene.materials[index].values;
     const bool edited = std::memcmp(&material(session, index), &own, sizeof own) != 0;
     ImGui::BeginDisabled(!edited);
     const float half = share_of_line(2);

@@ -155,6 +155,7 @@ void draw_scene_tab(Session& session, UiState& state) {
         color_field("##background", session.desired.background.data());
         row_label("Ambient", "light that comes from everywhere; linear");
         color_field("##ambient", session.desired.ambient.data());
+        draw_sky_rows(session);
     }
 }
 

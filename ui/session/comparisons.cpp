@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/sky_kinds.hpp"
+
 namespace clarity::ui {
 namespace {
 
@@ -24,9 +26,13 @@ bool same_light(const rt_light& a, const rt_light& b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
+bool same_edited_sky(const std::optional<SkyValues>& a, const std::optional<SkyValues>& b) {
+    return a.has_value() == b.has_value() && (!a || same_sky(*a, *b));
+}
+
 bool same_view(const View& a, const View& b) {
     return same_camera(a.camera, b.camera) && a.background == b.background && a.ambient == b.ambient &&
-           same_bytes(a.lights, b.lights) && same_bytes(a.materials, b.materials);
+           same_edited_sky(a.sky, b.sky) && same_bytes(a.lights, b.lights) && same_bytes(a.materials, b.materials);
 }
 
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b) {

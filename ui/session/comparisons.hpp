@@ -1,6 +1,7 @@
 // comparisons.hpp -- decides what a change of the desired state concerns: preparation, tracing or only the display.
 #pragma once
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
+bool same_edited_sky(const std::optional<SkyValues>& a, const std::optional<SkyValues>& b);
 bool same_view(const View& a, const View& b);
 
 // Whether two requests prepare the same: equal files, kernels, devices, instances and poses, and equal settings except

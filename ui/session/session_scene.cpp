@@ -84,6 +84,7 @@ void Session::adopt_view(const EditedView& edited) {
     path_time_s_.reset();
     desired.background = view.background;
     desired.ambient = view.ambient;
+    desired.sky = view.sky;
     desired.materials = view.materials;
     desired.instances = edited.instances;
     desired.lights.clear();

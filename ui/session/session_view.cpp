@@ -47,14 +47,14 @@ void frame_selection(Session& session) {
     if (!bounds.empty) frame_bounds(session.desired.camera, bounds, picture_aspect(session.desired));
 }
 
-rt_material& edited_material(Session& session, rt_u32 index) {
+MaterialValues& edited_material(Session& session, rt_u32 index) {
     DesiredState& desired = session.desired;
     if (desired.materials.empty())
         for (const Material& material : session.ready()->loaded->scene->materials) desired.materials.push_back(material.values);
     return desired.materials.at(index);
 }
 
-const rt_material& material(const Session& session, rt_u32 index) {
+const MaterialValues& material(const Session& session, rt_u32 index) {
     const DesiredState& desired = session.desired;
     return desired.materials.empty() ? session.ready()->loaded->scene->materials.at(index).values : desired.materials.at(index);
 }

@@ -13,8 +13,8 @@ void focus_on_instance(Session& session, rt_u32 instance);
 void go_to(Session& session, const Camera& camera, const PoseTime& pose);
 void frame_selection(Session& session);  // frames the selection, or the whole scene if nothing is selected
 // The materials to edit. They are copied from the scene to `desired` at the first edit.
-rt_material& edited_material(Session& session, rt_u32 index);
-const rt_material& material(const Session& session, rt_u32 index);
+MaterialValues& edited_material(Session& session, rt_u32 index);
+const MaterialValues& material(const Session& session, rt_u32 index);
 // Unit for steps of camera and lights: the diagonal of the scene.
 float scene_size(const Session& session);
 

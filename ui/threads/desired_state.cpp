@@ -7,6 +7,7 @@ EditedView edited_view(const DesiredState& desired) {
     edited.view.camera = desired.camera;
     edited.view.background = desired.background;
     edited.view.ambient = desired.ambient;
+    edited.view.sky = desired.sky;
     edited.view.materials = desired.materials;
     for (const DesiredLight& light : desired.lights) {
         edited.view.lights.push_back(light.values);

@@ -32,14 +32,15 @@ struct DesiredState {
     Camera camera;
     std::vector<DesiredLight> lights;
     std::array<float, 3> background{}, ambient{};
-    std::vector<rt_material> materials;  // the edited materials; empty: those of the scene
-    InstanceEdits instances;             // moved and hidden
-    PoseTime pose;                       // when the scene is shown; its clip is the chosen one even while the scene is at rest
-    CameraPath camera_path;              // the camera is there when the time changes
-    std::array<double, 2> loop{};        // the seconds of the clip that are played, again and again
-    float speed = 1;                     // of the clip's clock while it plays
-    bool continuous = false;             // trace again and again, to measure
-    float resolution_scale = 1;          // factor for the picture's width and height
+    std::optional<SkyValues> sky;           // the edited sky; empty: that of the scene
+    std::vector<MaterialValues> materials;  // the edited materials; empty: those of the scene
+    InstanceEdits instances;                // moved and hidden
+    PoseTime pose;                 // when the scene is shown; its clip is the chosen one even while the scene is at rest
+    CameraPath camera_path;        // the camera is there when the time changes
+    std::array<double, 2> loop{};  // the seconds of the clip that are played, again and again
+    float speed = 1;               // of the clip's clock while it plays
+    bool continuous = false;       // trace again and again, to measure
+    float resolution_scale = 1;    // factor for the picture's width and height
     // Target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels.
     float moving_fps = kMovingFps;
 };

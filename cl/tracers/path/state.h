@@ -10,7 +10,7 @@
 typedef struct rt_path {
     vmask alive;
     vint slot;         /* number of the pixel in the packet, block by block; -1: no pixel is left for this lane */
-    vint pixel;        /* in the picture */
+    vint pixel;        /* in the whole picture */
     vint sample;       /* of the pixel */
     vint event;        /* number of scattering events behind it */
     vint first;        /* RT_FIRST_*, of the first of them; -1: none */
@@ -86,9 +86,10 @@ RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *
             if (slot[l] < 0) continue;
         }
         rt_pixel_of_slot(frame, origin, (uint)slot[l], &at);
+        at += (uint2)(frame->first_x, frame->first_y);
         xs[l] = (int)at.x;
         ys[l] = (int)at.y;
-        pixel[l] = (int)(at.y * frame->width + at.x);
+        pixel[l] = (int)(at.y * frame->whole_width + at.x);
         fresh |= 1u << l;
     }
     p->slot = rt_load(slot);
@@ -144,6 +145,13 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
 /* Whether a number is infinite or none, by its bits: compilers may take isfinite() for granted. */
 RT_INLINE bool rt_is_broken(float x) { return (as_uint(x) & 0x7f800000u) == 0x7f800000u; }
 
+/* The place in the film of a pixel of the whole picture. */
+RT_INLINE size_t rt_film_place(const constant rt_frame *frame, uint pixel)
+{
+    const uint y = pixel / frame->whole_width, x = pixel - y * frame->whole_width;
+    return (size_t)(y - frame->first_y) * frame->width + (x - frame->first_x);
+}
+
 /* Adds the light of paths that have ended to their pixels. *not_finite: counts light that is no number, which is added all the same. */
 RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, uint bits, global float4 *film, uint *not_finite)
 {
@@ -155,7 +163,7 @@ RT_INLINE void rt_end_paths(const constant rt_frame *frame, const rt_path *p, ui
     rt_store(p->sample, sample);
     for (uint l = 0; l < RT_LANES; ++l)
         if (bits >> l & 1u) {
-            rt_add_sample(film, pixels, (size_t)pixel[l], light[l], frame->adds == 0u && sample[l] == (int)frame->sample);
+            rt_add_sample(film, pixels, rt_film_place(frame, (uint)pixel[l]), light[l], frame->adds == 0u && sample[l] == (int)frame->sample);
             *not_finite += rt_is_broken(light[l].x) || rt_is_broken(light[l].y) || rt_is_broken(light[l].z) ? 1u : 0u;
         }
 }

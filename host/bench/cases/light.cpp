@@ -49,8 +49,9 @@ void describe_program(CaseState& state, LightRun& light, const Fixture::Held& he
     const std::shared_ptr<Device>& opened = state.fixture.opened(device);
     const bool nvidia = opened->info().nvidia && !opened->info().pocl;
     const KernelSource source = kernel_for(prepared, prepared.program->row);
-    const std::string text =
-        source.text + "\nkernel void rt_state_bytes(global uint *bytes) { *bytes = sizeof(rt_path) / RT_LANES; }\n";
+    // A driver says nothing of a text that it has compiled before, so each row has its own.
+    const std::string text = source.text + "\n/* " + light.sampler +
+                             " */\nkernel void rt_state_bytes(global uint *bytes) { *bytes = sizeof(rt_path) / RT_LANES; }\n";
     const BuildResult built =
         build_program(*opened, text, options_for(opened->info(), source) + (nvidia ? " -cl-nv-verbose" : ""), source.what);
     cl::Buffer bytes(opened->context(), CL_MEM_WRITE_ONLY, sizeof light.state_bytes);

@@ -1,5 +1,7 @@
 #include "bench/cases/own_entries.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -92,17 +94,28 @@ double show_frame(CaseState& state, const Settings& settings, const Fixture::Hel
     return ms;
 }
 
+// Of this process: pages that it got without reading a file.
+long minor_page_faults() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+}
+
 }  // namespace
 
 void add_build(Entry& entry, std::function<AccelData()> build) {
     const auto last = std::make_shared<BenchRecord>(entry.row);
-    entry.once = [last, build = std::move(build)] {
+    const auto faults = std::make_shared<std::vector<double>>();
+    entry.once = [last, faults, build = std::move(build)] {
+        const long before = minor_page_faults();
         const auto begin = std::chrono::steady_clock::now();
         const AccelData built = build();
+        faults->push_back(double(minor_page_faults() - before));
         describe(*last, built);
         return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
     };
     entry.finish = [=](BenchRecord& row) {
+        row.page_faults = faults->empty() ? -1 : summarize(*faults).median;
         row.build_ms = last->build_ms;
         row.pack_ms = last->pack_ms;
         row.accel_bytes = last->accel_bytes;

@@ -134,7 +134,7 @@ std::vector<std::vector<const BenchRecord*>> ours_first(std::vector<std::vector<
 }
 
 // Columns of a structure's costs, besides its build time.
-constexpr const char* kBuildKeys[] = {"mtris_per_s", "bytes_per_triangle", "sah_cost"};
+constexpr const char* kBuildKeys[] = {"mtris_per_s", "page_faults", "bytes_per_triangle", "sah_cost"};
 
 // One line per scene and structure or baseline: build costs and speed by kind of ray.
 std::string accel_table(const BenchReport& report, const std::string& suite) {

@@ -102,7 +102,8 @@ struct BenchRecord {
 
     // ---- structure
     double build_ms = 0, pack_ms = 0, compile_ms = 0;
-    double mtris_per_s = 0;  // build only: million triangles a second, builder and packing
+    double mtris_per_s = 0;   // build only: million triangles a second, builder and packing
+    double page_faults = -1;  // build only: median; -1: not known. Many if the system takes memory back between builds
     double bytes_per_triangle = 0;
     uint64_t accel_bytes = 0, nodes = 0;
     double sah_cost = 0;  // 0: the structure does not report it

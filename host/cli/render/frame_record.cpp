@@ -37,6 +37,9 @@ RecordJson options_json(const RenderOptions& options) {
     json["set"] = options.trace.sets;
     json["settings"] = options.trace.settings;
     json["all_aovs"] = options.all_aovs;
+    json["crop"] = options.crop;
+    json["error"] = options.error;
+    json["time_budget"] = options.time_budget_s;
     json["camera"] = options.trace.camera;
     json["light"] = options.trace.light;
     json["preset"] = options.trace.preset.empty() ? "" : absolute(options.trace.preset);
@@ -57,6 +60,9 @@ RenderOptions options_of(const RecordJson& json) {
     json.at("set").get_to(options.trace.sets);
     json.at("settings").get_to(options.trace.settings);
     json.at("all_aovs").get_to(options.all_aovs);
+    options.crop = json.value("crop", "");  // these three are not in records of earlier versions
+    options.error = json.value("error", 0.0);
+    options.time_budget_s = json.value("time_budget", 0.0);
     json.at("camera").get_to(options.trace.camera);
     json.at("light").get_to(options.trace.light);
     json.at("preset").get_to(options.trace.preset);
@@ -141,6 +147,9 @@ std::string render_words(const RenderOptions& options, std::optional<int> frame)
     for (const std::string& words : options.scene.import.importers) add("--importer", words);
     add("--preset", options.trace.preset);
     add("--accel", options.trace.accel);
+    add("--crop", options.crop);
+    if (options.error > 0) add("--error", exact_text(options.error));
+    if (options.time_budget_s > 0) add("--time-budget", exact_text(options.time_budget_s));
     add("--camera", options.trace.camera);
     add("--light", options.trace.light);
     for (const std::string& word : options.trace.sets) add("--set", word);

@@ -93,7 +93,7 @@ void FrameScene::place(std::optional<int> frame) {
         clip_ = clip.name;
     }
     const Settings& settings = words_.settings;
-    const float aspect = float(settings.width) / float(settings.height);
+    const float aspect = float(settings.whole_width()) / float(settings.whole_height());
     EditedView edited;
     // Moved objects move neither the camera nor the lights that a scene gets which has none.
     edited.view = make_view(is_still ? *imported_ : *scene_, aspect, options_.trace.camera, options_.trace.light);

@@ -4,6 +4,7 @@
 
 #include "base/digest.hpp"
 #include "base/numbers.hpp"
+#include "cli/render/picture_goal.hpp"
 #include "device/kernel_files.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/settings/aov.hpp"
@@ -43,6 +44,8 @@ PictureDigests::PictureDigests(FrameScene& scene, const Settings& settings, cons
     add_kernels_to(digest, *scene.imported());
     add_settings_to(digest, settings, writes_display(options.output));
     digest.add_value(options.all_aovs);
+    if (!options.crop.empty()) digest.add(options.crop);
+    if (has_goal(options)) digest.add_value(options.error), digest.add_value(options.time_budget_s);
     common_ = digest.hex();
 }
 

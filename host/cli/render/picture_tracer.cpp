@@ -52,11 +52,13 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
     const auto all = unsigned(settings_.spp);
     double device_ms = 0, wall_ms = 0;
     std::vector<DeviceShare> devices;
-    for (unsigned sample = pass.first, next = std::min(all - sample, 2u); sample < all;) {
-        const double at = pass.from + pass.share * sample / all;
+    unsigned sample = pass.first;
+    for (unsigned next = std::min(all - sample, 2u); sample < all;) {
+        // Nobody knows how many samples an error takes.
+        const double at = pass.more ? -1 : pass.from + pass.share * sample / all;
         // A short sample is one launch, during which cancelling is not checked.
-        if (!progress.report(float(at))) return {sample, true};
-        PartOf part(progress, at, pass.share * next / all);
+        if (!progress.report(float(at))) return {sample, true, false};
+        PartOf part(progress, at, pass.more ? 0 : pass.share * next / all);
         Uncancelled whole(part);
         const unsigned done = sample - pass.first;
         const bool waits = pass.between && done > 0 && wall_ms / done * next < kWaitedForMs;
@@ -64,7 +66,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         try {
             frame = trace_samples(picture, sample, next, pass.counts, waits ? static_cast<Progress&>(whole) : part);
         } catch (const Cancelled&) {
-            return {frames_.samples(), false};
+            return {frames_.samples(), false, false};
         }
         device_ms += frame.device_ms;
         wall_ms += frame.wall_ms;
@@ -81,7 +83,12 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         if (pass.between && sample < all) pass.between(sample);
         next = batch(wall_ms, sample - pass.first, all - sample);
         if (pass.at_most_doubles) next = std::min(next, sample - pass.first);
-        if (ranks_ && pass.between) {  // all ranks save the same samples
+        if (pass.more && sample < all) {
+            const unsigned more = pass.more(sample);
+            if (more == 0) break;
+            next = std::min(next, more);
+        }
+        if (ranks_ && (pass.between || pass.more)) {  // all ranks save the same samples
             const std::vector<double> of_ranks = ranks_->gather(next);
             next = unsigned(*std::min_element(of_ranks.begin(), of_ranks.end()));
         }
@@ -92,7 +99,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         stats_.frame_ms.push_back(device_ms);
         stats_.wall_ms.push_back(wall_ms);
     }
-    return {all, true};
+    return {sample, true, true};
 }
 
 // Number of samples to trace in the next batch, after `done` samples took wall_ms.

@@ -25,10 +25,13 @@ class PictureTracer {
         double from = 0, share = 1;                          // of the progress
         bool at_most_doubles = false;                        // whether `between` is called at each doubling of the samples
         std::function<void(unsigned samples)> between = {};  // if set, called after each batch, when the film is exact
+        // If set, called likewise: how many samples may follow at most before it is asked again; 0: the picture is complete.
+        std::function<unsigned(unsigned samples)> more = {};
     };
     struct Traced {
         unsigned samples = 0;  // complete ones in the film
         bool exact = true;     // no pixel of the film has more of them
+        bool whole = false;    // they are all, or enough
     };
     // ranks: other processes that trace parts of the picture; nullptr: none.
     PictureTracer(MultiFrameRenderer& frames, const Settings& settings, RenderStats& stats, Ranks* ranks)

@@ -27,6 +27,7 @@
 #include "cli/render/frame_scene.hpp"
 #include "cli/render/picture_checkpoint.hpp"
 #include "cli/render/picture_digest.hpp"
+#include "cli/render/picture_goal.hpp"
 #include "cli/render/picture_tracer.hpp"
 #include "cli/render/render_checks.hpp"
 #include "cli/render/render_progress.hpp"
@@ -56,6 +57,8 @@ class RenderJob {
           plugins_(plugins),
           bar_(options_.quiet || !is_first()),
           scene_(plugins, options_, words_, bar_) {
+        if (has_goal(options_) && !states_samples(options_)) words_.settings.spp = int(find_setting("spp")->max);
+        if (!options_.crop.empty()) crop_picture(words_.settings, options_.crop);
         stats_.files = options_.scene.files;
         stats_.settings = settings_;
     }
@@ -314,11 +317,13 @@ class RenderJob {
         // The first pass counts rays, which costs a little time, and warms up caches; timed passes come after it.
         const bool warm_up = options_.repeat > 1;
         const unsigned passes = options_.repeat + (warm_up ? 1 : 0);
-        PictureTracer::Traced traced{all, true};
-        for (unsigned pass = 0; pass < passes && traced.samples == all; ++pass)
+        PictureTracer::Traced traced{all, true, true};
+        for (unsigned pass = 0; pass < passes && traced.whole; ++pass)
             traced = trace_pass(frames, checkpoint, pass == 0, !(warm_up && pass == 0), double(pass) / passes, 1.0 / passes,
                                 progress);
-        const bool whole = traced.samples == all;
+        const bool whole = traced.whole;
+        stats_.samples = traced.samples;
+        stats_.estimated_error = goal_.reached();
         if (stats_.reference && traced.exact && traced.samples > 0) stats_.reference->offer(frames, traced.samples, true);
         bar_.clear();
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
@@ -370,9 +375,11 @@ class RenderJob {
                 if (checkpoint.saves()) checkpoint.offer(frames, samples);
                 if (stats_.reference) stats_.reference->offer(frames, samples, false);
             };
+        if (has_goal(options_)) pass.more = [&](unsigned samples) { return goal_.more(frames, samples); };
         for (;;) {
             pass.first = resumed_ = checkpoint.resume(frames, prepared_, settings_);
             if (stats_.reference) stats_.reference->begin();
+            goal_.begin(pass.first);
             try {
                 return PictureTracer(frames, settings_, stats_, mpi_).trace({prepared_, scene_, blur_.get()}, pass, progress);
             } catch (const SamplesLost&) {  // of a device that takes no further part: the other devices begin again
@@ -395,7 +402,7 @@ class RenderJob {
         if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
         FrameFile file;
         file.path = path, file.digest = frame.digest, file.frame = frame.number, file.moves = moving_;
-        file.samples = unsigned(settings_.spp), file.of_checkpoint = resumed_;
+        file.samples = stats_.samples, file.of_checkpoint = resumed_;
         file.device = devices_name(stats_.devices);
         file.has_record = records();
         file.begin = frame.begin;
@@ -403,7 +410,8 @@ class RenderJob {
         char times[96] = "";
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
-        log(LogLevel::info, path + times);
+        const std::string samples = has_goal(options_) ? "  " + plural(stats_.samples, "sample") + " a pixel" : "";
+        log(LogLevel::info, path + times + samples);
     }
 
     void report() {
@@ -440,6 +448,7 @@ class RenderJob {
     unsigned resumed_ = 0;  // samples of the picture that a checkpoint had
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;
+    PictureGoal goal_{options_, mpi_};
     std::unique_ptr<MotionBlur> blur_;  // nullptr: all samples of a picture are at one time
     RenderStats stats_;
 };

@@ -7,7 +7,10 @@
 #include "base/files/output_file.hpp"
 #include "cli/render/frame_record.hpp"
 #include "cli/render/picture_checkpoint.hpp"
+#include "cli/render/picture_goal.hpp"
 #include "render/film/image_io.hpp"
+#include "render/settings/aov.hpp"
+#include "render/settings/tracer_choice.hpp"
 
 namespace clarity {
 namespace {
@@ -48,6 +51,13 @@ void check_render_options(const RenderOptions& options, const Settings& settings
     if (options.repeat < 1 || options.repeat > kMaxRepeat)
         throw Error(Exit::usage, "--repeat " + std::to_string(options.repeat) + ": expected a number from 1 to " +
                                      std::to_string(kMaxRepeat));
+    if (options.repeat > 1 && has_goal(options))
+        throw Error(
+            Exit::usage,
+            "--repeat times the same samples, and --error and --time-budget end a picture by itself; leave one of them out");
+    if (options.error > 0 && (picture_of_tracer(settings.tracer) != kPathPicture || !find_aov(settings.aov).is_color()))
+        throw Error(Exit::usage,
+                    "--error: only colours of the tracer `path` have an estimated error; add --tracer path, or take --spp N");
     check_pose(options.pose);
     if (options.skip_existing && options.watch)
         throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");

@@ -134,7 +134,12 @@ std::string stats_json(const RenderStats& stats) {
     json["packet"] = std::to_string(used.packet_w) + "x" + std::to_string(used.packet_h);
     json["lanes"] = used.lanes;
     json["size"] = std::to_string(stats.settings.width) + "x" + std::to_string(stats.settings.height);
+    if (const Crop& crop = stats.settings.crop; crop.whole_width > 0)
+        json["crop"] = {
+            {"x", crop.x}, {"y", crop.y}, {"of", std::to_string(crop.whole_width) + "x" + std::to_string(crop.whole_height)}};
     json["spp"] = stats.settings.spp;
+    json["samples"] = stats.samples;
+    if (stats.estimated_error >= 0) json["estimated_error"] = figure(stats.estimated_error);
     json["shutter"] = stats.settings.shutter;
     json["aov"] = used.aov;
     json["shadows"] = stats.settings.shadows;

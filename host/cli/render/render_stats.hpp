@@ -32,6 +32,8 @@ struct RenderStats {
     std::vector<RankTimes> ranks;  // empty: one process renders
     double share_ms = 0, wait_to_trace_ms = 0, wait_traced_ms = 0, collect_ms = 0;
     std::shared_ptr<ReferenceRun> reference;  // null: there is none to compare with
+    unsigned samples = 0;                     // of a pixel of the last picture
+    double estimated_error = -1;              // of the last picture; negative: --error did not ask
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, not_finite = 0, overflowed = 0;  // of one frame
 };
 

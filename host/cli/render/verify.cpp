@@ -20,6 +20,9 @@ Problem difference(const PluginRegistry& plugins, const RenderOptions& asked, co
     const std::string found = digest_of_file(picture);
     if (found.empty()) return picture + " is missing or cannot be read";
     if (found != record.file_digest) return picture + " is not the file that was recorded: it was changed or damaged";
+    if (record.options.time_budget_s > 0)
+        return "--time-budget ended it after " + std::to_string(record.samples) +
+               " samples, which depends on the machine: it cannot be rendered again";
     const TemporaryFolder folder("clarity-verify");
     RenderOptions again = record.options;
     again.output = folder.path() + "/again" + std::filesystem::path(record.picture).extension().string();

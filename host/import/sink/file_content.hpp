@@ -41,7 +41,7 @@ struct FileContent {
 };
 
 // What the key of an edit changes, and the number in it: "instance.3.scale", "light.0".
-enum class EditOf { nothing, instance, material, light };
+enum class EditOf { nothing, instance, material, light, sky };
 EditOf edit_number(const std::string& key, rt_u32& number);
 // The key with another number.
 std::string with_number(const std::string& key, rt_u32 number);

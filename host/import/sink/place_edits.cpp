@@ -6,6 +6,7 @@
 namespace clarity::import {
 
 EditOf edit_number(const std::string& key, rt_u32& number) {
+    if (key == "sky" || key.rfind("sky.", 0) == 0) return EditOf::sky;
     const size_t first = key.find('.'), last = key.find('.', first + 1);
     if (first == std::string::npos || !read_number(key.substr(first + 1, last - first - 1), number)) return EditOf::nothing;
     const std::string what = key.substr(0, first);
@@ -39,6 +40,9 @@ void SceneBuilder::place_edits(const std::string& from, const FileContent& conte
         } else if (what == EditOf::material) {
             if (number > 0) number += content.first_material - 1;
             if (number >= scene_.materials.size()) refuse("materials", scene_.materials.size() - content.first_material + 1);
+        } else if (is_root && what == EditOf::sky) {
+            into.edits.push_back(std::move(edit));
+            continue;
         } else if (is_root) {
             number += static_cast<rt_u32>(lights);
         } else {
@@ -48,7 +52,8 @@ void SceneBuilder::place_edits(const std::string& from, const FileContent& conte
         edit.key = with_number(edit.key, number);
         into.edits.push_back(std::move(edit));
     }
-    if (left_out > 0) warn(from, std::to_string(left_out) + " edits of lights are left out, because another file loads it");
+    if (left_out > 0)
+        warn(from, std::to_string(left_out) + " edits of lights and sky are left out, because another file loads it");
 }
 
 }  // namespace clarity::import

@@ -10,6 +10,7 @@
 #include "scene/camera.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
+#include "scene/sky_kinds.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -111,6 +112,7 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     };
     sink_.light_kind = [](void*, rt_u32 kind) { return light_kind_for_plugins(kind); };
     sink_.material_kind = [](void*) { return material_kind_for_plugins(); };
+    sink_.sky_kind = [](void*, rt_u32 kind) { return sky_kind_for_plugins(kind); };
     offer_motion();
     sink_.edit = [](void* ctx, const char* key, const char* value, const char* where) {
         return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.edit(key, value, where); });
@@ -374,7 +376,7 @@ int32_t SceneSink::edit(const char* key, const char* value, const char* where) {
     rt_u32 number = 0;
     if (edit_number(edit.key, number) == EditOf::nothing) {
         fail((edit.where.empty() ? "" : edit.where + ": ") + "no edit `" + edit.key +
-             "`; there are instance.N, material.N, light.N");
+             "`; there are instance.N, material.N, light.N, sky");
         return RT_FAILED;
     }
     content_.edits.push_back(edit);

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "render/edit/sky_edit.hpp"
 #include "render/settings/settings.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/light_kinds.hpp"
@@ -149,8 +150,8 @@ void read_light(const Scene& scene, EditedView& edited, const std::string& key, 
     if (path.size() == 2) edited.lights_on[at] = true;
 }
 
-std::vector<rt_material> scene_materials(const Scene& scene) {
-    std::vector<rt_material> all;
+std::vector<MaterialValues> scene_materials(const Scene& scene) {
+    std::vector<MaterialValues> all;
     for (const Material& material : scene.materials) all.push_back(material.values);
     return all;
 }
@@ -252,7 +253,7 @@ void add_light_words(const rt_light& light, size_t number, const std::array<doub
 }
 
 // The words that turn one material into another one. Where a key changes what others follow, those are written, too.
-void add_material_words(const rt_material& was, const rt_material& is, size_t number, std::vector<Word>& words) {
+void add_material_words(const MaterialValues& was, const MaterialValues& is, size_t number, std::vector<Word>& words) {
     bool differs = false;
     for (const Key& key : material_keys()) {
         const std::array<float, 3> value = value_of(key, &is);
@@ -286,8 +287,8 @@ void add_instance_words(const InstanceEdits& from, const InstanceEdits& to, std:
 
 bool is_edit(const std::string& key) {
     return key == "camera" || key == "camera.aperture" || key == "camera.focus" || key == "camera_path" ||
-           key == "background" || key == "ambient" || key == "hide" || begins(key, "light.") || begins(key, "material.") ||
-           begins(key, "instance.");
+           key == "background" || key == "ambient" || key == "hide" || key == "sky" || begins(key, "sky.") ||
+           begins(key, "light.") || begins(key, "material.") || begins(key, "instance.");
 }
 
 void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
@@ -315,6 +316,8 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
         read_hidden(scene, edited.instances, value);
     } else if (begins(key, "instance.")) {
         read_shift(scene, edited.instances, key, value);
+    } else if (key == "sky" || begins(key, "sky.")) {
+        read_sky(scene, view, key, value);
     } else if (begins(key, "light.")) {
         read_light(scene, edited, key, value);
     } else if (begins(key, "material.")) {
@@ -322,8 +325,7 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
     } else {
         throw Error(Exit::usage, "no edit `" + key +
                                      "`; there are camera, camera.aperture, camera.focus, camera_path, background, ambient, "
-                                     "light.N, light.N.PART, material.N.PART, hide, "
-                                     "instance.N.PART");
+                                     "sky, sky.PART, light.N, light.N.PART, material.N.PART, hide, instance.N.PART");
     }
 }
 
@@ -334,6 +336,7 @@ std::vector<Word> edits_between(const Scene& scene, const EditedView& from, cons
     if (!edited.follows_path) words.push_back({"camera", camera_text(view.camera, scene.origin)});
     if (view.background != base.background) words.push_back({"background", numbers_text(view.background.data(), 3)});
     if (view.ambient != base.ambient) words.push_back({"ambient", numbers_text(view.ambient.data(), 3)});
+    add_sky_words(sky_of(scene, base), sky_of(scene, view), words);
     for (size_t i = 0; i < view.lights.size(); ++i) {
         const bool was_off = i < from.lights_on.size() && !from.lights_on[i],
                    off = i < edited.lights_on.size() && !edited.lights_on[i];
@@ -343,7 +346,7 @@ std::vector<Word> edits_between(const Scene& scene, const EditedView& from, cons
     }
     for (size_t i = view.lights.size(); i < base.lights.size(); ++i) words.push_back({"light." + std::to_string(i), "off"});
     for (size_t i = 0; i < view.materials.size() && i < scene.materials.size(); ++i) {
-        const rt_material& was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values;
+        const MaterialValues& was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values;
         add_material_words(was, view.materials[i], i, words);
     }
     add_instance_words(from.instances, edited.instances, words);
@@ -375,6 +378,8 @@ Scene with_scene_edits(Scene scene) {
     apply_scene_edits(scene, edited);
     Scene result = with_edits(scene, edited.instances);
     result.edits.clear();
+    result.sky.values = sky_of(scene, edited.view);
+    if (result.sky.values.kind != RT_SKY_PICTURE) result.sky.texels = {};
     for (size_t i = 0; i < edited.view.materials.size(); ++i) result.materials[i].values = edited.view.materials[i];
     for (size_t i = 0; i < edited.view.lights.size(); ++i) {
         if (i == result.lights.size()) result.lights.emplace_back();

@@ -6,6 +6,8 @@
 //   view's
 //                lights from 0; N = their number adds one
 //   light.N.KEY  one key of that light: spot's angle, rect's two_sided (true or false)
+//   sky          KIND of sky_kinds.hpp: gradient; picture if the scene's files name one
+//   sky.KEY      one key of the sky's kind: sky.strength, sky.zenith
 //   camera_path  t:camera;t:camera;...: the camera at times of the clip; see camera_path.hpp
 //   material.N.KEY  one of material_keys.hpp: color (r,g,b), reflect (a number), model (a word), checker (true or false)
 //   hide         instances that the picture leaves out: 3,5-9

@@ -12,6 +12,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
+#include "render/edit/sky_edit.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/light_kinds.hpp"
 
@@ -97,9 +98,11 @@ std::string light_line(const std::string& object, const rt_light& light, const s
 }
 
 // The words of edit.hpp as statements: "material.3.color" and "1,0,0" become "edit material 3  color 1 0 0". Words for one
-// material follow each other, and go into one line. Others than those of materials and lights are left out.
-std::string word_lines(const std::vector<Word>& words, const View& view, const std::array<double, 3>& origin) {
+// material follow each other, and go into one line. Others than those of materials, lights and the sky are left out.
+std::string word_lines(const std::vector<Word>& words, const Scene& scene, const View& view) {
     std::string lines, last;
+    if (std::any_of(words.begin(), words.end(), [](const Word& word) { return word.key.rfind("sky", 0) == 0; }))
+        lines = "edit sky " + sky_line(sky_of(scene, view));
     for (const Word& word : words) {
         std::istringstream key(word.key);
         std::string what, number, part, value = word.value;
@@ -112,7 +115,7 @@ std::string word_lines(const std::vector<Word>& words, const View& view, const s
         if (what == "material")
             lines += (object == last ? "" : object) + "  " + part + " " + value;
         else
-            lines += value == "off" ? object + " off" : light_line(object, view.lights[std::stoul(number)], origin);
+            lines += value == "off" ? object + " off" : light_line(object, view.lights[std::stoul(number)], scene.origin);
         last = what == "material" ? object : "";
     }
     return lines.empty() ? "" : lines + "\n";
@@ -121,7 +124,7 @@ std::string word_lines(const std::vector<Word>& words, const View& view, const s
 // base: what the statements that are loaded show without these lines.
 std::string edit_lines(const SceneToSave& scene, const EditedView& base) {
     const std::vector<Word> words = edits_between(scene.imported, base, scene.edited);
-    return instance_lines(base.instances, scene.edited.instances) + word_lines(words, scene.edited.view, scene.imported.origin);
+    return instance_lines(base.instances, scene.edited.instances) + word_lines(words, scene.imported, scene.edited.view);
 }
 
 // The view without any edit; a scene without lights has none to start from.

@@ -22,8 +22,7 @@ double scene_radius(const Bounds& bounds) {
     return radius > 0 && std::isfinite(radius) ? radius : 1;
 }
 
-void set_sky(const Sky& sky, const View& view, rt_lighting& out) {
-    const SkyValues& values = sky.values;
+void set_sky(const SkyValues& values, const View& view, rt_lighting& out) {
     const bool given = values.kind != RT_NONE;
     out.sky_emitter = RT_NONE;
     out.sky_kind = given ? values.kind : RT_SKY_CONSTANT;
@@ -37,6 +36,9 @@ void set_sky(const Sky& sky, const View& view, rt_lighting& out) {
         out.sky_horizon[k] = values.strength * values.horizon[k];
         out.sky_ground[k] = values.strength * values.ground[k];
     }
+    const double ground = mean(out.sky_ground), horizon = mean(out.sky_horizon), above = horizon + mean(out.sky_color);
+    out.sky_below = deal({2 * ground, above}, RT_PICKS)[0];
+    out.sky_horizon_share = above > 0 ? static_cast<float>(horizon / above) : 0;
 }
 
 // The integral of the mean color over all directions.
@@ -228,7 +230,8 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         powers.push_back(light_kind_of(light).power(light, radius) * mean(light.color));
         out.lighting.sun_count += light.kind == RT_LIGHT_SUN;
     }
-    set_sky(scene.sky, view, out.lighting);
+    const SkyValues& values = sky_of(scene, view);
+    set_sky(values, view, out.lighting);
     if (const double flux = flux_of_sky(out.lighting, sky); flux > 0) {
         out.lighting.sky_emitter = rt_u32(out.emitters.size());
         rt_emitter emitter{};
@@ -239,7 +242,7 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
     }
     Collector(scene, accel, moved, view, out, powers).collect();
     // A file that says what lies behind its objects says what lights them. Without a word of it, lights that stand in stay.
-    const bool lit = scene.sky.values.kind != RT_NONE || has_emitting_surfaces(scene, view) ||
+    const bool lit = values.kind != RT_NONE || has_emitting_surfaces(scene, view) ||
                      (scene.background != Scene{}.background && out.lighting.sky_emitter != RT_NONE);
     for (size_t i = 0; lit && i < view.lights.size(); ++i)
         if (view.lights[i].flags & RT_LIGHT_STAND_IN) powers[i] = 0;

@@ -15,6 +15,7 @@ struct SceneBuffer {
     bool of_shapes = false;    // only kernels of scenes with shapes have it
     bool of_emitters = false;  // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
     bool of_colors = false;    // only kernels of scenes whose vertices have colours have it
+    bool of_layers = false;    // only kernels with RT_LOBE_LAYERS have it
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {
@@ -24,6 +25,7 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"float", "polygon_corners", "polygon corners", 0},
     {"rt_plane", "planes", "planes", 0},
     {"rt_material", "materials", "materials", sizeof(rt_material)},
+    {"rt_layers", "layers", "layers of materials", sizeof(rt_layers), false, false, false, true},
     {"rt_triangle", "triangles", "triangles", 0},
     {"float", "normals", "normals", 0},
     {"float", "uvs", "texture coordinates", 0},

@@ -13,8 +13,8 @@ namespace {
 
 // Names of buffers as arguments of kernels. In the constructor they are those of scene_buffers.hpp.
 constexpr const char *kLeaves = "ctx_leaves", *kInstances = "ctx_instances", *kPolygons = "ctx_polygons",
-                     *kPolygonCorners = "ctx_polygon_corners", *kMaterials = "ctx_materials", *kTriangles = "ctx_triangles",
-                     *kNormals = "ctx_normals";
+                     *kPolygonCorners = "ctx_polygon_corners", *kMaterials = "ctx_materials", *kLayers = "ctx_layers",
+                     *kTriangles = "ctx_triangles", *kNormals = "ctx_normals";
 
 constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two progress reports
 
@@ -135,7 +135,10 @@ void add_slots(const AccelData& accel, std::vector<Content>& contents) {
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
                          Progress& progress)
     : loss_(device.loss()), scene_(std::move(scene)), accel_(std::move(accel)) {
-    for (const Material& material : scene_->materials) materials_.push_back(material.values);
+    for (const Material& material : scene_->materials) {
+        materials_.push_back(material.values);
+        layers_.push_back(material.values.layers);
+    }
     const BuildScene& build = accel_->scene;
     if (!scene_->normals.empty() || !scene_->uvs.empty() || !scene_->colors.empty()) {
         attributes_.resize(build.attribute_triangle.size());
@@ -152,6 +155,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("polygon_corners", bytes_of(build.polygon_corners)),
         content("planes", bytes_of(build.planes)),
         content("materials", bytes_of(materials_)),
+        content("layers", bytes_of(layers_)),
         content("triangles", bytes_of(attributes_)),
         content("normals", moved ? bytes_of(normals_) : bytes_of(scene_->normals)),
         content("uvs", bytes_of(scene_->uvs)),
@@ -258,9 +262,14 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> stil
     buffers_[kNormals] = normals;
 }
 
-void DeviceScene::bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials) const {
-    for (const auto& [argument, buffer] : buffers_)
-        kernel.set(argument, materials && argument == kMaterials ? *materials : buffer);
+void DeviceScene::bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials,
+                       const cl::Buffer* layers) const {
+    for (const auto& [argument, buffer] : buffers_) {
+        if (argument != kLayers)
+            kernel.set(argument, materials && argument == kMaterials ? *materials : buffer);
+        else if (kernel.has(argument))
+            kernel.set(argument, layers ? *layers : buffer);
+    }
     kernel.set("ctx_lights", lights);
     for (size_t i = 0; i < slots_.size(); ++i) kernel.set(slot_arguments_[i], slots_[i]);
 }

@@ -46,8 +46,9 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
 
     // Writes bounds and root into `count` rt_frame, if the host does not know them.
     void complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const;
-    // Sets the kernel's scene arguments. `lights` comes from the frame. If given, `materials` replaces the scene's materials.
-    void bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
+    // Sets the kernel's scene arguments. `lights` comes from the frame. If given, `materials` and `layers` replace the scene's.
+    void bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials = nullptr,
+              const cl::Buffer* layers = nullptr) const;
     uint64_t bytes() const { return bytes_; }
 
  private:
@@ -56,6 +57,7 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
+    std::vector<rt_layers> layers_;
     std::vector<rt_triangle> attributes_;
     std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
     // Those of the table in scene_buffers.hpp that the scene has, but for lights, by the names of their arguments.

@@ -39,7 +39,7 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
         normalize(u);
     }
     const Vec v = cross(u, w);
-    const double tangent = std::tan(0.5 * camera.fov_y_rad), aspect = double(settings.width) / settings.height;
+    const double tangent = std::tan(0.5 * camera.fov_y_rad), aspect = double(settings.whole_width()) / settings.whole_height();
     for (int k = 0; k < 3; ++k) {
         frame.eye[k] = camera.eye[k];
         frame.forward[k] = static_cast<float>(w[k]);
@@ -50,8 +50,11 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     }
     frame.width = static_cast<rt_u32>(settings.width);
     frame.height = static_cast<rt_u32>(settings.height);
-    frame.pixel_x = 1.0f / settings.width;
-    frame.pixel_y = 1.0f / settings.height;
+    frame.first_x = static_cast<rt_u32>(settings.crop.x);
+    frame.first_y = static_cast<rt_u32>(settings.crop.y);
+    frame.whole_width = static_cast<rt_u32>(settings.whole_width());
+    frame.pixel_x = 1.0f / settings.whole_width();
+    frame.pixel_y = 1.0f / settings.whole_height();
     frame.packet_w = layout.packet_w;
     frame.packet_h = layout.packet_h;
     frame.block_w = layout.block_w;

@@ -4,11 +4,12 @@
 
 #include "base/error.hpp"
 #include "render/emitters/emitter_table.hpp"
+#include "scene/sky_kinds.hpp"
 
 namespace clarity {
 namespace {
 
-void check_materials(const Scene& scene, const std::vector<rt_material>& materials) {
+void check_materials(const Scene& scene, const std::vector<MaterialValues>& materials) {
     if (materials.size() != scene.materials.size())
         throw Error(Exit::failed, "the view has " + std::to_string(materials.size()) + " materials and the scene has " +
                                       std::to_string(scene.materials.size()) + ": the view needs one for each, or none");
@@ -32,7 +33,12 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
     frame_.write(queue, frames_and_rows_.data(), frames_and_rows_.size());
     on_device.complete(queue, frame_.get(), frames.size());
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
-    if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
+    if (!own_materials_) return;
+    const std::vector<rt_material> plain(view.materials.begin(), view.materials.end());
+    std::vector<rt_layers> layers;
+    for (const MaterialValues& material : view.materials) layers.push_back(material.layers);
+    materials_.write(queue, plain.data(), plain.size() * sizeof plain[0]);
+    layers_.write(queue, layers.data(), layers.size() * sizeof layers[0]);
 }
 
 void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
@@ -42,7 +48,7 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
     };
     if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
         same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background &&
-        std::memcmp(&emitters_of_.sky, &scene.sky.values, sizeof(SkyValues)) == 0 && sky_of_.shares(scene.sky.texels))
+        same_sky(emitters_of_.sky, sky_of(scene, view)) && sky_of_.shares(scene.sky.texels))
         return;
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
         static const rt_emitter nothing{};  // kernels get no empty buffers
@@ -72,7 +78,7 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
     upload(emitters_, table.emitters);
     upload(emitter_runs_, table.runs);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    emitters_of_ = {accel, view.lights, view.materials, view.background, scene.sky.values};
+    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view)};
 }
 
 void UploadedBuffer::write(cl::CommandQueue& queue, const void* data, size_t bytes) {
@@ -101,7 +107,7 @@ UploadedBuffer::~UploadedBuffer() {
 
 void ViewBuffers::bind(const DeviceScene& scene, KernelArguments& kernel) const {
     kernel.set("frame", frame_.get());
-    scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr);
+    scene.bind(kernel, lights_.get(), own_materials_ ? &materials_.get() : nullptr, own_materials_ ? &layers_.get() : nullptr);
     if (!kernel.has("ctx_emitters")) return;
     kernel.set("ctx_emitters", emitters_.get())
         .set("ctx_emitter_runs", emitter_runs_.get())

@@ -50,11 +50,11 @@ class ViewBuffers {
     struct EmittersOf {
         std::weak_ptr<const AccelData> accel;
         std::vector<rt_light> lights;
-        std::vector<rt_material> materials;
+        std::vector<MaterialValues> materials;
         std::array<float, 3> background{};
         SkyValues sky;
     };
-    UploadedBuffer frame_, lights_, materials_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
+    UploadedBuffer frame_, lights_, materials_, layers_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
     EmittersOf emitters_of_;
     SharedArray<float> sky_of_;  // the picture that sky_ was made from
     SkyTable sky_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "render/settings/crop.hpp"
 #include "render/settings/optics.hpp"
 
 namespace clarity {
@@ -59,6 +60,10 @@ struct Settings {
     std::map<std::string, double> numbers = {};
     // Not for users: what views may have that the scene's own has not, so that kernels know it, too (optics_of()).
     Optics optics = {};
+    // Not a row of the table: width and height are of a part of a picture (crop_picture()).
+    Crop crop = {};
+    int whole_width() const { return crop.whole_width > 0 ? crop.whole_width : width; }
+    int whole_height() const { return crop.whole_height > 0 ? crop.whole_height : height; }
 };
 
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.

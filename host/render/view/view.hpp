@@ -1,6 +1,7 @@
 // view.hpp -- what may change from frame to frame: the camera, the lights, the materials and the background.
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,16 @@ namespace clarity {
 struct View {
     Camera camera;
     std::vector<rt_light> lights;
-    std::vector<rt_material> materials;  // one for each material of the scene; empty: use the scene's own
+    std::vector<MaterialValues> materials;  // one for each material of the scene; empty: use the scene's own
     std::array<float, 3> background{}, ambient{};
+    std::optional<SkyValues> sky;  // empty: the scene's own
 };
 // The material of that number in a view of the scene.
-inline const rt_material& material_of(const Scene& scene, const View& view, size_t number) {
+inline const MaterialValues& material_of(const Scene& scene, const View& view, size_t number) {
     return view.materials.empty() ? scene.materials[number].values : view.materials[number];
+}
+inline const SkyValues& sky_of(const Scene& scene, const View& view) {
+    return view.sky ? *view.sky : scene.sky.values;
 }
 // Makes a view from the scene's camera, lights, ambient light and background. If the scene has no lights, it gets two that suit
 // its size.

@@ -15,7 +15,24 @@ void add(Optics& optics, const rt_light& light) {
     if (fades) optics.lights |= RT_LIGHTS_FADE;
 }
 
-void add(Optics& optics, const rt_material& m) {
+bool is_colored(const float (&color)[3]) {
+    return std::any_of(std::begin(color), std::end(color), [](float channel) { return channel > 0; });
+}
+
+rt_u32 lobes_of_layers(const MaterialValues& m) {
+    const rt_layers& l = m.layers;
+    const bool clear = l.transmission > 0 && l.metallic < 1, solid = (l.flags & RT_LAYERS_SOLID) != 0;
+    rt_u32 lobes = RT_LOBE_LAYERS;
+    if (l.clearcoat > 0) lobes |= RT_LOBE_COAT;
+    if (is_colored(l.sheen_color)) lobes |= RT_LOBE_SHEEN;
+    if (clear && !solid) lobes |= RT_LOBE_THIN;
+    if (clear && solid) lobes |= m.roughness > 0 ? RT_LOBE_GLASS | RT_LOBE_FROSTED : RT_LOBE_GLASS;
+    if (l.anisotropy > 0) lobes |= RT_LOBE_GRAIN;
+    if (l.iridescence > 0) lobes |= RT_LOBE_FILM;
+    return lobes;
+}
+
+void add(Optics& optics, const MaterialValues& m) {
     if (emits(m)) optics.lights |= 1u << RT_EMITTER_SURFACE;
     rt_u32 lobes = 0;
     switch (m.model) {
@@ -30,10 +47,14 @@ void add(Optics& optics, const rt_material& m) {
             lobes |= RT_LOBE_GLASS;
             if (m.roughness > 0) lobes |= RT_LOBE_FROSTED;
             break;
+        case RT_MODEL_GLTF:
+            lobes |= lobes_of_layers(m);
+            break;
+        case RT_MODEL_UNLIT:
+            lobes |= RT_LOBE_UNLIT;
+            break;
     }
-    const bool absorbs =
-        std::any_of(std::begin(m.absorption), std::end(m.absorption), [](float channel) { return channel > 0; });
-    if ((lobes & RT_LOBE_GLASS) && absorbs) lobes |= RT_LOBE_ABSORBS;
+    if ((lobes & RT_LOBE_GLASS) && is_colored(m.absorption)) lobes |= RT_LOBE_ABSORBS;
     optics.lobes |= lobes;
     if (m.alpha != RT_ALPHA_OPAQUE) optics.cutouts = 1;
 }
@@ -42,16 +63,15 @@ Optics seen_by(const Settings& settings, const Optics& optics) {
     return picture_of_tracer(settings.tracer) == kPathPicture ? optics : optics.for_whitted();
 }
 
-Optics sky_of(const Scene& scene, const std::array<float, 3>& background) {
-    const bool shines =
-        scene.sky.values.kind != RT_NONE || std::any_of(background.begin(), background.end(), [](float c) { return c > 0; });
+Optics optics_of_sky(const SkyValues& sky, const std::array<float, 3>& background) {
+    const bool shines = sky.kind != RT_NONE || std::any_of(background.begin(), background.end(), [](float c) { return c > 0; });
     return {shines ? 1u << RT_EMITTER_SKY : 0u, 0, 0};
 }
 
 }  // namespace
 
 Optics optics_of(const Scene& scene) {
-    Optics optics = sky_of(scene, scene.background);
+    Optics optics = optics_of_sky(scene.sky.values, scene.background);
     for (const Light& light : scene.lights) add(optics, light.values);
     if (scene.lights.empty()) optics.lights |= 1u << RT_LIGHT_POINT;  // those that make_view() adds
     for (const Material& material : scene.materials) add(optics, material.values);
@@ -59,7 +79,7 @@ Optics optics_of(const Scene& scene) {
 }
 
 Optics optics_of(const Scene& scene, const View& view, const Settings& settings) {
-    Optics optics = sky_of(scene, view.background);
+    Optics optics = optics_of_sky(sky_of(scene, view), view.background);
     for (const rt_light& light : view.lights) add(optics, light);
     for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i));
     return seen_by(settings, optics);

@@ -75,9 +75,22 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
             store(direction, desc.direction);
             store(transform_point(world, light.mPosition), desc.position);
         }
+        // Light that falls by 1 / (constant + linear d + quadratic d^2); a white surface that faces it is as bright as the
+        // colour says where that is 1 (COLLADA 1.5, "point"). The square alone is an intensity of pi / quadratic.
+        const double constant = light.mAttenuationConstant, linear = light.mAttenuationLinear,
+                     quadratic = light.mAttenuationQuadratic;
+        const bool is_far = desc.kind == RT_LIGHT_DIRECTIONAL, fades = !is_far && constant == 0 && linear == 0 && quadratic > 0;
+        if (!is_far && !fades && (linear != 0 || quadratic != 0))
+            sink.warn(sink.ctx, ("the light " + quoted(light.mName) +
+                                 " has an attenuation other than by the square of the distance; "
+                                 "here it lights all distances alike")
+                                    .c_str());
+        const double factor = fades ? 3.141592653589793 / quadratic : constant > 0 && !is_far ? 1 / constant : 1;
         const aiColor3D& c = light.mColorDiffuse;
         const importers::Cone cone = {light.mAngleOuterCone, light.mAngleInnerCone};  // whole angles
-        if (all_finite(desc.position)) lights.add(desc, light.mName.C_Str(), {c.r, c.g, c.b}, 1, cone);
+        if (all_finite(desc.position))
+            lights.add(desc, light.mName.C_Str(), {c.r, c.g, c.b}, factor,
+                       fades ? importers::Unit::physical : importers::Unit::relative, cone);
     }
     lights.pass(&host, sink);
 }

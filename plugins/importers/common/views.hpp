@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -16,47 +15,69 @@ struct Cone {
     double angle = 1, inner = 0;
 };
 
-// The lights of a file. Physical intensities (watts, candela, lux) assume falloff with distance. Lights here have none, so all
-// of them are scaled until the brightest is 1.
+// What a file means by the intensity of a light.
+//   relative   a white surface that faces it is as bright as its colour says, whatever the distance
+//   physical   an intensity, W/sr or candela, which fades by the square of the distance; of a sun an irradiance, W/m^2 or lux;
+//   of a
+//              light with a size a radiance
+enum class Unit { relative, physical };
+
+// The lights of a file. Relative ones are scaled until the brightest of them is 1; physical ones stay as they are.
 class Lights {
  public:
     // intensity: what the colour is multiplied by. cone: of a spot.
-    void add(rt_light_desc light, const std::string& name, const double (&color)[3], double intensity, const Cone& cone = {}) {
+    void add(rt_light_desc light, const std::string& name, const double (&color)[3], double intensity, Unit unit,
+             const Cone& cone = {}) {
         for (int k = 0; k < 3; ++k) {
             const double c = color[k] * intensity;
-            light.color[k] = std::isfinite(c) ? static_cast<float>(std::clamp(c, 0.0, 1e30)) : 0;
-            brightest_ = std::max(brightest_, light.color[k]);
+            light.color[k] = std::isfinite(c) ? static_cast<float>(std::clamp(c, 0.0, 1e12)) : 0;
+            if (unit == Unit::relative) brightest_ = std::max(brightest_, light.color[k]);
         }
-        names_.push_back(name);
-        light.name = names_.back().c_str();
-        if (light.kind == RT_LIGHT_SPOT) {
-            cones_.push_back({rt::value("angle", degrees(cone.angle)), rt::value("inner", degrees(cone.inner))});
-            light.values = cones_.back().data();
-            light.value_count = static_cast<rt_u32>(cones_.back().size());
-        }
-        lights_.push_back(light);
+        Passed& added = lights_.emplace_back();
+        added.name = name, added.unit = unit;
+        const bool is_spot = light.kind == RT_LIGHT_SPOT;
+        if (is_spot) added.values = {rt::value("angle", degrees(cone.angle)), rt::value("inner", degrees(cone.inner))};
+        if (unit == Unit::physical && (is_spot || light.kind == RT_LIGHT_POINT))
+            added.values.push_back(rt::value("falloff", 1));
+        if (light.kind == RT_LIGHT_SUN) added.values.push_back(rt::value("angle", 0));
+        added.desc = light;
     }
-    float scale() const { return 1 / brightest_; }
+    // By what the colour of the light that was added as the i-th is multiplied.
+    float scale(size_t i) const { return lights_[i].unit == Unit::relative ? 1 / brightest_ : 1; }
     // Returns the ids in the order in which the lights were added.
     std::vector<rt_u32> pass(const rt_host* host, const rt_scene_sink& sink) {
-        if (brightest_ > 1) rt::log(host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(scale()));
+        if (brightest_ > 1) rt::log(host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest_));
         std::vector<rt_u32> ids;
-        for (rt_light_desc& light : lights_) {
-            for (float& c : light.color) c *= scale();
-            ids.push_back(rt::id(sink.light(sink.ctx, &light)));
+        bool is_physical = false;
+        for (size_t i = 0; i < lights_.size(); ++i) {
+            rt_light_desc& desc = lights_[i].desc;
+            for (float& c : desc.color) c *= scale(i);
+            desc.name = lights_[i].name.c_str();
+            desc.values = lights_[i].values.data();
+            desc.value_count = static_cast<rt_u32>(lights_[i].values.size());
+            ids.push_back(rt::id(sink.light(sink.ctx, &desc)));
+            is_physical |= lights_[i].unit == Unit::physical;
         }
+        if (is_physical)
+            rt::log(host, RT_LOG_INFO,
+                    "lights have physical units, as the file says: --exposure (a row of the panel) makes the picture brighter "
+                    "or darker");
         return ids;
     }
 
  private:
-    std::vector<rt_light_desc> lights_;
+    struct Passed {
+        rt_light_desc desc{};
+        std::string name;
+        Unit unit = Unit::relative;
+        std::vector<rt_key_value> values;
+    };
     static float degrees(double radians) {
         const double value = radians * 57.29577951308232;
         return std::isfinite(value) ? static_cast<float>(std::clamp(value, 0.0, 180.0)) : 0;
     }
 
-    std::deque<std::string> names_;  // which does not move them
-    std::deque<std::array<rt_key_value, 2>> cones_;
+    std::vector<Passed> lights_;
     float brightest_ = 1;
 };
 

@@ -14,14 +14,18 @@ namespace {
 
 constexpr int kNewestVersion = 7700, kOldestVersion = 3000;
 
+// UnitScaleFactor: centimetres per unit, 1 if the file does not say. Source: FBX SDK help, "FbxSystemUnit".
+double metres_per_unit(const Document& document, const Objects& objects) {
+    const double centimetres = Properties(document, objects.settings()).number("UnitScaleFactor", 1);
+    return 0.01 * (centimetres > 1e-6 && centimetres < 1e30 ? centimetres : 1);
+}
+
 rt_scene_info info_of(const Context& context) {
     const Properties settings(context.document, context.objects.settings());
     rt_scene_info info{};
     info.struct_bytes = sizeof info;
     info.up_axis = static_cast<rt_u32>(std::clamp<int64_t>(settings.whole("UpAxis", 1), 0, 2));
-    // UnitScaleFactor: centimetres per unit, 1 if the file does not say. Source: FBX SDK help, "FbxSystemUnit".
-    const double centimetres = settings.number("UnitScaleFactor", 1);
-    info.unit_scale = 0.01 * (centimetres > 0 && centimetres < 1e30 ? centimetres : 1);
+    info.unit_scale = context.metres_per_unit;
     return info;
 }
 
@@ -35,7 +39,16 @@ int32_t load_file(const rt_host* host, const char* given_path, const double*, co
     const Objects objects(document);
     const Templates templates(document);
     const double fps = frames_of_second(document, objects);
-    const Context context = {host, *sink, file, document, objects, templates, importers::FilePlace(path), fps};
+    const Context context = {host,
+                             *sink,
+                             file,
+                             document,
+                             objects,
+                             templates,
+                             importers::FilePlace(path),
+                             fps,
+                             metres_per_unit(document, objects),
+                             document.text(&document.root(), "Creator").rfind("Blender", 0) == 0};
     if (!RT_HAS(sink, rt_scene_sink, vertex_frames)) throw Broken("this importer needs a newer version of the program");
     if (version >= kNewestVersion + 300) context.warn("the file's FBX version is newer than 7.7, the newest known");
     const rt_scene_info info = info_of(context);

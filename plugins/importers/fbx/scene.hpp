@@ -18,6 +18,8 @@ struct Context {
     const Templates& templates;
     importers::FilePlace place;
     double fps;  // frames a second; 0: the file does not say
+    double metres_per_unit;
+    bool by_blender;  // who wrote the file
 
     void warn(const std::string& text) const { sink.warn(sink.ctx, text.c_str()); }
     Properties properties(uint32_t object) const { return templates.of(objects[object]); }

@@ -13,22 +13,53 @@ std::vector<uint32_t> attributes_of(const Context& context, uint32_t model, std:
     return out;
 }
 
-// A light shines along its node's -y. LightType: 0 point, 1 directional, 2 spot, 3 area, 4 volume; Intensity in percent.
-// Source: FBX SDK help, "FbxLight".
-LightView light_of(const Context& context, const SceneNode& node, uint32_t attribute, importers::Lights& lights) {
+// FBX has no units of light; those who write files have. What Intensity / 100 times the colour is:
+//   Blender      watts; of directional lights W/m^2 (export_fbx_bin.py; Blender's manual, "Light Objects"). A point of W watts
+//   has an
+//                intensity of W / (4 pi) W/sr, for distances in metres
+//   no decay     the brightness of a white surface that faces the light (Maya help, "Decay Rate")
+//   other decay  the same at a distance of one unit, which is an intensity of pi times the colour. Taken for quadratic
+//   area         the radiance of a square of 2 x 2 units of its node (Maya help, "Area Light")
+struct Meaning {
+    double factor = 1;
+    Unit unit = Unit::relative;
+};
+Meaning meaning_of(const Context& context, rt_u32 kind, int64_t decay) {
+    constexpr double pi = 3.141592653589793;
+    if (kind == RT_LIGHT_RECT || kind == RT_LIGHT_SUN) return {1, Unit::physical};
+    if (context.by_blender) return {1 / (4 * pi * context.metres_per_unit * context.metres_per_unit), Unit::physical};
+    return kind == RT_LIGHT_DIRECTIONAL || decay == 0 ? Meaning{} : Meaning{pi, Unit::physical};
+}
+
+// A light shines along its node's -y. LightType: 0 point, 1 directional, 2 spot, 3 area, 4 volume; Intensity in percent;
+// DecayType: 0 none, 1 linear, 2 quadratic, 3 cubic; AreaLightShape: 0 rectangle, 1 sphere. Source: FBX SDK help, "FbxLight".
+LightView light_of(const Context& context, const SceneNode& node, uint32_t attribute, Lights& lights) {
     const std::string& name = context.objects[node.object].name;
     const Properties p = context.properties(attribute);
-    const int64_t type = p.whole("LightType", 0);
-    rt_light_desc out = rt::light(type == 1 ? RT_LIGHT_DIRECTIONAL : type == 2 ? RT_LIGHT_SPOT : RT_LIGHT_POINT);
-    if (type > 2) context.warn("the area light '" + name + "' became a point light");
+    const int64_t type = p.whole("LightType", 0), decay = p.whole("DecayType", 0);
+    const bool has_size = type == 3 && !context.by_blender && p.whole("AreaLightShape", 0) == 0;
+    const rt_u32 kind = type == 1   ? (context.by_blender ? RT_LIGHT_SUN : RT_LIGHT_DIRECTIONAL)
+                        : type == 2 ? RT_LIGHT_SPOT
+                        : has_size  ? RT_LIGHT_RECT
+                                    : RT_LIGHT_POINT;
+    if (type > 2 && !has_size)
+        context.warn(std::string("the ") + (type == 3 ? "area" : "volume") + " light '" + name +
+                     "' became a point light, because the file does not say how large it is");
+    const Meaning meaning = meaning_of(context, kind, decay);
+    if ((decay == 1 || decay == 3) && (kind == RT_LIGHT_POINT || kind == RT_LIGHT_SPOT))
+        context.warn("the light '" + name + "' has a " + (decay == 1 ? "linear" : "cubic") +
+                     " decay; here its light falls by the square of the distance");
+    rt_light_desc out = rt::light(kind);
     out.node = node.id;
     LightView view;
     view.color = p.vector("Color", {1, 1, 1});
     view.intensity = p.number("Intensity", 100) / 100;
+    view.scale = meaning.factor;
     // OuterAngle and InnerAngle are whole angles in degrees; before version 7 `Cone angle` is the outer one.
     constexpr double radians = 0.017453292519943295;
     const double angle = p.number("OuterAngle", p.number("Cone angle", 45)), inner = p.number("InnerAngle", angle);
-    lights.add(out, name, {view.color[0], view.color[1], view.color[2]}, view.intensity, {angle * radians, inner * radians});
+    lights.add(out, name, {view.color[0], view.color[1], view.color[2]}, meaning.factor * view.intensity, meaning.unit,
+               {angle * radians, inner * radians});
     return view;
 }
 
@@ -82,7 +113,7 @@ double angle_of_view(const Properties& p, std::string_view moved, double value) 
 
 Views add_views(const Context& context, const std::vector<SceneNode>& nodes) {
     Views views;
-    importers::Lights lights;
+    Lights lights;
     std::vector<std::pair<uint32_t, LightView>> added;
     for (const SceneNode& node : nodes) {
         for (const uint32_t attribute : attributes_of(context, node.object, "Light"))
@@ -92,7 +123,7 @@ Views add_views(const Context& context, const std::vector<SceneNode>& nodes) {
     for (size_t i = 0; i < added.size(); ++i) {
         LightView& view = added[i].second;
         view.id = ids[i];
-        view.scale = lights.scale();
+        view.scale *= lights.scale(i);
         views.lights[added[i].first].push_back(view);
     }
     // The view cameras of MotionBuilder, which old exporters write too ("Producer Front"), come last: the first camera is the

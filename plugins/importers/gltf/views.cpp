@@ -31,11 +31,24 @@ void add_camera(const Value& camera, const NodeTree& tree, size_t node, const rt
     rt::id(sink.camera(sink.ctx, &out));
 }
 
+// KHR_lights_punctual: the units of `intensity` are candela and lux.
+struct LightType {
+    const char* name;
+    rt_u32 kind;
+};
+constexpr LightType kLightTypes[] = {
+    {"directional", RT_LIGHT_SUN},  // without an angle; lux, an irradiance
+    {"point", RT_LIGHT_POINT},      // candela
+    {"spot", RT_LIGHT_SPOT},        // candela, in the middle of the cone
+};
+
 void add_light(const Value& light, const NodeTree& tree, size_t node, importers::Lights& passed) {
-    const std::string type = light["type"].text();
-    if (type != "directional" && type != "point" && type != "spot") light["type"].refuse("'directional', 'point' or 'spot'");
-    const bool is_spot = type == "spot";
-    rt_light_desc out = rt::light(type == "directional" ? RT_LIGHT_DIRECTIONAL : is_spot ? RT_LIGHT_SPOT : RT_LIGHT_POINT);
+    const std::string name = light["type"].text();
+    const LightType* type = nullptr;
+    for (const LightType& row : kLightTypes)
+        if (name == row.name) type = &row;
+    if (!type) light["type"].refuse("'directional', 'point' or 'spot'");
+    rt_light_desc out = rt::light(type->kind);
     out.node = tree.id(node);
     out.direction[1] = 0;
     out.direction[2] = -1;
@@ -44,7 +57,7 @@ void add_light(const Value& light, const NodeTree& tree, size_t node, importers:
     // The angles are those between the axis and the cone.
     const Value spot = light.object("spot");
     const importers::Cone cone = {2 * spot.number("outerConeAngle", 0.7853981633974483), 2 * spot.number("innerConeAngle", 0)};
-    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity, cone);
+    passed.add(out, name_of(light, tree, node), {color[0], color[1], color[2]}, intensity, importers::Unit::physical, cone);
 }
 
 }  // namespace
@@ -60,7 +73,11 @@ void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_
 }
 
 void add_lights(const Document& document, const NodeTree& tree, const rt_host* host, const rt_scene_sink& sink) {
-    constexpr const char* kExtension = "KHR_lights_punctual";
+    constexpr const char *kExtension = "KHR_lights_punctual", *kImageBased = "EXT_lights_image_based";
+    if (document.root().object("extensions").has(kImageBased))
+        rt::warn(sink, std::string(kImageBased) +
+                           ": the file's light from all around is left out; a text scene that loads the file "
+                           "can have a `sky`");
     importers::Lights passed;
     for (const size_t node : tree.shown()) {
         spared(sink, "the light is left out", [&] {

@@ -103,7 +103,7 @@ struct Item {
 
 // What the sink takes, whose keys are tables of the host.
 struct Kinds {
-    std::vector<const rt_primitive_kind*> shapes, lights;
+    std::vector<const rt_primitive_kind*> shapes, lights, skies;
     const rt_primitive_kind* material = nullptr;
 };
 

@@ -122,14 +122,9 @@ bool Emitter::lights_and_cameras() {
     return true;
 }
 
-// Older hosts know no sky.
 bool Emitter::sky() {
     if (document_.sky.position.line == 0) return true;
     position_ = document_.sky.position;
-    if (!RT_HAS(&sink_, rt_scene_sink, sky)) {
-        sink_.warn(sink_.ctx, "this host knows no `sky`");
-        return true;
-    }
     rt_sky_desc desc = document_.sky.values;
     desc.struct_bytes = sizeof desc;
     desc.path = desc.kind == RT_SKY_PICTURE ? document_.sky.path.c_str() : nullptr;

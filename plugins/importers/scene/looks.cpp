@@ -10,20 +10,6 @@
 namespace scene_format {
 namespace {
 
-// The keys of a kind of lights, or of materials.
-std::vector<const rt_key*> keys_of(const rt_primitive_kind& kind) {
-    std::vector<const rt_key*> keys;
-    for (size_t i = 0; i < kind.key_count; ++i) keys.push_back(&key_of(kind, i));
-    return keys;
-}
-// Tells the statement these keys, and further ones.
-void expect(Statement& s, const std::vector<const rt_key*>& keys, const std::vector<Key>& more = {}) {
-    std::vector<Key> all;
-    for (const rt_key* key : keys) all.push_back({key->name});
-    all.insert(all.end(), more.begin(), more.end());
-    s.expect_keys(all);
-}
-
 std::string_view word_of(const rt_key& key, const Vec3& value) {
     return key.kind == RT_KEY_FLAG ? (value[0] != 0 ? "true" : "false") : key.words[static_cast<size_t>(value[0])];
 }
@@ -35,25 +21,6 @@ size_t count_of(const rt_key& key) {
 }
 bool is_named(const rt_key& key, const char* name) {
     return std::strcmp(key.name, name) == 0;
-}
-
-Vec3 read_look(Statement& s, const rt_key& key) {
-    const std::string what = std::string("`") + key.name + "` (" + key.help + ")";
-    if (key.kind == RT_KEY_COLOR) return s.color(what, static_cast<float>(key.max));
-    if (is_named(key, "direction")) return s.direction(what);
-    if (key.kind == RT_KEY_FLAG) {
-        if (s.done() || s.at_key()) return {1, 0, 0};
-        return {static_cast<float>(s.choice("value of `" + std::string(key.name) + "`", {"false", "true"})), 0, 0};
-    }
-    if (key.kind == RT_KEY_WORD) {
-        std::vector<std::string_view> words;
-        for (const char* const* word = key.words; *word; ++word) words.push_back(*word);
-        return {static_cast<float>(s.choice(key.name, words)), 0, 0};
-    }
-    const std::vector<float> numbers = read_values(s, key);
-    Vec3 value{};
-    std::copy_n(numbers.begin(), std::min<size_t>(numbers.size(), 3), value.begin());
-    return value;
 }
 
 Vec3 default_of(const rt_key& key) {
@@ -96,6 +63,42 @@ void share(Looks& values, const Name& material, Position refract_position, Diagn
 }
 
 }  // namespace
+
+std::vector<const rt_key*> keys_of(const rt_primitive_kind& kind) {
+    std::vector<const rt_key*> keys;
+    for (size_t i = 0; i < kind.key_count; ++i) keys.push_back(&key_of(kind, i));
+    return keys;
+}
+
+void expect(Statement& s, const std::vector<const rt_key*>& keys, const std::vector<Key>& more) {
+    std::vector<Key> all;
+    for (const rt_key* key : keys) all.push_back({key->name});
+    all.insert(all.end(), more.begin(), more.end());
+    s.expect_keys(all);
+}
+
+Vec3 read_look(Statement& s, const rt_key& key) {
+    const std::string what = std::string("`") + key.name + "` (" + key.help + ")";
+    if (key.kind == RT_KEY_COLOR) return s.color(what, static_cast<float>(key.max));
+    if (is_named(key, "direction")) return s.direction(what);
+    if (key.kind == RT_KEY_FLAG) {
+        if (s.done() || s.at_key()) return {1, 0, 0};
+        return {static_cast<float>(s.choice("value of `" + std::string(key.name) + "`", {"false", "true"})), 0, 0};
+    }
+    if (key.kind == RT_KEY_WORD) {
+        std::vector<std::string_view> words;
+        for (const char* const* word = key.words; *word; ++word) words.push_back(*word);
+        return {static_cast<float>(s.choice(key.name, words)), 0, 0};
+    }
+    const std::vector<float> numbers = read_values(s, key);
+    Vec3 value{};
+    std::copy_n(numbers.begin(), std::min<size_t>(numbers.size(), 3), value.begin());
+    return value;
+}
+
+std::string look_text(const rt_key& key, const Vec3& value) {
+    return is_word(key) ? std::string(word_of(key, value)) : text_of(value.data(), count_of(key));
+}
 
 std::string text_of(const float* numbers, size_t count) {
     std::string text;
@@ -183,8 +186,7 @@ void read_material_edits(Statement& s, const std::string& prefix, Document& docu
     while (!s.done()) {
         const rt_key& key = *keys[s.key()];
         const Vec3 value = read_look(s, key);
-        const std::string text = is_word(key) ? std::string(word_of(key, value)) : text_of(value.data(), count_of(key));
-        document.edits.push_back({prefix + key.name, text, s.position()});
+        document.edits.push_back({prefix + key.name, look_text(key, value), s.position()});
     }
 }
 
@@ -212,8 +214,7 @@ void read_light_edits(Statement& s, const std::string& key, Document& document) 
     while (!s.done()) {
         const size_t i = s.key();
         values[places[i]] = read_look(s, *keys[i]);
-        if (is_word(*keys[i]))
-            further.push_back({key + "." + keys[i]->name, std::string(word_of(*keys[i], values[i])), s.position()});
+        if (is_word(*keys[i])) further.push_back({key + "." + keys[i]->name, look_text(*keys[i], values[i]), s.position()});
     }
     for (size_t i = 0; i < keys.size(); ++i)
         if (!is_word(*keys[i]) && places[i] == i) numbers += "," + text_of(values[i].data(), count_of(*keys[i]));

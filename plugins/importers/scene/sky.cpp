@@ -1,18 +1,30 @@
 #include "sky.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "diagnostics.hpp"
+#include "looks.hpp"
 
 namespace scene_format {
 namespace {
 
-constexpr float kMostRadiance = 1e12f, kMostTurn = 1e6f;
+// Sets the member of a description that a key of the host's table names.
+void set_member(rt_sky_desc& sky, const rt_key& key, const Vec3& value) {
+    const auto is = [&](const char* name) { return std::strcmp(key.name, name) == 0; };
+    if (is("visible")) sky.hidden = value[0] == 0 ? 1 : 0;
+    float* const to = is("rotate")                  ? &sky.rotate_deg
+                      : is("strength")              ? &sky.strength
+                      : is("horizon")               ? sky.horizon
+                      : is("ground")                ? sky.ground
+                      : is("color") || is("zenith") ? sky.color
+                                                    : nullptr;
+    if (to) std::copy_n(value.begin(), key.kind == RT_KEY_COLOR ? 3 : 1, to);
+}
 
 }  // namespace
 
 void read_sky(Statement& s, Document& document, Diagnostics&) {
-    enum { kRotate, kStrength, kVisible, kZenith, kHorizon, kGround };
     if (document.sky.position.line != 0)
         throw StatementError{s.position(), "statement `sky` for the second time; the first is in line " +
                                                std::to_string(document.sky.position.line)};
@@ -22,40 +34,31 @@ void read_sky(Statement& s, Document& document, Diagnostics&) {
     values.strength = 1;
     std::fill_n(values.color, 3, 1.f);
     const std::string first = s.path("the path of a picture, `constant` or `gradient`");
-    const bool constant = first == "constant", gradient = first == "gradient";
-    values.kind = constant ? RT_SKY_CONSTANT : gradient ? RT_SKY_GRADIENT : RT_SKY_PICTURE;
+    values.kind = first == "constant" ? RT_SKY_CONSTANT : first == "gradient" ? RT_SKY_GRADIENT : RT_SKY_PICTURE;
     if (values.kind == RT_SKY_PICTURE) sky.path = first;
-    std::vector<Key> keys = {{"rotate"}, {"strength"}, {"visible"}};
-    if (gradient) keys.insert(keys.end(), {{"zenith"}, {"horizon"}, {"ground"}});
-    s.expect_keys(keys);
-    const auto color = [&](const char* what, float(&to)[3]) {
-        const Vec3 read = s.color(what, kMostRadiance);
-        std::copy(read.begin(), read.end(), to);
-    };
-    if (constant) color("the sky's radiance (r g b)", values.color);
+    const std::vector<const rt_key*> keys = keys_of(*document.kinds.skies.at(values.kind));
+    expect(s, keys);
+    if (values.kind == RT_SKY_CONSTANT && !s.at_key())
+        set_member(values, *keys.front(), s.color("the sky's radiance (r g b)", static_cast<float>(keys.front()->max)));
     while (!s.done()) {
-        switch (s.key()) {
-            case kRotate:
-                values.rotate_deg = s.number_between("`rotate` (degrees about +Y)", -kMostTurn, kMostTurn);
-                break;
-            case kStrength:
-                values.strength = s.number_between("`strength`", 0, kMostRadiance);
-                break;
-            case kVisible:
-                values.hidden = s.choice("`visible`", {"true", "false"}) == 0 ? 0 : 1;
-                break;
-            case kZenith:
-                color("`zenith` (r g b)", values.color);
-                break;
-            case kHorizon:
-                color("`horizon` (r g b)", values.horizon);
-                break;
-            case kGround:
-                color("`ground` (r g b)", values.ground);
-                break;
-        }
+        const rt_key& key = *keys[s.key()];
+        set_member(values, key, read_look(s, key));
     }
     document.sky = sky;
+}
+
+void read_sky_edits(Statement& s, Document& document) {
+    std::vector<std::string_view> names = {"background"};
+    for (const rt_primitive_kind* kind : document.kinds.skies) names.push_back(kind->id);
+    const size_t kind = s.choice("kind of sky", names);
+    document.edits.push_back({"sky", std::string(names[kind]), s.position()});
+    if (kind == 0) return s.expect_end();
+    const std::vector<const rt_key*> keys = keys_of(*document.kinds.skies[kind - 1]);
+    expect(s, keys);
+    while (!s.done()) {
+        const rt_key& key = *keys[s.key()];
+        document.edits.push_back({std::string("sky.") + key.name, look_text(key, read_look(s, key)), s.position()});
+    }
 }
 
 }  // namespace scene_format

@@ -265,7 +265,8 @@ void read_instance_edits(Statement& s, const std::string& prefix, Document& docu
 }
 
 void read_edit(Statement& s, Document& document, Diagnostics&) {
-    const size_t of = s.choice("object to edit", {"instance", "material", "light"});
+    const size_t of = s.choice("object to edit", {"instance", "material", "light", "sky"});
+    if (of == 3) return read_sky_edits(s, document);
     const float number = s.number_between("its number, counted from 0", 0, 1e9f);
     if (number != std::floor(number)) s.fail_at_last("expected a whole number, counted from 0");
     const std::string count = std::to_string(static_cast<uint32_t>(number));

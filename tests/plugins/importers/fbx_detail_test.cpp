@@ -223,6 +223,44 @@ TEST_P(FbxDetailForm, SpotsKeepTheirCones) {
     EXPECT_NEAR(spot.inner, 20, 1e-4);
 }
 
+// What intensities mean: see meaning_of() of the importer. In units of a centimetre.
+TEST_P(FbxDetailForm, LightsFadeAsTheirDecaySays) {
+    Scene scene;
+    const auto light = [&](const std::vector<FbxNode>& properties, const std::string& creator = "by hand") -> const rt_light& {
+        const FbxNode attribute =
+            node("NodeAttribute", {whole(4), text("NodeAttribute::N"), text("Light")}, {node("Properties70", {}, properties)});
+        scene = import({geometry(1), model(2, "A"), model(3, "Lamp"), attribute},
+                       {link(2, 0), link(1, 2), link(3, 0), link(4, 3)}, creator);
+        EXPECT_EQ(scene.lights.size(), 1u);
+        return scene.lights.at(0).values;
+    };
+    const std::string blender = "Blender (stable FBX IO) - 3.4.1 - 4.37.5";
+    const double pi = std::acos(-1.0);
+    const rt_light none = light({property("Intensity", {400})});
+    EXPECT_EQ(none.flags, 0u);
+    EXPECT_EQ(none.color[0], 1) << "scaled";
+    const rt_light quadratic = light({property("Intensity", {400}), property("DecayType", {2})});
+    EXPECT_EQ(quadratic.flags, RT_LIGHT_FALLOFF);
+    EXPECT_NEAR(quadratic.color[0], 4 * pi, 1e-5);
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(light({property("DecayType", {3})}).flags, RT_LIGHT_FALLOFF);
+    EXPECT_TRUE(warns_of(scene, "has a cubic decay"));
+    // 1000 W, a metre is 100 units.
+    const rt_light watts = light({property("Intensity", {100000}), property("DecayType", {2})}, blender);
+    EXPECT_NEAR(watts.color[0] / (1000 / (4 * pi) * 1e4), 1, 1e-5);
+    const rt_light sun = light({property("LightType", {1}), property("Intensity", {300})}, blender);
+    EXPECT_EQ(sun.kind, RT_LIGHT_SUN);
+    EXPECT_EQ(sun.color[0], 3);
+    EXPECT_EQ(light({property("LightType", {1}), property("Intensity", {300})}).kind, RT_LIGHT_DIRECTIONAL);
+    const rt_light area = light({property("LightType", {3}), property("Intensity", {300})});
+    EXPECT_EQ(area.kind, RT_LIGHT_RECT);
+    EXPECT_EQ(area.color[0], 3);
+    EXPECT_NEAR(area.area, 4, 1e-6);
+    EXPECT_NEAR(area.normal[1], -1, 1e-6) << "it shines along -y";
+    EXPECT_EQ(light({property("LightType", {3})}, blender).kind, RT_LIGHT_POINT);
+    EXPECT_TRUE(warns_of(scene, "became a point light, because the file does not say how large"));
+}
+
 TEST_P(FbxDetailForm, ShowsWhatItsParentHidesOnlyWhereItSays) {
     std::vector<FbxNode> objects = {geometry(1), model(2, "Hidden", {property("Visibility", {0})}), model(3, "Follows"),
                                     model(4, "Own", {property("Visibility Inheritance", {0})})};

@@ -51,10 +51,11 @@ inline bool warns_of(const Scene& scene, const std::string& text) {
 
 class FbxForms : public testing::TestWithParam<FbxForm> {
  protected:
-    Scene import(const std::vector<FbxNode>& objects, const std::vector<FbxNode>& links) {
+    Scene import(const std::vector<FbxNode>& objects, const std::vector<FbxNode>& links,
+                 const std::string& creator = "by hand") {
         const std::string version = std::to_string(GetParam().version);
         const std::vector<FbxNode> all = {
-            node("FBXHeaderExtension", {}, {node("FBXVersion", {whole(GetParam().version)})}),
+            node("FBXHeaderExtension", {}, {node("FBXVersion", {whole(GetParam().version)})}), node("Creator", {text(creator)}),
             node("GlobalSettings", {}, {node("Version", {whole(1000)}), node("Properties70", {}, {property("TimeMode", {6})})}),
             node("Objects", {}, objects), node("Connections", {}, links)};
         return import_file(folder_.write("model.fbx", FbxWriter(GetParam()).file(all)));

@@ -89,9 +89,45 @@ TEST_F(Gltf, SpotsKeepTheirCones) {
     EXPECT_NEAR(light.normal[0], -1, 1e-6) << "along -z of the turned node";
     EXPECT_NEAR(light.cos_outer, std::cos(0.5), 1e-6);
     EXPECT_NEAR(light.cos_inner, std::cos(0.25), 1e-6);
-    EXPECT_EQ(light.flags, 0u);
+    EXPECT_EQ(light.flags, RT_LIGHT_FALLOFF);
     EXPECT_NEAR(usual.cos_outer, half, 1e-6) << "the format's own: a quarter of half a turn";
     EXPECT_EQ(usual.cos_inner, 1);
+}
+
+// KHR_lights_punctual: candela and lux. Bright ones are no reason to change others.
+TEST_F(Gltf, LightsKeepTheirUnits) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    model["extensions"] = {{"KHR_lights_punctual",
+                            {{"lights",
+                              {{{"type", "point"}, {"intensity", 800}, {"color", {1, 0.5, 0.25}}},
+                               {{"type", "spot"}, {"intensity", 20}},
+                               {{"type", "directional"}, {"intensity", 3}},
+                               {{"type", "point"}}}}}},
+                           {"EXT_lights_image_based", {{"lights", nlohmann::json::array()}}}};
+    model["nodes"] = {{{"mesh", 0}}};
+    for (int i = 0; i < 4; ++i) {
+        const nlohmann::json own = {{"KHR_lights_punctual", {{"light", i}}}};
+        model["nodes"].push_back({{"translation", {0, 3, 0}}, {"extensions", own}});
+    }
+    model["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+    const Scene scene = import(model.text());
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("EXT_lights_image_based"), std::string::npos);
+    ASSERT_EQ(scene.lights.size(), 4u);
+    const auto light = [&](size_t i) -> const rt_light& { return scene.lights[i].values; };
+    EXPECT_EQ(light(0).kind, RT_LIGHT_POINT);
+    EXPECT_EQ(light(0).flags, RT_LIGHT_FALLOFF);
+    EXPECT_EQ(light(0).color[0], 800);
+    EXPECT_EQ(light(0).color[2], 200);
+    EXPECT_EQ(light(1).kind, RT_LIGHT_SPOT);
+    EXPECT_EQ(light(1).flags, RT_LIGHT_FALLOFF);
+    EXPECT_EQ(light(1).color[1], 20);
+    EXPECT_EQ(light(2).kind, RT_LIGHT_SUN) << "its colour is an irradiance";
+    EXPECT_EQ(light(2).color[1], 3);
+    EXPECT_EQ(light(2).angle, 0);
+    EXPECT_EQ(light(2).position[2], 1) << "it shines along -z";
+    EXPECT_EQ(light(3).color[1], 1);
 }
 
 TEST_F(Gltf, LeavesPointsAndLinesOutWithOneWarning) {

@@ -339,6 +339,37 @@ TEST(ColladaModel, NamesColoursOfVerticesThatAreLeftOut) {
     EXPECT_NE(scene.warnings[0].find("colours of vertices are not read; they are left out, in 1 meshes"), std::string::npos);
 }
 
+TEST(ColladaModel, LightsFadeAsTheirAttenuationSays) {
+    NEEDS_IMPORTER("a.dae");
+    std::ifstream file(data("box.dae"));
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    const Scratch folder;
+    const auto with = [&](const std::string& attenuation) {
+        std::string lit = text;
+        lit.insert(lit.find("<library_visual_scenes>"),
+                   "<library_lights><light id=\"lamp\"><technique_common><point><color>1 .5 .25</color>" + attenuation +
+                       "</point></technique_common></light></library_lights>");
+        lit.insert(lit.find("<instance_geometry"), "<instance_light url=\"#lamp\"/>");
+        return import_file(folder.write("lit.dae", lit));
+    };
+    const auto parts = [](const char* constant, const char* linear, const char* quadratic) {
+        return std::string("<constant_attenuation>") + constant + "</constant_attenuation><linear_attenuation>" + linear +
+               "</linear_attenuation><quadratic_attenuation>" + quadratic + "</quadratic_attenuation>";
+    };
+    const Scene plain = with("");
+    ASSERT_EQ(plain.lights.size(), 1u);
+    EXPECT_EQ(plain.lights[0].values.flags, 0u);
+    EXPECT_FLOAT_EQ(plain.lights[0].values.color[1], 0.5f);
+    const Scene square = with(parts("0", "0", "0.25"));
+    ASSERT_EQ(square.lights.size(), 1u);
+    EXPECT_EQ(square.lights[0].values.flags, RT_LIGHT_FALLOFF);
+    EXPECT_NEAR(square.lights[0].values.color[0], 4 * std::acos(-1.0), 1e-5);
+    EXPECT_TRUE(square.warnings.empty());
+    const Scene mixed = with(parts("1", "0", "0.25"));
+    ASSERT_EQ(mixed.warnings.size(), 1u);
+    EXPECT_NE(mixed.warnings[0].find("has an attenuation other than"), std::string::npos);
+}
+
 TEST(FbxModel, PlacesLampAndCamera) {
     const Scene scene = import_file(data("nodes.fbx"));
     ASSERT_EQ(scene.lights.size(), 1u);

@@ -9,6 +9,7 @@
 
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
+#include "scene/sky_kinds.hpp"
 
 namespace {
 
@@ -110,6 +111,7 @@ void add_look_calls(rt_scene_sink& sink) {
     };
     sink.light_kind = [](void*, rt_u32 kind) { return clarity::light_kind_for_plugins(kind); };
     sink.material_kind = [](void*) { return clarity::material_kind_for_plugins(); };
+    sink.sky_kind = [](void*, rt_u32 kind) { return clarity::sky_kind_for_plugins(kind); };
     sink.camera = [](void* ctx, const rt_camera* camera) -> rt_u32 {
         recording_of(ctx).cameras.push_back({camera->name, *camera});
         return id_of(recording_of(ctx).cameras.size());

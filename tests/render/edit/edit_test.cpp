@@ -7,8 +7,10 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "render/edit/sky_edit.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
+#include "scene/sky_kinds.hpp"
 #include "support/generated.hpp"
 
 namespace clarity::test {
@@ -68,8 +70,8 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
         EXPECT_TRUE(same_lights(visible_view(again).lights, visible_view(edited).lights));
         EXPECT_TRUE(again.instances == edited.instances);
         ASSERT_EQ(again.view.materials.size(), view.materials.size());
-        EXPECT_EQ(std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(rt_material)),
-                  0);
+        EXPECT_EQ(
+            std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(MaterialValues)), 0);
     }
 }
 
@@ -88,18 +90,57 @@ TEST(Edit, LightsAndModelsOfAllKindsAreRestoredBitByBit) {
         ASSERT_TRUE(make_sound(light));
         view.lights.push_back(light);
     }
-    rt_material& metal = view.materials[1];
+    MaterialValues& metal = view.materials[1];
     set_material_value(metal, material_key("model"), {RT_MODEL_CONDUCTOR, 0, 0});
     set_material_value(metal, material_key("roughness"), {0.3f, 0, 0});
     set_material_value(metal, material_key("reflect"), {scene.materials[1].values.reflect, 0, 0});  // as before: must be kept
     set_material_value(metal, material_key("compensate"), {0, 0, 0});
     set_material_value(metal, material_key("absorption"), {0.1f, 0.2f, 1.0f / 3.0f});
+    MaterialValues& layered = view.materials[0];
+    set_material_value(layered, material_key("model"), {RT_MODEL_GLTF, 0, 0});
+    set_material_value(layered, material_key("metallic"), {0.4f, 0, 0});
+    set_material_value(layered, material_key("thin"), {0, 0, 0});
+    set_material_value(layered, material_key("sheen_color"), {0.1f, 0.2f, 1.0f / 3.0f});
     const EditedView again = replay(scene, edits_between(scene, first_view(scene), edited));
     EXPECT_TRUE(same_lights(again.view.lights, view.lights));
     ASSERT_EQ(again.view.materials.size(), view.materials.size());
     EXPECT_EQ(std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(rt_material)), 0);
     EXPECT_EQ(again.view.camera.aperture, 0.1f);
     EXPECT_EQ(again.view.camera.focus, view.camera.focus);
+}
+
+TEST(Edit, EverySkyIsRestored) {
+    Scene scene = two_boxes();
+    scene.sky.values.kind = RT_SKY_PICTURE;
+    for (const SkyKind& kind : sky_kinds()) {
+        EditedView edited = first_view(scene);
+        SkyValues sky;
+        sky.kind = kind.kind;
+        float number = 0.1f;
+        for (const Key& key : kind.keys) {
+            if (key.alias) continue;
+            set_value(key, &sky,
+                      key.kind == RT_KEY_FLAG ? std::array<float, 3>{} : std::array<float, 3>{number, number * 2, 1.0f / 3.0f});
+            number += 0.1f;
+        }
+        edited.view.sky = sky;
+        const EditedView again = replay(scene, edits_between(scene, first_view(scene), edited));
+        EXPECT_TRUE(same_sky(sky_of(scene, again.view), sky)) << kind.name;
+        EXPECT_EQ(edits_between(scene, again, edited).size(), 1u) << "the camera alone";
+    }
+}
+
+TEST(Edit, AnotherKindOfSkyKeepsItsColour) {
+    const Scene scene = two_boxes();
+    EditedView edited = first_view(scene);
+    SkyValues sky = sky_of(scene, edited.view);
+    choose_sky_kind(scene, edited.view, RT_SKY_CONSTANT, sky);
+    EXPECT_EQ(sky.kind, RT_SKY_CONSTANT);
+    EXPECT_EQ(sky.color[1], edited.view.background[1]);
+    choose_sky_kind(scene, edited.view, RT_SKY_GRADIENT, sky);
+    EXPECT_EQ(sky.ground[1], sky.color[1]);
+    choose_sky_kind(scene, edited.view, RT_SKY_PICTURE, sky);
+    EXPECT_EQ(sky.kind, RT_SKY_GRADIENT) << "there is no picture";
 }
 
 TEST(Edit, OneKeyOfALight) {

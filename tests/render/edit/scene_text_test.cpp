@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "import/import.hpp"
 #include "scene/light_kinds.hpp"
+#include "scene/sky_kinds.hpp"
 #include "support/scratch.hpp"
 #include "support/workbench.hpp"
 
@@ -144,6 +145,30 @@ TEST_F(SceneTextTest, LightsAndModelsOfAllKindsAreSaved) {
         EXPECT_EQ(std::memcmp(&again.view.lights[i], &edited.view.lights[i], sizeof(rt_light)), 0) << i << "\n" << text;
     EXPECT_EQ(std::memcmp(&again.view.materials[1], &edited.view.materials[1], sizeof(rt_material)), 0) << text;
     EXPECT_EQ(again.view.camera.aperture, 0.125f);
+}
+
+TEST_F(SceneTextTest, TheSkyIsSavedWhereverItComesFrom) {
+    scratch.write("sky.pfm", "PF\n2 1\n-1.0\n" + std::string(24, '\0'));
+    const std::string rest = std::string(kScene) + "sky gradient zenith 1 2 3 ground .5 strength 2\n";
+    const std::string gradient = scratch.write("hand.scene", rest), plain = scratch.write("plain.scene", kScene),
+                      picture = scratch.write("picture.scene", std::string(kScene) + "sky sky.pfm rotate 20\n");
+    const std::vector<Word> strength = {{"sky.strength", "0.25"}, {"sky.visible", "false"}};
+    const std::vector<Word> other = {{"sky", "constant"}, {"sky.color", "0.1,0.2,0.3"}}, none = {{"sky", "background"}};
+    for (const auto& [path, words] : std::vector<std::pair<std::string, std::vector<Word>>>{
+             {gradient, strength}, {gradient, other}, {gradient, none}, {plain, other}, {picture, {{"sky.rotate", "-30"}}}}) {
+        const Scene scene = load({path});
+        EditedView edited = first(scene);
+        edit(scene, edited, words);
+        ASSERT_FALSE(same_sky(sky_of(scene, edited.view), scene.sky.values)) << path;
+        const std::string text = scratch.read(std::filesystem::path(path).filename().string());
+        for (const std::string& name : {std::string("beside.scene"), std::filesystem::path(path).filename().string()}) {
+            save_scene({scene, {path}, edited}, scratch.path(name));
+            const Scene again = load({scratch.path(name)});
+            EXPECT_TRUE(same_sky(sky_of(again, first(again).view), sky_of(scene, edited.view))) << scratch.read(name);
+            EXPECT_TRUE(same_sky(with_scene_edits(again).sky.values, sky_of(scene, edited.view))) << scratch.read(name);
+        }
+        scratch.write(std::filesystem::path(path).filename().string(), text);
+    }
 }
 
 TEST_F(SceneTextTest, NodesOfALoadedFileAreMovedAndHidden) {

@@ -99,11 +99,10 @@ TEST(Lights, RaysFindWhatWasDrawn) {
     EXPECT_GT(of_lights, 120u);
 }
 
-// Pearson's chi-square of drawn directions in 8 x 16 cells of equal solid angle, against the integral of the density that rays
-// find, which itself integrates to the share of draws that shine.
-TEST(Lights, DrawsAreDistributedAsTheirDensitySays) {
-    LightBench bench(full_scene(), full_view());
-    const Point at = {0.1f, 0.05f, -0.2f};
+// Expects drawn directions to be distributed as the density says that rays find: Pearson's chi-square in 8 x 16 cells of equal
+// solid angle, against integrals of the density, which itself integrates to the share of draws that shine. A failure is tried
+// again with another seed. Returns the cells that are looked at.
+int expect_distribution(LightBench& bench, const Point& at) {
     for (unsigned seed = 1;; ++seed) {
         constexpr int kRows = 8, kColumns = 16;
         std::vector<double> drawn(kRows * kColumns, 0), expected(kRows * kColumns, 0);
@@ -136,12 +135,51 @@ TEST(Lights, DrawsAreDistributedAsTheirDensitySays) {
                 chi2 += (drawn[i] - expected[i]) * (drawn[i] - expected[i]) / expected[i];
                 ++cells;
             }
-        ASSERT_GT(cells, 100);
         // 4 standard deviations of a chi-square, and what the quadrature is off.
         const double most = cells + 4 * std::sqrt(2.0 * cells) + 0.1 * cells;
         if (chi2 < most || seed == 2) {
             EXPECT_LT(chi2, most) << cells << " cells, seed " << seed;
-            return;
+            return cells;
+        }
+    }
+}
+
+TEST(Lights, DrawsAreDistributedAsTheirDensitySays) {
+    LightBench bench(full_scene(), full_view());
+    ASSERT_GT(expect_distribution(bench, {0.1f, 0.05f, -0.2f}), 100);
+}
+
+// Each direction to a gradient is as likely as the light that comes from there, of all channels together: what a draw brings is
+// always the light of the whole sky.
+TEST(Lights, GradientsAreDrawnByTheirRadiance) {
+    const auto gray = [](float value) { return std::array<float, 3>{value, value, value}; };
+    struct Row {
+        std::array<float, 3> zenith, horizon, ground;
+        int cells;  // of 128, that are bright enough
+    };
+    const Row rows[] = {{{0.2f, 0.4f, 1}, {1, 0.9f, 0.8f}, {0.2f, 0.15f, 0.1f}, 128},
+                        {gray(0.3f), gray(0.3f), gray(0.3f), 128},
+                        {gray(1e9f), gray(0), gray(0), 64},
+                        {gray(0), gray(1), gray(0), 64},
+                        {gray(0), gray(0), {0, 1, 0}, 64},
+                        {gray(1e-9f), gray(1), gray(5), 128}};
+    for (const Row& row : rows) {
+        Scene scene = empty_scene();
+        SkyValues& sky = scene.sky.values;
+        sky.kind = RT_SKY_GRADIENT;
+        sky.strength = 3;
+        std::copy_n(row.zenith.begin(), 3, sky.color);
+        std::copy_n(row.horizon.begin(), 3, sky.horizon);
+        std::copy_n(row.ground.begin(), 3, sky.ground);
+        double flux = 0;
+        for (int k = 0; k < 3; ++k)
+            flux += sky.strength * kPi * (double(row.zenith[k]) + row.horizon[k] + 2 * double(row.ground[k]));
+        LightBench bench(scene, dark_view());
+        EXPECT_EQ(expect_distribution(bench, {0, 0, 0}), row.cells);
+        for (const LightDraw& draw : bench.draw({0, 0, 0}, random_numbers(1 << 12, 3))) {
+            ASSERT_TRUE(draw.valid);
+            ASSERT_NEAR(length(to_vec(draw.towards)), 1, 1e-6);
+            ASSERT_NEAR((double(draw.light[0]) + draw.light[1] + draw.light[2]) / flux, 1, 1e-4) << draw.towards[1];
         }
     }
 }

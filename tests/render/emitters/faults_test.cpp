@@ -75,4 +75,30 @@ TEST(PlantedFaults, OfSkiesAreFound) {
         << "env shifted by half a texel";
 }
 
+// On a wall, which sees both halves of a gradient.
+TEST(PlantedFaults, OfGradientsAreFound) {
+    Scene scene = empty_scene();
+    SkyValues& sky = scene.sky.values;
+    sky.kind = RT_SKY_GRADIENT;
+    for (int k = 0; k < 3; ++k) sky.color[k] = 1, sky.horizon[k] = 0.2f, sky.ground[k] = 0.4f;
+    const auto error = [&] {
+        LightBench bench(scene, dark_view());
+        return std::fabs(bench.irradiance({0, 0, 0}, {1, 0, 0}, even_numbers(1 << 15, 1)) /
+                             bench.irradiance_by_rays({0, 0, 0}, {1, 0, 0}, even_numbers(1 << 18, 1)) -
+                         1);
+    };
+    const auto error_with = [&](const char* from, const char* to) {
+        const FaultyKernel planted("shading/sky.h", from, to);
+        return error();
+    };
+    EXPECT_LT(error(), 0.005) << "sound";
+    EXPECT_GT(error_with("rt_vfloat(1.0f - below) * rt_gradient_shape", "rt_gradient_shape"), 0.02)
+        << "density without the share of the part above";
+    EXPECT_GT(error_with("fma(y, rt_vfloat(1.0f - 2.0f * horizon), rt_vfloat(horizon))",
+                         "fma(y, rt_vfloat(2.0f * horizon - 1.0f), rt_vfloat(1.0f - horizon))"),
+              0.02)
+        << "horizon and zenith change places";
+    EXPECT_GT(error_with("height = v / rt_max(", "height = v; (void)rt_max("), 0.02) << "drawn evenly above";
+}
+
 }  // namespace

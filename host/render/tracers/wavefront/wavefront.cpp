@@ -18,7 +18,7 @@ constexpr uint64_t kCpuBytes = 64 << 20;
 constexpr uint64_t kMostCounted = 1u << 30;  // a uint counts them, including those that find no room
 
 // Whether a ray may split in two: one sees through some material of the view, or of the scene if the view has none.
-bool refracts(const Scene& scene, const std::vector<rt_material>& materials) {
+bool refracts(const Scene& scene, const std::vector<MaterialValues>& materials) {
     const auto clear = [](const rt_material& m) { return m.refract > 0 || m.alpha == RT_ALPHA_BLEND; };
     if (!materials.empty()) return std::any_of(materials.begin(), materials.end(), clear);
     return std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -131,8 +131,13 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.what = "tracer wavefront";
         r.file = "tracers/wavefront/wavefront.cl";
         r.entry = "trace_wavefront";
-        r.headers = {"shading/material.h", "shading/cutouts.h",         "shading/shading.h",
-                     "tracers/ray_step.h", "lanes/work_distribution.h", "tracers/wavefront/wavefront_rays.h"};
+        r.headers = {"shading/material.h",
+                     "shading/cutouts.h",
+                     "shading/power.h",
+                     "shading/shading.h",
+                     "tracers/ray_step.h",
+                     "lanes/work_distribution.h",
+                     "tracers/wavefront/wavefront_rays.h"};
         r.traits = kLimitRegisters | kFrame | kCountsRays | kWhitted;
         return r;
     }();

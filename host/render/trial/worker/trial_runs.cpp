@@ -68,6 +68,7 @@ Problem try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, c
     settings.optics = job.features.optics;
     settings.width = kWidth;
     settings.height = kHeight;
+    settings.crop = {};
     settings.depth = std::min(settings.depth, kDepth);
     settings.spp = 1;
     settings.shutter = 0;

@@ -1,0 +1,92 @@
+// goal_test.cpp -- `clarity render --error` and `--time-budget`: pictures end when they are good enough, or when time is over.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "support/scratch.hpp"
+
+namespace {
+
+class Goal : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        if (run_program({"devices"}).exit_code == 3) GTEST_SKIP() << "no OpenCL device on this machine";
+        scene_ = scratch_.write("a.scene",
+                                "camera main eye 0 1 4 target 0 1 0 fov 40\n"
+                                "light rect center 0 3 0 u 1 0 0 v 0 0 1 radiance 4 4 4\n"
+                                "material white model lambert color .7 .7 .7\n"
+                                "plane normal 0 1 0 offset 0 material white\n"
+                                "sphere center 0 1 0 radius .7 material white\n");
+    }
+    ProgramResult render(const std::vector<std::string>& more) const {
+        std::vector<std::string> all = {"render",   scene_,
+                                        "--size",   "32x24",
+                                        "--tracer", "path",
+                                        "-o",       scratch_.path("a.pfm"),
+                                        "--stats",  scratch_.path("s.json")};
+        all.insert(all.end(), more.begin(), more.end());
+        return run_program(all);
+    }
+    nlohmann::json stats(const std::vector<std::string>& more) const {
+        const ProgramResult result = render(more);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return nlohmann::json::parse(scratch_.read("s.json"));
+    }
+    Scratch scratch_;
+    std::string scene_;
+};
+
+TEST_F(Goal, AnErrorIsReachedWithTheSamplesThatItTakes) {
+    render({"--spp", "20000", "--seed", "7"});
+    scratch_.write("reference.pfm", scratch_.read("a.pfm"));
+    const auto reach = [&](const char* error) {
+        return stats({"--error", error, "--sampler", "independent", "--reference", scratch_.path("reference.pfm")});
+    };
+    const nlohmann::json coarse = reach("8%"), fine = reach("0.02");
+    for (const auto& [run, goal] : {std::pair{&coarse, 0.08}, {&fine, 0.02}}) {
+        const double estimated = (*run)["estimated_error"];
+        EXPECT_LE(estimated, goal);
+        EXPECT_GT(estimated, 0.6 * goal) << "many more samples than needed: " << (*run)["samples"];
+        const nlohmann::json& end = (*run)["reference"]["points"].back();
+        // RMSE is over three channels and the estimate of luminance: alike in this gray scene.
+        EXPECT_NEAR(end["rmse"].get<double>() / end["mean"].get<double>() / estimated, 1, 0.15);
+    }
+    const double ratio = fine["samples"].get<double>() / coarse["samples"].get<double>();
+    EXPECT_GT(ratio, 9);
+    EXPECT_LT(ratio, 25);
+    EXPECT_EQ(reach("0.02")["samples"], fine["samples"]) << "it depends on nothing but the picture";
+    EXPECT_EQ(stats({"--error", "1e-6", "--spp", "20"})["samples"], 20) << "--spp is the most";
+}
+
+TEST_F(Goal, ATimeIsKept) {
+    const nlohmann::json some = stats({"--time-budget", "0.3"}), more = stats({"--time-budget", "1.2"});
+    EXPECT_GT(some["samples"], 0);
+    EXPECT_GT(more["samples"], some["samples"]);
+    EXPECT_EQ(stats({"--time-budget", "0.001", "--spp", "100000"}).value("samples", 0) > 0, true);
+}
+
+TEST_F(Goal, IsRecorded) {
+    ASSERT_EQ(render({"--error", ".1", "--skip-existing"}).exit_code, 0);
+    const nlohmann::json record = nlohmann::json::parse(scratch_.read("a.json"));
+    EXPECT_EQ(record["samples"], nlohmann::json::parse(scratch_.read("s.json"))["samples"]);
+    const ProgramResult verified = run_program({"render", "--verify", scratch_.path("a.json")});
+    EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+    ASSERT_EQ(render({"--time-budget", ".1", "--skip-existing"}).exit_code, 0);
+    const ProgramResult timed = run_program({"render", "--verify", scratch_.path("a.json")});
+    EXPECT_EQ(timed.exit_code, 1);
+    EXPECT_NE((timed.out + timed.err).find("--time-budget"), std::string::npos) << timed.out << timed.err;
+}
+
+TEST_F(Goal, ThatNobodyCanKeepIsRefused) {
+    for (const std::vector<std::string>& words :
+         std::vector<std::vector<std::string>>{{"--error", ".1", "--tracer", "iterative"},
+                                               {"--error", ".1", "--aov", "error"},
+                                               {"--error", "0"},
+                                               {"--time-budget", "-1"},
+                                               {"--error", ".1", "--repeat", "2"},
+                                               {"--time-budget", "1", "--repeat", "2"}})
+        EXPECT_EQ(render(words).exit_code, 2) << words[0] << " " << words[1];
+}
+
+}  // namespace
