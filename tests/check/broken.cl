@@ -170,6 +170,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
 #endif
         }
+#ifdef BROKEN_FORGETS_DEFERRED
+        if (top > 3u) --top;
+#endif
         if (top == 0u) return;
         ref = stack[--top];
 #ifdef BROKEN_READS_BEYOND_SLOT
