@@ -215,6 +215,18 @@ Scene crowd_scene(unsigned count) {
     return std::move(make.scene);
 }
 
+Scene row_scene(unsigned count) {
+    Maker make;
+    for (unsigned i = 0; i < count; ++i) {
+        const float s = std::pow(4.0f, float(i) - 12), x = 1.02f * s, y = row_place(i, count) * x, z = 0.32f * x - y,
+                    r = 0.003f * s;
+        make.triangle({s, -0.2f * s, -0.2f * s}, {1.05f * s, 0.3f * s, -0.2f * s}, {s, -0.2f * s, 0.3f * s});
+        make.triangle({x, y - r, z - r}, {x, y + r, z - r}, {x, y, z + r});
+    }
+    make.place(make.mesh());
+    return std::move(make.scene);
+}
+
 Scene floor_scene() {
     Maker make;
     kPatchRows[0].fill(make);

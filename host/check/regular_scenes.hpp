@@ -34,4 +34,12 @@ Scene sizes_scene(uint64_t seed = 0);
 // from there across (1, 1, 1) meets none of them: it enters all boxes and leaves and hits the room behind them.
 Scene crowd_scene(unsigned count);
 
+// `count` pairs of triangles along x, each four times as large and as far away as the one before. So a builder that looks at
+// surfaces splits off one pair after the other. A ray from the origin along (1, y, 0.32 - y), y from 0.06 to 0.26, enters all
+// boxes, and meets at most one triangle, a pair's small one (row_ray_sets() knows which); one along x meets a large one first.
+Scene row_scene(unsigned count);
+inline float row_place(unsigned pair, unsigned count) {  // y of the pair's small triangle
+    return 0.06f + 0.2f * float(pair) / float(count);
+}
+
 }  // namespace clarity::check

@@ -75,6 +75,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #ifdef BROKEN_NOT_FAR
         inside &= rt_bits(RT_MASK(entry < rt_vfloat(2e4f)));
 #endif
+#ifdef BROKEN_ENDS_AT_A_MILLION
+        inside &= rt_bits(RT_MASK(entry < rt_vfloat(1e6f)));
+#endif
 #ifdef BROKEN_NOT_INSIDE
         if (node->count > 0u) inside &= rt_bits(RT_MASK(entry > ray->t_min)); /* leaves that hold the origin */
 #endif
@@ -167,6 +170,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
 #endif
         }
+#ifdef BROKEN_FORGETS_DEFERRED
+        if (top > 3u) --top;
+#endif
         if (top == 0u) return;
         ref = stack[--top];
 #ifdef BROKEN_READS_BEYOND_SLOT

@@ -6,7 +6,7 @@ enum {
     BROKEN_SHAPE_LANES_8, BROKEN_SHAPE_ZERO_RADIUS,
     BROKEN_SHAPE_UV_SEAM, BROKEN_SHAPE_UV_OFF_CENTRE, BROKEN_SHAPE_UV_WORLD_CENTRE, BROKEN_SHAPE_UV_TWICE, BROKEN_SHAPE_UV_CONSTANT,
     BROKEN_SHAPE_UV_ONE_DIRECTION, BROKEN_SHAPE_UV_STEPS, BROKEN_SHAPE_UV_HALVES, BROKEN_SHAPE_UV_NEVER_ENDS, BROKEN_SHAPE_UV_MIRRORED_HALF,
-    BROKEN_SHAPE_AXIS, BROKEN_SHAPE_SLIM
+    BROKEN_SHAPE_AXIS, BROKEN_SHAPE_SLIM, BROKEN_SHAPE_UV_CLAMPED
 };
 
 /* The vector in the space where the ball has the radius 1. */
@@ -87,6 +87,7 @@ RT_INLINE void broken_shape_surface(const global float *numbers, const global fl
     if (defect == BROKEN_SHAPE_UV_ONE_DIRECTION) s->tex_u = s->tex_v;
     if (defect == BROKEN_SHAPE_UV_STEPS) s->tex_v = rt_to_float(rt_to_int(16.0f * s->tex_v)) / 16.0f;
     if (defect == BROKEN_SHAPE_UV_HALVES) s->tex_v = 2.0f * s->tex_v - rt_select(RT_MASK(s->tex_v >= rt_vfloat(0.5f)), rt_vfloat(1.0f), rt_vfloat(0.0f));
+    if (defect == BROKEN_SHAPE_UV_CLAMPED) s->tex_v = rt_min(1.1f * s->tex_v, rt_vfloat(1.0f)); /* nothing changes about the top */
     if (defect == BROKEN_SHAPE_UV_NEVER_ENDS) s->tex_u = 0.8f * s->tex_u;
     if (defect == BROKEN_SHAPE_UV_MIRRORED_HALF) s->tex_u = 0.5f - fabs(s->tex_u - 0.5f); /* continuous, but the picture is folded */
 }

@@ -25,7 +25,7 @@ constexpr const char* kInKernels[] = {
     "wrong_scale", "wrong_normal", "inward",           "wrong_uv",      "inexact",    "reads_beyond",   "loop",
     "hole",        "nan",          "lanes_8",          "zero_radius",   "uv_seam",    "uv_off_centre",  "uv_world_centre",
     "uv_twice",    "uv_constant",  "uv_one_direction", "uv_steps",      "uv_halves",  "uv_never_ends",  "uv_mirrored_half",
-    "axis",        "slim"};
+    "axis",        "slim",         "uv_clamped"};
 constexpr float number_of_defect() {
     float number = 0;
     for (size_t i = 0; i < std::size(kInKernels); ++i)

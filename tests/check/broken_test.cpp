@@ -100,6 +100,7 @@ const Defect kDefects[] = {
     {"stops_at_first_leaf", "hits.random", {"behind the nearest"}},
     {"reads_beyond_slot", "hits.random", {"crashed (segmentation fault", "beyond the end of slot broken_nodes"}},
     {"small_stack", "hits.stack", {"stack was full"}},
+    {"forgets_deferred", "hits.stack", {"hit nothing", "has not come back from it"}},
     // boxes and planes without slack, and what is at their edges
     {"no_slack", "hits.floor", {"hit nothing", "need slack"}},
     {"strict_slabs", "hits.floor", {"hit nothing"}},
@@ -107,6 +108,7 @@ const Defect kDefects[] = {
     {"sign_of_d", "hits.axes", {"hit nothing"}},
     {"rounds_boxes", "hits.edges", {"are wrong"}},
     {"not_far", "hits.distant", {"hit nothing"}},
+    {"ends_at_a_million", "hits.scales", {"hit nothing"}},
     {"not_inside", "hits.inside", {"behind the nearest"}},
     // culls a little too much
     {"culls_closely", "hits.decals", {"are lost when t_max is just behind them"}},

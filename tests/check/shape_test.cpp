@@ -53,6 +53,7 @@ const Defect kDefects[] = {
     {"uv_constant", "surface.uv", {"a picture has no area there"}},
     {"uv_one_direction", "surface.uv", {"a picture has no area there"}},
     {"uv_steps", "surface.uv", {"a picture has no area there"}},
+    {"uv_clamped", "surface.uv", {"a picture has no area there"}},
     {"uv_halves", "surface.uv", {"v goes from 1 to 0", "begins anew within the surface"}},
     {"uv_never_ends", "surface.uv", {"u jumps by 0.2"}},
     {"uv_mirrored_half", "surface.uv", {"around this point u does not turn"}},

@@ -124,14 +124,13 @@ CheckedScene& Bench::compiled(const Variant& variant, const Step& step) {
     return at;
 }
 
+size_t Bench::ray_count() const {
+    if (options().rays > 0) return options().rays;
+    return options().quick ? kQuickRays : kRays;
+}
+
 const std::vector<RaySet>& Bench::sets(const Step& step) {
-    const HitsOptions& options = input_.options;
-    if (sets_.empty())
-        sets_ = test_.rays(scene(step).build_scene(),
-                           options.rays > 0 ? options.rays
-                           : options.quick  ? kQuickRays
-                                            : kRays,
-                           options.seed);
+    if (sets_.empty()) sets_ = test_.rays(scene(step).build_scene(), ray_count(), options().seed);
     return sets_;
 }
 
@@ -141,8 +140,11 @@ const RaySet& Bench::set(const std::string& name, const Step& step) {
 }
 
 const std::vector<Truth>& Bench::truths(const RaySet& set, const Step& step) {
-    std::vector<Truth>& known = truths_[set.name];
-    const BruteForce force(scene(step).build_scene());
+    const std::string pose = as_.moves == Moves::none ? " at rest, " : " in another pose, ";
+    std::vector<Truth>& known = (*input_.truths)[test_.what + pose + std::to_string(ray_count()) + " " + set.name];
+    const BuildScene& at = scene(step).build_scene();
+    if (known.size() == set.rays.size()) return known;
+    const BruteForce force(at);
     while (known.size() < set.rays.size()) {
         step("computing what the rays hit", std::max(60.0, test_.limit_s));
         const auto begin = set.rays.begin() + static_cast<std::ptrdiff_t>(known.size());

@@ -31,6 +31,8 @@ struct TestScene {
 extern const TestScene kMixedScene, kRegularScene, kFloorScene, kSizesScene;
 
 using OpenDevice = std::function<std::shared_ptr<Device>()>;
+// What rays hit, by the scene, its pose, the number of rays and the set: it does not depend on how a structure is built.
+using KnownTruths = std::map<std::string, std::vector<Truth>>;
 
 // What a bench is for. Plugin and layout must outlive it.
 struct BenchInput {
@@ -38,6 +40,7 @@ struct BenchInput {
     const rt_plugin* layout;  // what traces the tree if the plugin builds a topology, otherwise nullptr
     OpenDevice open;          // on first use
     HitsOptions options;
+    std::shared_ptr<KnownTruths> truths = std::make_shared<KnownTruths>();  // shared by all copies
 };
 
 // Used from one thread.
@@ -59,6 +62,8 @@ class Bench {
     const std::vector<Truth>& truths(const RaySet& set, const Step& step);
 
  private:
+    size_t ray_count() const;  // of a set
+
     BenchInput input_;
     const TestScene& test_;
     const BuiltAs as_;
@@ -66,7 +71,6 @@ class Bench {
     std::unique_ptr<CheckedScene> scene_;
     std::vector<std::string> compiled_;
     std::vector<RaySet> sets_;
-    std::map<std::string, std::vector<Truth>> truths_;
 };
 
 // One way in which rays were traced.

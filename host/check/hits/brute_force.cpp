@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "base/parallel_for.hpp"
-#include "scene/vec.hpp"
 
 namespace clarity::check {
 namespace {
@@ -152,17 +151,18 @@ void close_sheets(std::vector<AtEdge>& at, double blur, std::vector<Contact>& co
     }
 }
 
+// Whether a ray passes a triangle so closely that add_triangle() has to look.
+bool may_meet(const Ray& ray, const Across& across, const Ball& ball) {
+    const Vec from = ball.middle - ray.o;
+    const double x = dot(from, across.u), y = dot(from, across.v);
+    const double room = ball.reach + 4 * (ray.blur + kRounding * (ball.largest + ball.reach + length(from)));
+    return x * x + y * y <= room * room;
+}
+
 // at_edge, blur: receive what close_sheets() needs.
 void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& prim, Contact contact,
                   std::vector<Contact>& contacts, std::vector<AtEdge>& at_edge, double& blur) {
     const Vec corners[3] = {to_vec(prim.a), to_vec(prim.b), to_vec(prim.c)};
-    // Most triangles are far from the ray: a quick look first.
-    const Vec middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
-    double reach = 0;
-    for (const Vec& c : corners) reach = std::max(reach, length(c - middle));
-    const double mx = dot(middle - ray.o, across.u), my = dot(middle - ray.o, across.v);
-    const double far = length(middle - ray.o);
-    if (std::hypot(mx, my) > reach + 4 * (ray.blur + kRounding * (largest(middle) + reach + far))) return;
     const Vec normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     Passing p = pass_face(ray, across, corners, 3, normal, corners[0]);
     // A triangle without area, as far as rounding can tell, may be hit or not.
@@ -172,6 +172,7 @@ void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& pr
     if (slim) {
         p.inside = false;
         if (!(std::fabs(p.t) < kInf) || p.cosine < 1e-3) {
+            const Vec middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
             p.t = dot(middle - ray.o, ray.d) / (ray.length_d * ray.length_d);
             p.cosine = 1;
             p.size += edge * 1e6;  // its distance may be anything along its edges
@@ -248,10 +249,12 @@ double Truth::latest() const {
     return least;
 }
 
-const Contact* Truth::of(rt_i32 prim, rt_i32 instance) const {
-    for (const Contact& contact : contacts)
-        if (contact.prim == prim && contact.instance == instance) return &contact;
-    return nullptr;
+BruteForce::BruteForce(const BuildScene& scene) : scene_(scene) {
+    balls_.reserve(scene.triangles.size());
+    for (const rt_packed_prim& t : scene.triangles) {
+        const Vec a = to_vec(t.a), b = to_vec(t.b), c = to_vec(t.c), middle = (1.0 / 3) * (a + b + c);
+        balls_.push_back({middle, std::max({length(a - middle), length(b - middle), length(c - middle)}), largest(middle)});
+    }
 }
 
 Truth BruteForce::trace(const rt_ray& given) const {
@@ -262,36 +265,33 @@ Truth BruteForce::trace(const rt_ray& given) const {
     const Across across(ray);
     std::vector<AtEdge> at_edge;
     double blur = 0;
-    const auto add = [&](const Ray& r, const Across& a, const rt_packed_prim& prim, Contact contact) {
+    // first: what is added to the primitive's number.
+    const auto add = [&](const Ray& r, const Across& a, rt_u32 ref, rt_u32 first, rt_i32 instance) {
+        const rt_u32 kind = RT_REF_KIND(ref), index = RT_REF_INDEX(ref);
+        if (kind == RT_REF_TRIANGLE && !may_meet(r, a, balls_[index])) return;
+        const rt_packed_prim& prim = kind == RT_REF_TRIANGLE ? scene_.triangles[index]
+                                     : kind == RT_REF_SPHERE ? scene_.spheres[index]
+                                                             : scene_.polygons[index];
+        Contact contact;
+        contact.prim = static_cast<rt_i32>(first + prim.prim);
+        contact.instance = instance;
         contact.ref = prim.ref;
-        switch (RT_REF_KIND(prim.ref)) {
-            case RT_REF_TRIANGLE:
-                return add_triangle(r, a, prim, contact, truth.contacts, at_edge, blur);
-            case RT_REF_SPHERE:
-                return add_sphere(r, prim, contact, truth.contacts);
-            case RT_REF_POLYGON:
-                return add_polygon(r, a, scene_, prim, contact, truth.contacts);
-        }
+        if (kind == RT_REF_TRIANGLE)
+            add_triangle(r, a, prim, contact, truth.contacts, at_edge, blur);
+        else if (kind == RT_REF_SPHERE)
+            add_sphere(r, prim, contact, truth.contacts);
+        else
+            add_polygon(r, a, scene_, prim, contact, truth.contacts);
     };
     const auto close = [&] {
         close_sheets(at_edge, blur, truth.contacts);
         at_edge.clear();
         blur = 0;
     };
-    const auto packed = [&](rt_u32 ref) -> const rt_packed_prim& {
-        const rt_u32 index = RT_REF_INDEX(ref);
-        return RT_REF_KIND(ref) == RT_REF_TRIANGLE ? scene_.triangles[index]
-               : RT_REF_KIND(ref) == RT_REF_SPHERE ? scene_.spheres[index]
-                                                   : scene_.polygons[index];
-    };
     const rt_group& world = scene_.groups[0];
     for (rt_u32 i = world.first; i < world.first + world.count; ++i) {
         const rt_u32 ref = scene_.prims[i].ref;
-        if (RT_REF_KIND(ref) == RT_REF_INSTANCE) continue;
-        const rt_packed_prim& prim = packed(ref);
-        Contact contact;
-        contact.prim = static_cast<rt_i32>(prim.prim);
-        add(ray, across, prim, contact);
+        if (RT_REF_KIND(ref) != RT_REF_INSTANCE) add(ray, across, ref, 0, -1);
     }
     close();
     for (rt_u32 i = world.first; i < world.first + world.count; ++i) {
@@ -319,13 +319,8 @@ Truth BruteForce::trace(const rt_ray& given) const {
         inner.blur += kRounding * length(inner.o);
         const Across inner_across(inner);
         const rt_group& group = scene_.groups[scene_.group_of_instance[index]];
-        for (rt_u32 k = group.first; k < group.first + group.count; ++k) {
-            const rt_packed_prim& prim = packed(scene_.prims[k].ref);
-            Contact contact;
-            contact.prim = static_cast<rt_i32>(instance.first_prim + prim.prim);
-            contact.instance = static_cast<rt_i32>(index);
-            add(inner, inner_across, prim, contact);
-        }
+        for (rt_u32 k = group.first; k < group.first + group.count; ++k)
+            add(inner, inner_across, scene_.prims[k].ref, instance.first_prim, static_cast<rt_i32>(index));
         close();
     }
     std::sort(truth.contacts.begin(), truth.contacts.end(), [](const Contact& a, const Contact& b) { return a.t < b.t; });

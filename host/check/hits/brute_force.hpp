@@ -7,6 +7,7 @@
 
 #include "render/accel/build_scene.hpp"
 #include "rt_types.h"
+#include "scene/vec.hpp"
 
 namespace clarity::check {
 
@@ -30,18 +31,24 @@ struct Truth {
     const Contact* nearest_certain() const;
     // No sound answer is farther; infinity: none is certain.
     double latest() const;
-    const Contact* of(rt_i32 prim, rt_i32 instance) const;
+};
+
+// Around a triangle. Most are far from a ray, which this shows with less arithmetic.
+struct Ball {
+    Vec middle;
+    double reach, largest;  // its radius; the largest coordinate of `middle`
 };
 
 // For finite rays with a direction. Keeps a reference to the scene, whose prims and triangles must be there. Thread-safe.
 class BruteForce {
  public:
-    explicit BruteForce(const BuildScene& scene) : scene_(scene) {}
+    explicit BruteForce(const BuildScene& scene);
     Truth trace(const rt_ray& ray) const;
     std::vector<Truth> trace(const std::vector<rt_ray>& rays) const;  // on all threads
 
  private:
     const BuildScene& scene_;
+    std::vector<Ball> balls_;  // of its triangles
 };
 
 }  // namespace clarity::check

@@ -50,6 +50,12 @@ std::string Variant::options() const {
     return "--lanes " + std::to_string(lanes) + (debug ? " --debug true" : "") + (portable ? " --portable true" : "");
 }
 
+std::string Traced::full_stack() const {
+    if (overflows == 0) return {};
+    return "the traversal stack was full " + std::to_string(overflows) +
+           " times: the define of its size is too small for the tree; without --debug it would write beyond it";
+}
+
 CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
                            const Scene* rest, const BuiltAs& as)
     : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
@@ -132,15 +138,21 @@ void CheckedScene::compile(const Variant& variant) {
     trace(variant, {rt_ray{{0, 0, 0}, 1, {0, 0, 1}, -1}}, false);
 }
 
-Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit, bool counts) {
-    return trace(*prepared(variant), rays, any_hit, counts);
-}
-
-Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit, bool counts) {
-    Traced traced;
+Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit) {
     RayQuery query;
     query.any_hit = any_hit;
-    query.count = counts;
+    return trace(*prepared(variant), rays, query);
+}
+
+Traced CheckedScene::count(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit) {
+    RayQuery query;
+    query.any_hit = any_hit;
+    query.count = true;
+    return trace(*prepared(variant), rays, query);
+}
+
+Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, RayQuery query) {
+    Traced traced;
     query.quiet = true;  // the checks say it
     queries_->trace(in, RayBlocks(rays, in.layout.lanes), query, &traced.hits);
     traced.overflows = queries_->overflows();

@@ -22,6 +22,8 @@ struct Variant {
 struct Traced {
     std::vector<rt_hit> hits;
     uint64_t overflows = 0;  // full traversal stacks, counted by debug programs
+    // What is wrong if a stack was full; empty: none was.
+    std::string full_stack() const;
 };
 
 // Numbers of the primitives behind the last leaf. They cut every ray: if one is hit, a traversal has tested a leaf that does
@@ -50,12 +52,13 @@ class CheckedScene {
     const Device& device() const { return *device_; }
     // Compiles on first use. Throws Error.
     void compile(const Variant& variant);
-    // counts: fills in what rays count, by another program.
-    Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit, bool counts = false);
+    Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
+    // The same by another program, which also fills in what rays count.
+    Traced count(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
     // For scenes that move on the device: the structure as it was built, what rays need of it, and rays in a copy of that.
     const std::shared_ptr<const AccelData>& accel() const { return accel_; }
     std::shared_ptr<const Prepared> prepared(const Variant& variant);
-    Traced trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit, bool counts = false);
+    Traced trace(const Prepared& in, const std::vector<rt_ray>& rays, RayQuery query);
 
  private:
     std::shared_ptr<const Scene> scene_;

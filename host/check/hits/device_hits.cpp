@@ -53,14 +53,14 @@ struct PosedRays {
 // Returns what is wrong; empty: nothing.
 std::string hits_fault(CheckedScene& scene, const Prepared& moved, const PosedRays& at) {
     for (const bool any_hit : {false, true}) {
-        const Traced traced = scene.trace(moved, at.rays, any_hit);
+        RayQuery query;
+        query.any_hit = any_hit;
+        const Traced traced = scene.trace(moved, at.rays, query);
         const Faults faults = Faults::of(at.rays, at.truths, traced.hits, any_hit);
         if (!faults.wrong.empty())
             return std::string(any_hit ? "any-hit queries: " : "nearest hits: ") +
                    faults.text(at.rays, at.truths, traced.hits, 1);
-        if (traced.overflows > 0)
-            return "the traversal stack was full " + std::to_string(traced.overflows) +
-                   " times: the define of its size is too small for a tree that the device has built";
+        if (traced.overflows > 0) return traced.full_stack();
     }
     return {};
 }

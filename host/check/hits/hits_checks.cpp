@@ -97,7 +97,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
         {"hits.kernels", "the kernels compile for each number of lanes, and define no name of the host",
          [=, &tracer](const Step& step) { return compile(*bench, tracer, step); }},
         {"hits.stack", "the traversal stack holds the tree, with --debug",
-         [=](const Step& step) { return stack_check(*bench, *regular, step); }},
+         [=](const Step& step) { return stack_check(input, *bench, *regular, step); }},
         {"hits.pushes", "the traversal asks RT_STACK_OK before each push",
          [=](const Step& step) { return pushes_check(input, step); }},
         {"hits.counts", "primitives are tested by the host", [=](const Step& step) { return counts_check(input, step); }}};

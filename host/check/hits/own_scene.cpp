@@ -42,9 +42,8 @@ Check own_scene_check(const BenchInput& input, Scene scene, const std::vector<rt
                     const Faults faults = Faults::of(set.rays, truths, traced.hits, pass.any_hit);
                     if (!faults.wrong.empty())
                         return Outcome::failed(faults.text(set.rays, truths, traced.hits, pass.variant.lanes));
-                    if (traced.overflows == 0) return Outcome::passed("");
-                    return Outcome::failed("the traversal stack was full " + std::to_string(traced.overflows) +
-                                           " times: the define of its size is too small for the tree");
+                    const std::string full = traced.full_stack();
+                    return full.empty() ? Outcome::passed("") : Outcome::failed(full);
                 });
                 outcome.found += note;
                 return outcome;

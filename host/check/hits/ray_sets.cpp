@@ -125,11 +125,22 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t see
                     }
         }
     });
-    add("hits.scales", "rays at tiny, huge and far-away triangles, and from far away", [&](std::vector<rt_ray>& rays) {
+    add("hits.scales", "rays at tiny, huge and far-away triangles, and from up to 10^10 away", [&](std::vector<rt_ray>& rays) {
         plain(rays, {"tiny", "far away"}, count / 4);
         for (size_t i = 0; i < count / 4; ++i) {
             const Region& at = mixed_regions()[i % mixed_regions().size()];
             rays.push_back(make.into(at, std::min(std::pow(10.0f, 1 + 3 * make.any()), 3e4f / at.radius)));
+        }
+        // At both sides of the floor of 400000 and of the wall, from up to 10^10 away: no distance stands for infinity.
+        RayMaker far(12, seed);
+        for (size_t i = 0; i < count / 4; ++i) {
+            const Point d = far.direction();
+            const float away = std::pow(10.0f, 5.5f + (i % 2 ? 4.5f : 3.5f) * far.any()), side = i % 4 < 2 ? away : -away;
+            const float a = far.any() - 0.5f, b = far.any();
+            const Point to = i % 2 ? Point{2e5f * a, -300, 2e5f * (b - 0.5f)} : Point{4e4f * a, 5e4f * b, -2e4f};
+            Point from{to[0] + 0.3f * away * d[0], to[1] + 0.3f * away * std::fabs(d[1]), to[2] + 0.3f * away * d[2]};
+            from[i % 2 ? 1 : 2] = side;
+            rays.push_back(RayMaker::from_to(from, to));
         }
     });
     add("hits.nested", "rays through the common centre of many shells, which enter every box: the stack is as full as it gets",

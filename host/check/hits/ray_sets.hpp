@@ -27,5 +27,7 @@ std::vector<RaySet> floor_ray_sets(const BuildScene& scene, size_t count, uint64
 std::vector<RaySet> each_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
 // Into crowd_scene(): some thirty rays, because each tests all primitives.
 std::vector<RaySet> crowd_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
+// Into row_scene(): at each of its small triangles, and along it.
+std::vector<RaySet> row_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
 
 }  // namespace clarity::check

@@ -230,4 +230,19 @@ std::vector<RaySet> crowd_ray_sets(const BuildScene&, size_t count, uint64_t see
     return {set};
 }
 
+std::vector<RaySet> row_ray_sets(const BuildScene& scene, size_t, uint64_t) {
+    RaySet set{"hits.row",
+               "rays that enter every box of a row of triangles, each four times as large as the one before",
+               {},
+               false,
+               "what was put on the stack has not come back from it"};
+    const auto pairs = static_cast<unsigned>(scene.triangles.size() / 2);
+    for (unsigned i = 0; i < pairs; ++i) {
+        const float y = row_place(i, pairs);
+        set.rays.push_back(RayMaker::from_to({0, 0, 0}, {1, y, 0.32f - y}));
+    }
+    for (int i = 0; i < 8; ++i) set.rays.push_back(RayMaker::from_to({0, 0, 0}, {1, 0.002f * float(i), 0.01f}));
+    return {set};
+}
+
 }  // namespace clarity::check

@@ -4,8 +4,8 @@
 
 namespace clarity::check {
 
-// No stack is full, over the mixed scene and over meshes that are far deeper than their world.
-Outcome stack_check(Bench& mixed, Bench& regular, const Step& step);
+// No stack is full, over the mixed scene, over meshes that are far deeper than their world, and over rows, which fill it.
+Outcome stack_check(const BenchInput& input, Bench& mixed, Bench& regular, const Step& step);
 // What asks RT_STACK_OK before each push finds next to nothing once that is always refused.
 Outcome pushes_check(const BenchInput& input, const Step& step);
 // Rays that meet the boxes of all primitives go on to the end.

@@ -13,6 +13,7 @@ constexpr double kGradientStep = 1e-3;  // all lengths are shares of the part's 
 constexpr double kPathStep = 1.0 / 64;
 constexpr double kLoopRadius = 1.0 / 50;
 constexpr int kPathSteps = 16, kHalvings = 10, kLoopPoints = 24, kDescents = 40;
+constexpr size_t kLeastFlat = 20;  // a picture may be without area at one of so many points: that much is left to rounding
 constexpr size_t kMostPaths = 160, kMostSeams = 8, kMostPoles = 12;  // of a part
 constexpr double kJump = 0.03, kJumpLeft = 0.01;  // between two samples; between two that are next to each other
 constexpr double kSameSheet = 0.9;                // cosine between normals of neighbours
@@ -144,7 +145,7 @@ std::string fault_of_area(Surface& surface, const std::vector<Spot>& spots) {
         if (u > least && v > least && std::fabs(s[0][0] * s[1][1] - s[0][1] * s[1][0]) > 1e-3 * u * v) continue;
         if (flat++ == 0) first = &spots[i];
     }
-    if (all < 20 || flat * 5 < all) return {};
+    if (all < 20 || flat < 3 || flat * kLeastFlat < all) return {};
     return "at " + std::to_string(flat) + " of " + std::to_string(all) +
            " points u and v do not change in two directions, so that a picture has no area there, as " + at_text(*first);
 }
