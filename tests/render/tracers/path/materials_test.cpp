@@ -40,6 +40,7 @@ LaneKernel& loader() {
          "shading/microfacets.h",
          "shading/sheen.h",
          "shading/matter.h",
+         "shading/film.h",
          "shading/layers.h",
          "shading/bsdf.h",
          "shading/bsdf_of.h"},
