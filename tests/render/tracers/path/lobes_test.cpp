@@ -331,13 +331,14 @@ TEST(PathLobes, WhiteLayersKeepLight) {
     };
     const auto metallic = [](float share) { return [=](rt_layers& l) { l.metallic = share; }; };
     const std::vector<float> all = {0, 0.3f, 0.7f, 1}, few = {0.3f, 1};
+    keeps(layered("fine fibres", 0.5f, [](rt_layers& l) { l.sheen_color[0] = 1, l.sheen_roughness = 0.15f; }));
     for (const float r : quick() ? few : all) {
         for (const float share : {0.0f, 0.5f, 1.0f}) keeps(layered("metal " + std::to_string(share), r, metallic(share)));
         keeps(layered("half weight", r, [](rt_layers& l) { l.specular_weight = 0.5f; }));
         keeps(layered("bright", r, [](rt_layers& l) { l.specular_color[0] = 20; }));
         keeps(layered("sheet", r, [](rt_layers& l) { l.transmission = 1; }));
         keeps(layered("solid", r, [](rt_layers& l) { l.transmission = 1, l.flags = RT_LAYERS_SOLID; }));
-        for (const float below : quick() ? few : all) {
+        for (const float below : quick() ? std::vector<float>{0.3f} : all) {
             keeps(layered("varnish", below, [=](rt_layers& l) { l.clearcoat = 1, l.clearcoat_roughness = r; }));
             keeps(layered("varnish on metal", below,
                           [=](rt_layers& l) { l.clearcoat = 1, l.clearcoat_roughness = r, l.metallic = 1; }));
