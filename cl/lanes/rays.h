@@ -2,6 +2,13 @@
 #ifndef RT_RAYS_H
 #define RT_RAYS_H
 
+/* Functions of a packet that also take one ray (spread_ray.h). */
+#if RT_LANES > 1
+#define RT_OVERLOADED __attribute__((overloadable))
+#else
+#define RT_OVERLOADED
+#endif
+
 typedef struct rt_rays {
     vfloat ox, oy, oz;             /* origin */
     vfloat dx, dy, dz;             /* direction; unit in world space, not inside instances, so t stays comparable */
@@ -221,7 +228,7 @@ RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi
 }
 
 /* The same for a box {lo.xyz, hi.xyz} in memory. If a packet's lanes agree in sign, near and far planes are selected by address. */
-RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
+RT_INLINE RT_OVERLOADED vmask rt_enter_box(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
 {
 #if RT_LANES > 1
     if (r->coherent)
@@ -232,9 +239,23 @@ RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt
                            rt_vfloat(box[5]), r, h, entry);
 }
 
+/* The same, and where the ray leaves the box again: `exit` is widened by rounding, and no later than hit->t. */
+RT_INLINE RT_OVERLOADED vmask rt_enter_exit(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry, vfloat *exit)
+{
+    const vmask neg_x = rt_negative(r->ix), neg_y = rt_negative(r->iy), neg_z = rt_negative(r->iz);
+    const vfloat ax = fma(r->ix, rt_select(neg_x, rt_vfloat(box[3]), rt_vfloat(box[0])), r->near_x);
+    const vfloat bx = fma(r->ix, rt_select(neg_x, rt_vfloat(box[0]), rt_vfloat(box[3])), r->far_x);
+    const vfloat ay = fma(r->iy, rt_select(neg_y, rt_vfloat(box[4]), rt_vfloat(box[1])), r->near_y);
+    const vfloat by = fma(r->iy, rt_select(neg_y, rt_vfloat(box[1]), rt_vfloat(box[4])), r->far_y);
+    const vfloat az = fma(r->iz, rt_select(neg_z, rt_vfloat(box[5]), rt_vfloat(box[2])), r->near_z);
+    const vfloat bz = fma(r->iz, rt_select(neg_z, rt_vfloat(box[2]), rt_vfloat(box[5])), r->far_z);
+    rt_intersect_slabs(ax, ay, az, bx, by, bz, r->t_min, h->t, entry, exit);
+    return RT_MASK(*entry <= *exit);
+}
+
 /* How far the coordinate o + d * t of a point of a ray may be from where the tests of primitives see it: the slack of boxes as a
  * length. For structures that turn a distance into a place, such as grids. */
-RT_INLINE vfloat rt_position_slack(vfloat o, vfloat d, vfloat t)
+RT_INLINE RT_OVERLOADED vfloat rt_position_slack(vfloat o, vfloat d, vfloat t)
 {
     return fma(fabs(o), rt_vfloat(8.0f * RT_EPS), fma(fabs(d * t), rt_vfloat(16.0f * RT_EPS), rt_vfloat(RT_FAR_SLACK)));
 }

@@ -8,7 +8,8 @@ const std::vector<Capability>& capabilities() {
                                                 {RT_TRAVERSES_WARPS, "warps", "RT_TRAVERSES_WARPS"},
                                                 {RT_REQUEUES_LONG_RAYS, "requeues_long_rays", "RT_REQUEUES_LONG_RAYS"},
                                                 {RT_SPLITS_INCOHERENT, "splits_incoherent", "RT_SPLITS_INCOHERENT"},
-                                                {RT_BUILDS_GROUPS, "builds_groups", "RT_BUILDS_GROUPS"}};
+                                                {RT_BUILDS_GROUPS, "builds_groups", "RT_BUILDS_GROUPS"},
+                                                {RT_TRAVERSES_SINGLE_RAYS, "single_rays", "RT_TRAVERSES_SINGLE_RAYS"}};
     return all;
 }
 

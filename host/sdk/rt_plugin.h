@@ -25,7 +25,7 @@
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
  *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky and sky_kind of
- *      rt_scene_sink; colors of meshes. */
+ *      rt_scene_sink; colors of meshes; RT_TRAVERSES_SINGLE_RAYS. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -210,7 +210,8 @@ enum {
     RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp visit the same nodes, on GPUs */
     RT_REQUEUES_LONG_RAYS = 8, /* RT_TRAVERSE_REQUEUED: many work-items trace one long ray, on GPUs */
     RT_SPLITS_INCOHERENT = 16, /* reads ray->incoherent: traces incoherent packets ray by ray, on CPUs */
-    RT_BUILDS_GROUPS = 32      /* `build` obeys rt_build_input::wanted */
+    RT_BUILDS_GROUPS = 32,     /* `build` obeys rt_build_input::wanted */
+    RT_TRAVERSES_SINGLE_RAYS = 64 /* appended: RT_TRAVERSE traces one ray, and the host spreads packets over it, on CPUs */
 };
 /* How the time of a ray grows with the number n of primitives: like log n, as with trees, or like n. Tests and benches leave out
  * structures of linear cost where a scene is large. */

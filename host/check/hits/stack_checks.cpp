@@ -27,12 +27,18 @@ std::string stack_in(const rt_plugin& tracer) {
     return std::regex_search(text, found, declaration) ? found.str() : "";
 }
 
-// Leaf tests of the sets that make traversals go through most of a tree: the nearest hits, and any-hit queries with a t_max
-// before the nearest hit, which find nothing.
+// Leaf tests and nodes of the sets that make traversals go through most of a tree. The rays end before their nearest hits, so
+// they find nothing: a structure whose cells do not overlap visits the nearest first, and would end in the first one without
+// any push.
 struct Effort {
     uint64_t tests[2] = {0, 0};  // nearest, any
     uint32_t most[2] = {0, 0};   // of one ray
+    uint64_t steps[2] = {0, 0};
+    uint32_t most_steps[2] = {0, 0};  // of one ray
     uint64_t asked = 0;
+    // Cells of a space that no plane parts: one holds nearly all primitives, so what is tested says nothing about pushes.
+    bool in_one_leaf() const { return steps[0] > 0 && tests[0] > kCrowded * steps[0]; }
+    static constexpr uint64_t kCrowded = 64;  // primitives a node
 };
 Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step& step) {
     const Variant variant{1, true, false};
@@ -43,12 +49,14 @@ Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step
         CheckedScene& scene = bench.scene(step);
         for (const bool any_hit : {false, true}) {
             std::vector<rt_ray> rays = set.rays;
-            for (size_t i = 0; any_hit && i < rays.size(); ++i)
+            for (size_t i = 0; i < rays.size(); ++i)
                 if (!truths[i].contacts.empty()) rays[i].t_max = static_cast<float>(truths[i].contacts.front().t * 0.99);
             step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(bench.options()));
             const Traced traced = scene.trace(variant, rays, any_hit, true);
             for (const rt_hit& hit : traced.hits) {
                 effort.tests[any_hit] += hit.leaf_tests;
+                effort.steps[any_hit] += hit.steps;
+                effort.most_steps[any_hit] = std::max<uint32_t>(effort.most_steps[any_hit], hit.steps);
                 effort.most[any_hit] = std::max<uint32_t>(effort.most[any_hit], hit.leaf_tests);
             }
             effort.asked += traced.overflows;
@@ -117,6 +125,9 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     // where a leaf is tested without a push, a path may test one at each level. With 4 primitives a path lbvh tests 135 at
     // most, and what asks for every other push alone 180.
     constexpr rt_u32 kGranted = 12, kLeast = 4, kLonger = 3;
+    // Where few rays push, most tests are left, too: in kdtree 0.69 of those in meshes. So the longest ray must visit nearly as
+    // many nodes as usual. In kdtree that is 0.44, in a traversal that does not ask 0.91.
+    constexpr double kSameWay = 0.75;
     // The crowd's trees are deep everywhere. So they show a traversal that asks only while the stack is short.
     const Row rows[] = {{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
                         {kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"},
@@ -132,24 +143,27 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     };
     uint64_t asked = 0, tested = 0, usually = 0;
     uint32_t path = kLeast;
+    std::vector<const Row*> telling;
     for (const Row& row : rows) {
         const Effort all = effort(row, {}), left = effort(row, {{"RT_STACK_GRANTED", 0}});
         asked += left.asked;
-        if (left.asked == 0) continue;
+        if (!left.in_one_leaf()) telling.push_back(&row);
+        if (left.asked == 0 || left.in_one_leaf()) continue;
         for (const int any : {0, 1}) {
             tested += left.tests[any], usually += all.tests[any];
             path = std::max(path, left.most[any]);
-            if (double(left.tests[any]) > row.most * double(all.tests[any]) + 100)
+            if (double(left.tests[any]) > row.most * double(all.tests[any]) + 100 &&
+                left.most_steps[any] >= kSameWay * all.most_steps[any])
                 return fault("every push", any, row,
                              std::to_string(left.tests[any]) + " primitives of " + std::to_string(all.tests[any]));
         }
     }
-    for (const Row& row : rows) {
+    for (const Row* row : telling) {
         if (asked == 0) break;
-        const Effort some = effort(row, {{"RT_STACK_GRANTED", kGranted}});
+        const Effort some = effort(*row, {{"RT_STACK_GRANTED", kGranted}});
         for (const int any : {0, 1})
             if (some.most[any] > kLonger * (kGranted + 1) * path)
-                return fault("all but the first 12 pushes of a ray", any, row,
+                return fault("all but the first 12 pushes of a ray", any, *row,
                              "up to " + std::to_string(some.most[any]) + " primitives for a ray, and one path down the tree " +
                                  std::to_string(path) + " at most");
     }

@@ -53,6 +53,7 @@ std::string write_preamble(SourceWriter& out, const Layout& layout, const rt_plu
     for (const char* name : {"lanes/rays.h", "lanes/ray_space.h", "primitives/loaded_prim.h"}) out.include(name);
     if (layout.cpu)
         for (const char* name : {"lanes/single_ray.h", "primitives/triangle_row.h"}) out.include(name);
+    out.include("lanes/spread_ray.h");
     if (accel.accel->types.text) out.include(accel, accel.accel->types);
     out.include("lanes/packet_stream.h");
     if (features.shapes) out.include("rt_shape.h");
@@ -69,6 +70,7 @@ void write_queries(SourceWriter& out, const KernelRow& row, const Layout& layout
     traversal.cpu = layout.cpu;
     traversal.requeues = (row.needs & RT_REQUEUES_LONG_RAYS) != 0;
     traversal.by_warps = (row.needs & RT_TRAVERSES_WARPS) != 0;
+    traversal.spreads = (accel.accel->capabilities & RT_TRAVERSES_SINGLE_RAYS) != 0 && layout.lanes > 1;
     write_query(out, traversal, features, false);
     if (!row.has(kNearestOnly)) write_query(out, traversal, features, true);
 }

@@ -29,6 +29,8 @@ constexpr const char* kPrototypes =
     "#ifdef RT_TRAVERSE_WARP\n"
     "RT_INLINE void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *rays, rt_hits *hits);\n"
     "#endif";
+constexpr const char* kSingleRayPrototype =
+    "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit);";
 
 // One instance of the template. name: name of the traversal's function, leaf: of the leaf tests' functions, both without the
 // query's suffix. mixed: whether leaves may hold other primitives than triangles.
@@ -41,7 +43,25 @@ void define_function(SourceWriter& out, const std::string& macro, const std::str
     out.line("#define " + macro + " RT_FN(" + function + ")");
 }
 
+// A traversal of one ray: its leaf tests, the traversal, and the function that spreads a packet over it.
+void write_spread_traversal(SourceWriter& out, const TraversalTemplate& traversal, const Instance& instance) {
+    define_function(out, "RT_TRAVERSE", instance.name + "_ray");
+    define_function(out, "RT_TRAVERSE_PACKET", instance.name);
+    define_function(out, "RT_LEAF", instance.leaf + "_ray");
+    define_function(out, "RT_PACKET_LEAF", instance.leaf);
+    out.define_int("RT_TRIANGLES_ONLY", !instance.mixed);
+    out.define_int("RT_SINGLE_RAY_MIXED", instance.mixed);
+    out.include("primitives/leaf_spread.h");
+    out.line(kSingleRayPrototype);
+    out.part(traversal.file, traversal.text);
+    out.include("primitives/spread_packet.h");
+    for (const char* macro :
+         {"RT_TRAVERSE", "RT_TRAVERSE_PACKET", "RT_LEAF", "RT_PACKET_LEAF", "RT_TRIANGLES_ONLY", "RT_SINGLE_RAY_MIXED"})
+        out.undef(macro);
+}
+
 void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, const Instance& instance) {
+    if (traversal.spreads) return write_spread_traversal(out, traversal, instance);
     const auto each_step = [&](const auto& write) {
         for (const LeafStep& step : kLeafSteps)
             if (traversal.cpu || !step.cpu_only) write(std::string(step.macro), instance.leaf + step.suffix);

@@ -16,6 +16,7 @@ struct TraversalTemplate {
     bool cpu = false;       // with leaf tests in two steps, and tests of a single ray against several primitives
     bool requeues = false;  // with RT_TRAVERSE_REQUEUED
     bool by_warps = false;  // with RT_TRAVERSE_WARP
+    bool spreads = false;   // it traces one ray, and the host spreads packets over it (RT_TRAVERSES_SINGLE_RAYS)
 };
 // Writes the primitive tests, the traversals, and the query that calls both, for nearest hits or for any hit.
 void write_query(SourceWriter& out, const TraversalTemplate& traversal, const SceneFeatures& features, bool any_hit);

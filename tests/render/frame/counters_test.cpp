@@ -68,6 +68,24 @@ TEST(Counters, LinearTestsEveryPrimitive) {
     EXPECT_GT(early, 32u);
 }
 
+// A grid names a large polygon in many cells, but a ray tests it once: a traversal of single rays with a mailbox.
+TEST(Counters, AMailboxKeepsFromTestingTwice) {
+    Scene scene = scene_of(box(0.01));
+    for (int i = 0; i < 200; ++i) {  // small ones beside the ray, so that there are cells
+        Sphere sphere;
+        sphere.center = {0.9f, -1 + 0.01f * float(i), 0.9f};
+        sphere.radius = 0.001f;
+        scene.spheres.push_back(sphere);
+    }
+    scene.polygons.push_back({0, 4, 0});
+    scene.polygon_corners = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1};
+    for (const int lanes : {1, 16}) {
+        const rt_hit hit = counted(shared_scene(scene), "grid", lanes, {ray_of({-0.9f, -3, -0.999f}, {0, 1, 0})})[0];
+        EXPECT_GE(hit.steps, 8u);
+        EXPECT_EQ(hit.leaf_tests, 1u);
+    }
+}
+
 // Spheres, polygons and instanced meshes count as well, planes do not.
 TEST(Counters, EveryKindOfPrimitive) {
     Scene scene = scene_of(box(0.5));

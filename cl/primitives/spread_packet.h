@@ -1,0 +1,47 @@
+/* spread_packet.h -- traces the active lanes of a packet one after the other by a traversal of one ray. A template, see
+ * CONTRACT.md. */
+RT_INLINE void RT_TRAVERSE_PACKET(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits)
+{
+    rt_single_rays ray_lanes;
+    rt_single_hits hit_lanes;
+    rt_spread_rays(rays, &ray_lanes);
+    rt_spread_hits(hits, &hit_lanes);
+    uint active = rt_bits(RT_MASK(hits->t >= rt_vfloat(0.0f)));
+#ifdef RT_COUNT_STEPS
+    const uint count = max(popcount(active), 1u), steps = hits->steps, leaf_tests = hits->leaf_tests;
+#endif
+    for (; active != 0u; active &= active - 1u) {
+        const uint l = rt_lowest(active);
+        rt_single_ray ray;
+        ray.ox = ray_lanes.ox[l], ray.oy = ray_lanes.oy[l], ray.oz = ray_lanes.oz[l];
+        ray.dx = ray_lanes.dx[l], ray.dy = ray_lanes.dy[l], ray.dz = ray_lanes.dz[l];
+        ray.t_min = ray_lanes.t_min[l];
+        ray.ix = ray_lanes.ix[l], ray.iy = ray_lanes.iy[l], ray.iz = ray_lanes.iz[l];
+        ray.near_x = ray_lanes.near_x[l], ray.near_y = ray_lanes.near_y[l], ray.near_z = ray_lanes.near_z[l];
+        ray.far_x = ray_lanes.far_x[l], ray.far_y = ray_lanes.far_y[l], ray.far_z = ray_lanes.far_z[l];
+        ray.packet = rays;
+        ray.lanes = &ray_lanes;
+        ray.lane = l;
+        rt_single_hit hit;
+        hit.t = hit_lanes.t[l];
+        hit.packet = hits;
+        hit.lanes = &hit_lanes;
+#ifdef RT_COUNT_STEPS
+        hit.steps = hit.leaf_tests = hit.lane_steps = 0u;
+#endif
+        RT_CLEAR_OVERFLOW(&hit)
+        RT_TRAVERSE(ctx, root, &ray, &hit);
+#ifdef RT_COUNT_STEPS
+        hits->steps += hit.steps;
+        hits->leaf_tests += hit.leaf_tests;
+        hits->lane_steps += hit.lane_steps;
+#endif
+        RT_TALLY_OVERFLOW(hits, &hit)
+    }
+#ifdef RT_COUNT_STEPS
+    /* What a packet visits and tests is the mean over its rays, rounded up: then it compares with packets that stay together. */
+    hits->steps = steps + (hits->steps - steps + count - 1u) / count;
+    hits->leaf_tests = leaf_tests + (hits->leaf_tests - leaf_tests + count - 1u) / count;
+#endif
+    rt_gather_hits(&hit_lanes, hits);
+}

@@ -1,0 +1,34 @@
+/* grid.cl -- one ray from cell to cell (Amanatides, Woo 1987; cl/lanes/cells.h), and through the list of each. No stack.
+ *
+ * A primitive stands in the list of each cell that it meets. The mailbox keeps a ray from testing it in all of them. */
+#include "cl/lanes/cells.h"
+#include "cl/lanes/mailbox.h"
+
+RT_INLINE void RT_CAT(RT_TRAVERSE, _list)(const rt_ctx *ctx, const global uint *start, rt_mailbox *tested, const rt_single_ray *ray,
+                                          rt_single_hit *hit)
+{
+    for (uint i = start[0]; i < start[1]; ++i) {
+        const uint at = ctx->grid_list[i];
+        if (!rt_was_tested(tested, at)) RT_LEAF(ctx, at, ray, hit);
+#if RT_ANY_HIT
+        if (hit->t < 0.0f) return;
+#endif
+    }
+}
+
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit)
+{
+    const global grid_head *grid = ctx->grid_heads + root;
+    const global uint *starts = ctx->grid_starts + grid->first;
+    const uint nx = grid->cells[0], ny = grid->cells[1], nz = grid->cells[2];
+    rt_mailbox tested;
+    rt_clear_mailbox(&tested);
+    RT_CAT(RT_TRAVERSE, _list)(ctx, starts + nx * ny * nz, &tested, ray, hit);
+
+    rt_cells cells;
+    for (bool more = rt_first_cell(&cells, grid->box, grid->size, grid->cells, ray, hit); more; more = rt_next_cell(&cells, hit->t)) {
+        RT_COUNT_VISIT(hit, 1u);
+        const uint cell = ((uint)cells.z.at * ny + (uint)cells.y.at) * nx + (uint)cells.x.at;
+        RT_CAT(RT_TRAVERSE, _list)(ctx, starts + cell, &tested, ray, hit);
+    }
+}

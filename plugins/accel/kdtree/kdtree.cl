@@ -1,0 +1,49 @@
+/* kdtree.cl -- one ray through a kd-tree, nearest cells first (Havran 2000, "Heuristic Ray Shooting Algorithms", TA_rec_B).
+ *
+ * `from` and `to` are the distances between which the ray is in the node. It crosses the plane between `earliest` and `latest`, so
+ * it visits both children unless that is surely behind or beyond. The stack has the farther child with its span, 12 bytes a level. */
+#include "cl/lanes/mailbox.h"
+
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit)
+{
+    kdtree_entry stack[KDTREE_STACK];
+    uint top = 0u, at = ctx->kdtree_heads[root].node;
+    float from, to;
+    if (!rt_enter_exit(ctx->kdtree_heads[root].box, ray, hit, &from, &to)) return;
+    rt_mailbox tested;
+    rt_clear_mailbox(&tested);
+    for (;;) {
+        const kdtree_node node = ctx->kdtree_nodes[at];
+        const uint axis = node.code & 3u;
+        RT_COUNT_VISIT(hit, 1u);
+        if (axis != KDTREE_LEAF) {
+            const float inverse = axis == 0u ? ray->ix : axis == 1u ? ray->iy : ray->iz;
+            const float near = axis == 0u ? ray->near_x : axis == 1u ? ray->near_y : ray->near_z;
+            const float far = axis == 0u ? ray->far_x : axis == 1u ? ray->far_y : ray->far_z;
+            const float earliest = fma(inverse, node.at.split, near), latest = fma(inverse, node.at.split, far) * RT_WIDE;
+            const uint above = inverse < 0.0f ? 1u : 0u, nearer = (node.code >> 2) + above, farther = (node.code >> 2) + 1u - above;
+            at = nearer;
+            if (latest < from) {
+                at = farther;
+            } else if (!(earliest > to)) {
+                stack[top].node = farther;
+                stack[top].from = rt_max(earliest, from);
+                stack[top].to = to;
+                if (RT_STACK_OK(top + 1u, KDTREE_STACK, hit)) ++top;
+                to = rt_min(latest, to);
+            }
+            continue;
+        }
+        for (uint i = node.at.first, end = i + (node.code >> 2); i < end; ++i) {
+            const uint place = ctx->kdtree_list[i];
+            if (!rt_was_tested(&tested, place)) RT_LEAF(ctx, place, ray, hit);
+        }
+        do {
+            if (top == 0u) return;
+            --top;
+        } while (stack[top].from > hit->t);
+        at = stack[top].node;
+        from = stack[top].from;
+        to = rt_min(stack[top].to, hit->t);
+    }
+}

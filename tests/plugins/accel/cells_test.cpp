@@ -1,0 +1,199 @@
+// cells_test.cpp -- structures that part space: each point of a triangle is in a cell that names the triangle. The points are
+// samples, and the cells are found by this test's own arithmetic.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "harness.hpp"
+// need the types of rt_shared.h, so they must follow the headers above:
+#include "grid_types.h"
+#include "kdtree_types.h"
+
+using namespace accel_test;
+
+namespace {
+
+// Slanted triangles of many sizes between -size and size, about `middle`.
+Input shards(uint32_t count, float size, float middle) {
+    std::mt19937 random(11);
+    const auto number = [&](float reach) { return reach * (static_cast<float>(random() % 20001) / 10000 - 1); };
+    Input input;
+    std::vector<rt_prim> group;
+    for (rt_u32 i = 0; i < count; ++i) {
+        rt_packed_prim t{};
+        t.ref = i;
+        const float reach = size * (i % 16 == 0 ? 0.5f : 0.05f);
+        float lo[3], hi[3];
+        for (int k = 0; k < 3; ++k) {
+            t.a[k] = middle + number(size);
+            t.b[k] = t.a[k] + number(reach), t.c[k] = t.a[k] + number(reach);
+            lo[k] = std::min({t.a[k], t.b[k], t.c[k]}), hi[k] = std::max({t.a[k], t.b[k], t.c[k]});
+        }
+        input.triangles.push_back(t);
+        group.push_back(box_prim(lo, hi, i));
+    }
+    input.add_group(group);
+    return input;
+}
+
+// Calls body with points of each triangle, its corners among them.
+template <class Body>
+void each_point(const Input& input, const Body& body) {
+    for (const rt_packed_prim& t : input.triangles)
+        for (int i = 0; i <= 12; ++i)
+            for (int j = 0; i + j <= 12; ++j) {
+                double p[3];
+                for (int k = 0; k < 3; ++k)
+                    p[k] = t.a[k] + (double{t.b[k]} - t.a[k]) * (i / 12.0) + (double{t.c[k]} - t.a[k]) * (j / 12.0);
+                body(p, t.ref);
+            }
+}
+
+uint64_t points_lost_by_grid(const Input& input, const Built& built) {
+    const grid_head& grid = built.slot<grid_head>()[built.roots[0]];
+    const rt_u32 *starts = built.slot<rt_u32>(1) + grid.first, *list = built.slot<rt_u32>(2);
+    uint64_t lost = 0;
+    each_point(input, [&](const double* p, rt_u32 ref) {
+        size_t at[3];
+        for (int k = 0; k < 3; ++k) at[k] = size_t(std::clamp((p[k] - grid.box[k]) / grid.size[k], 0.0, grid.cells[k] - 1.0));
+        const size_t cell = (at[2] * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
+        lost += std::none_of(list + starts[cell], list + starts[cell + 1], [&](rt_u32 i) { return built.leaves[i] == ref; });
+    });
+    return lost;
+}
+
+// Whether a leaf below the node that holds the point names the triangle. A point in a plane is in both halves.
+bool is_named(const Built& built, rt_u32 at, const double* p, rt_u32 ref) {
+    const kdtree_node& node = built.slot<kdtree_node>(1)[at];
+    const rt_u32 axis = node.code & 3u, rest = node.code >> 2;
+    if (axis == KDTREE_LEAF) {
+        const rt_u32* const list = built.slot<rt_u32>(2) + node.at.first;
+        return std::any_of(list, list + rest, [&](rt_u32 i) { return built.leaves[i] == ref; });
+    }
+    const double slack = 1e-6 * (1 + std::fabs(p[axis]));  // of the points
+    return (p[axis] <= node.at.split + slack && is_named(built, rest, p, ref)) ||
+           (p[axis] >= node.at.split - slack && is_named(built, rest + 1, p, ref));
+}
+
+uint64_t points_lost_by_kdtree(const Input& input, const Built& built) {
+    uint64_t lost = 0;
+    each_point(input, [&](const double* p, rt_u32 ref) {
+        lost += !is_named(built, built.slot<kdtree_head>()[built.roots[0]].node, p, ref);
+    });
+    return lost;
+}
+
+TEST(Grid, NamesATriangleInEachCellThatItMeets) {
+    for (const float middle : {0.0f, 1000.0f})
+        for (const double exact : {0.0, 1.0}) {
+            const Input input = shards(2000, 1, middle);
+            const Built built = build(load("grid"), input, {{{"exact", exact}}, 2, {}});
+            ASSERT_EQ(built.status, RT_OK) << built.why;
+            EXPECT_EQ(points_lost_by_grid(input, built), 0u) << middle << ", " << exact;
+        }
+}
+
+TEST(Grid, LeavesOutCellsThatOnlyTheBoxMeets) {
+    const Input input = shards(2000, 1, 0);
+    const Built boxes = build(load("grid"), input, {{{"exact", 0.0}}, 2, {}}), exact = build(load("grid"), input);
+    EXPECT_LT(exact.stats.at("references"), 0.7 * boxes.stats.at("references"));
+}
+
+TEST(Grid, HasAsManyCellsAsAsked) {
+    for (const double density : {1.0, 8.0}) {
+        const Built built = build(load("grid"), one_group(scattered(20000, 10, 0, 3)), {{{"density", density}}, 2, {}});
+        EXPECT_NEAR(built.stats.at("nodes") / (density * 20000), 1, 0.1);
+    }
+    // Primitives in a plane get one layer of cells.
+    std::vector<rt_prim> floor = scattered(20000, 10, 0, 3);
+    for (rt_prim& p : floor) p.lo[1] = p.hi[1] = 2;
+    const Built built = build(load("grid"), one_group(floor));
+    EXPECT_EQ(built.slot<grid_head>()[0].cells[1], 1u);
+    EXPECT_NEAR(built.stats.at("nodes") / (5.0 * 20000), 1, 0.1);
+}
+
+TEST(Grid, KeepsHugePrimitivesApart) {
+    std::vector<rt_prim> prims = scattered(100, 10, 0, 3);
+    const float lo[3] = {-INFINITY, -1, -1}, hi[3] = {INFINITY, 1, 1};
+    prims.push_back(box_prim(lo, hi, 100));
+    const Built built = build(load("grid"), one_group(prims));
+    ASSERT_EQ(built.status, RT_OK) << built.why;
+    const grid_head& grid = built.slot<grid_head>()[0];
+    const rt_u32 cells = grid.cells[0] * grid.cells[1] * grid.cells[2], *starts = built.slot<rt_u32>(1) + grid.first;
+    ASSERT_EQ(starts[cells + 1] - starts[cells], 1u);
+    EXPECT_EQ(built.leaves[built.slot<rt_u32>(2)[starts[cells]]], 100u);
+    EXPECT_GT(cells, 100u) << "it does not stretch the grid";
+}
+
+TEST(Kdtree, NamesATriangleInEachLeafThatItMeets) {
+    for (const float middle : {0.0f, 1000.0f}) {
+        const Input input = shards(6000, 1, middle);  // by bins, and below 2048 by all bounds
+        const Built built = build(load("kdtree"), input);
+        ASSERT_EQ(built.status, RT_OK) << built.why;
+        EXPECT_EQ(points_lost_by_kdtree(input, built), 0u) << middle;
+    }
+}
+
+// Mean number of primitives in the leaves around random points.
+double crowd_at_points(const Built& built) {
+    std::mt19937 random(5);
+    double sum = 0;
+    for (int i = 0; i < 4000; ++i) {
+        float p[3];
+        for (float& x : p) x = static_cast<float>(random() % 20001) / 10000 - 1;
+        kdtree_node node = built.slot<kdtree_node>(1)[built.slot<kdtree_head>()[0].node];
+        while ((node.code & 3u) != KDTREE_LEAF)
+            node = built.slot<kdtree_node>(1)[(node.code >> 2) + (p[node.code & 3u] > node.at.split)];
+        sum += node.code >> 2;
+    }
+    return sum / 4000;
+}
+
+TEST(Kdtree, CutsTriangles) {
+    Input input = shards(2000, 1, 0);
+    const Built cut = build(load("kdtree"), input);
+    std::vector<rt_packed_prim>().swap(input.triangles);  // then only boxes are known
+    const Built boxes = build(load("kdtree"), input);
+    EXPECT_LT(crowd_at_points(cut), 0.6 * crowd_at_points(boxes));
+}
+
+// Two clusters with a gap: the first planes cut off the gap, so that a leaf without primitives is near the root.
+TEST(Kdtree, CutsOffEmptySpace) {
+    std::vector<rt_prim> prims = scattered(500, 1, 0, 3);
+    for (rt_prim& p : scattered(500, 1, 0, 4)) {
+        p.lo[0] += 20, p.hi[0] += 20, p.ref += 500;
+        prims.push_back(p);
+    }
+    const Built built = build(load("kdtree"), one_group(prims));
+    const auto* const nodes = built.slot<kdtree_node>(1);
+    const rt_u32 root = built.slot<kdtree_head>()[0].node;
+    const auto is_empty = [&](rt_u32 at) { return nodes[at].code == KDTREE_LEAF; };
+    bool found = false;
+    for (rt_u32 i = 0; i < 2; ++i) {
+        const rt_u32 child = (nodes[root].code >> 2) + i;
+        found = found || is_empty(child);
+        if ((nodes[child].code & 3u) != KDTREE_LEAF)
+            found = found || is_empty(nodes[child].code >> 2) || is_empty((nodes[child].code >> 2) + 1);
+    }
+    EXPECT_TRUE(found);
+}
+
+TEST(Kdtree, TheStackHoldsItsDepth) {
+    const Built built = build(load("kdtree"), shards(3000, 1, 0));
+    EXPECT_GT(built.defines.at("KDTREE_STACK"), built.stats.at("depth"));
+    EXPECT_LE(build(load("kdtree"), shards(3000, 1, 0), {{{"max_depth", 5.0}}, 2, {}}).stats.at("depth"), 5);
+}
+
+TEST(Cells, TreesDoNotDependOnThreads) {
+    const Input input = shards(20000, 1, 0);
+    for (const char* id : {"grid", "kdtree"}) {
+        const Built one = build(load(id), input, {{}, 1, {}}), two = build(load(id), input, {{}, 3, {}});
+        EXPECT_TRUE(same_tree(load(id), one, two)) << id;
+        EXPECT_EQ(build(load(id), input, {{}, 1, [](float) { return false; }}).status, RT_CANCELLED) << id;
+    }
+}
+
+}  // namespace
