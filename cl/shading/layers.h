@@ -11,6 +11,7 @@
 #define RT_COAT_STRAIGHT 0.04f /* reflectance of varnish of ior 1.5 */
 #define RT_GRAZING_COSINES 40
 #define RT_GRAZING_ROUGHNESSES 24
+#define RT_MEAN_COSINE 0.667f
 #define RT_LIKENESS 0.95f /* correlation of two layers' albedos over the hemisphere */
 
 typedef struct rt_layered {
@@ -32,6 +33,9 @@ typedef struct rt_layered {
 #if RT_MAY_SCATTER(RT_LOBE_SHEEN)
     rt_vec sheen;
     vfloat sheen_roughness, sheen_mean;
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    vfloat film, film_ior, film_nm; /* share that has it, and its thickness */
 #endif
 } rt_layered;
 
@@ -63,11 +67,6 @@ RT_INLINE rt_vec rt_again_of(rt_vec straight, vfloat grazing, vfloat lost)
     return rt_vec_of(rt_again(rt_schlick_mean(straight.x, grazing), lost), rt_again(rt_schlick_mean(straight.y, grazing), lost),
                      rt_again(rt_schlick_mean(straight.z, grazing), lost));
 }
-RT_INLINE vfloat rt_schlick_weight(vfloat cosine)
-{
-    const vfloat c = rt_max(rt_vfloat(1.0f) - cosine, rt_vfloat(0.0f)), c2 = c * c;
-    return c2 * c2 * c;
-}
 RT_INLINE rt_vec rt_schlick(rt_vec straight, vfloat grazing, vfloat weight)
 {
     return rt_vec_of(rt_mix(straight.x, grazing, weight), rt_mix(straight.y, grazing, weight), rt_mix(straight.z, grazing, weight));
@@ -76,6 +75,37 @@ RT_INLINE rt_vec rt_rest(rt_vec v)
 {
     const vfloat one = rt_vfloat(1.0f);
     return rt_vec_of(one - v.x, one - v.y, one - v.z);
+}
+
+/* Reflectances for light that meets a facet with that cosine. */
+RT_INLINE rt_vec rt_metal_fresnel(const rt_layered *l, vfloat cosine)
+{
+    const rt_vec bare = rt_schlick(l->color, rt_vfloat(1.0f), rt_schlick_weight(cosine));
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    return rt_along(l->film, rt_sub(rt_film(cosine, l->film_ior, l->film_nm, l->color), bare), bare);
+#else
+    return bare;
+#endif
+}
+RT_INLINE rt_vec rt_gloss_fresnel(const rt_layered *l, vfloat cosine)
+{
+    const rt_vec bare = rt_schlick(l->straight, l->grazing, rt_schlick_weight(cosine));
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    const rt_vec full = rt_scale(rt_vfloat(1.0f) / rt_max(l->grazing, rt_vfloat(1e-6f)), l->straight);
+    return rt_along(l->film, rt_sub(rt_scale(l->grazing, rt_film(cosine, l->film_ior, l->film_nm, full)), bare), bare);
+#else
+    return bare;
+#endif
+}
+RT_INLINE vfloat rt_coat_fresnel(vfloat cosine) { return rt_mix(rt_vfloat(RT_COAT_STRAIGHT), rt_vfloat(1.0f), rt_schlick_weight(cosine)); }
+/* An albedo of facets, which is `bare` without a film. With one all facets are taken for those met with the cosine mu. */
+RT_INLINE vfloat rt_filmed(const rt_layered *l, rt_vec fresnel, vfloat lost, vfloat bare)
+{
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    return rt_select(RT_MASK(l->film > rt_vfloat(0.0f)), rt_largest(fresnel) * (rt_vfloat(1.0f) - lost), bare);
+#else
+    return bare;
+#endif
 }
 
 /* The albedo of facets with F = (1 - cos)^5, and its mean over the hemisphere. */
@@ -109,7 +139,8 @@ RT_CALLED rt_aspect rt_aspect_of(const rt_layered *l, rt_vec w)
     rt_aspect a;
     a.lost = rt_lost_by_metal(mu, l->alpha);
     a.bent = rt_grazing(mu, l->alpha);
-    a.gloss = fma(a.lost, rt_again(rt_schlick_mean(l->most, l->grazing), l->lost_mean), rt_facets_albedo(l->most, l->grazing, a.lost, a.bent));
+    const vfloat gloss = rt_filmed(l, rt_gloss_fresnel(l, mu), a.lost, rt_facets_albedo(l->most, l->grazing, a.lost, a.bent));
+    a.gloss = fma(a.lost, rt_largest(l->gloss_again), gloss);
     a.coat = a.sheen = zero;
 #if RT_MAY_SCATTER(RT_LOBE_COAT)
     const vfloat coat_mu = rt_min(fabs(rt_dot(w, l->coat_normal)), one);
@@ -129,7 +160,8 @@ RT_CALLED void rt_prepare_layers(rt_layered *l)
     l->lost_mean = rt_lost_by_metal_mean(l->alpha);
     l->metal_again = rt_again_of(l->color, one, l->lost_mean);
     l->gloss_again = rt_again_of(l->straight, l->grazing, l->lost_mean);
-    const vfloat gloss_mean = fma(l->lost_mean, rt_largest(l->gloss_again), rt_facets_albedo(l->most, l->grazing, l->lost_mean, rt_grazing_mean(l->alpha)));
+    const vfloat gloss_mean = fma(l->lost_mean, rt_largest(l->gloss_again), rt_filmed(l, rt_gloss_fresnel(l, rt_vfloat(RT_MEAN_COSINE)), l->lost_mean,
+                                                                                                        rt_facets_albedo(l->most, l->grazing, l->lost_mean, rt_grazing_mean(l->alpha))));
 #if RT_MAY_SCATTER(RT_LOBE_COAT)
     l->coat_mean = l->coat * rt_facets_albedo(rt_vfloat(RT_COAT_STRAIGHT), one, rt_lost_by_metal_mean(l->coat_alpha), rt_grazing_mean(l->coat_alpha));
 #endif
@@ -184,6 +216,11 @@ RT_INLINE rt_layered rt_layered_of(const rt_matter *m, vmask lanes, vfloat aroun
     l.sheen = m->sheen_color;
     l.sheen_roughness = m->sheen_roughness;
 #endif
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    l.film = m->iridescence;
+    l.film_ior = m->iridescence_ior;
+    l.film_nm = m->iridescence_thickness;
+#endif
     rt_prepare_layers(&l);
     return l;
 }
@@ -218,10 +255,11 @@ RT_INLINE rt_layer_lobes rt_layer_lobes_of(const rt_layered *l, rt_vec wo)
     rt_layer_lobes p;
     p.from = rt_aspect_of(l, wo);
     const rt_aspect *a = &p.from;
-    const vfloat color = rt_largest(l->color), gloss = rt_facets_albedo(l->most, l->grazing, a->lost, a->bent);
+    const vfloat color = rt_largest(l->color), gloss = rt_max(fma(-a->lost, rt_largest(l->gloss_again), a->gloss), zero);
     const vfloat metal_again = rt_largest(l->metal_again), gloss_again = rt_largest(l->gloss_again);
     p.below = (one - a->coat) * (one - a->sheen);
-    p.facets = p.below * fma(l->metal, rt_facets_albedo(color, one, a->lost, a->bent), l->gloss * gloss);
+    const vfloat metal = rt_filmed(l, rt_metal_fresnel(l, wo.z), a->lost, rt_facets_albedo(color, one, a->lost, a->bent));
+    p.facets = p.below * fma(l->metal, metal, l->gloss * gloss);
     p.cosine = p.below * fma(l->diffuse * color, one - a->gloss, a->lost * fma(l->metal, metal_again, l->gloss * gloss_again));
     p.thin = p.thin_cosine = zero;
     if (RT_MAY_SCATTER(RT_LOBE_THIN)) {
@@ -241,11 +279,6 @@ RT_INLINE rt_layer_lobes rt_layer_lobes_of(const rt_layered *l, rt_vec wo)
     p.sheen *= scale;
     return p;
 }
-
-/* Reflectances for light that meets a facet with that cosine. */
-RT_INLINE rt_vec rt_metal_fresnel(const rt_layered *l, vfloat cosine) { return rt_schlick(l->color, rt_vfloat(1.0f), rt_schlick_weight(cosine)); }
-RT_INLINE rt_vec rt_gloss_fresnel(const rt_layered *l, vfloat cosine) { return rt_schlick(l->straight, l->grazing, rt_schlick_weight(cosine)); }
-RT_INLINE vfloat rt_coat_fresnel(vfloat cosine) { return rt_mix(rt_vfloat(RT_COAT_STRAIGHT), rt_vfloat(1.0f), rt_schlick_weight(cosine)); }
 
 /* D G cos wi / (4 cos wo cos wi) of GGX, and the density with which rt_warp_visible_normal() finds wi. wo.z, wi.z > 0. */
 RT_INLINE vfloat rt_facets_seen(rt_vec wo, rt_vec wi, vfloat alpha, vfloat *density)

@@ -44,6 +44,14 @@ RT_INLINE vfloat rt_fresnel_dielectric(vfloat cos_in, vfloat eta, vfloat *cos_ou
     return rt_select(RT_MASK(cos2_out <= zero), one, rt_vfloat(0.5f) * fma(across, across, along * along));
 }
 
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+RT_INLINE vfloat rt_schlick_weight(vfloat cosine)
+{
+    const vfloat c = rt_max(rt_vfloat(1.0f) - cosine, rt_vfloat(0.0f)), c2 = c * c;
+    return c2 * c2 * c;
+}
+#endif
+
 /* Schlick 1994: a metal that reflects `color` along its normal. */
 RT_INLINE rt_vec rt_fresnel_metal(rt_vec color, vfloat cos_in)
 {

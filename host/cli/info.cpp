@@ -14,6 +14,7 @@
 #include "base/plural.hpp"
 #include "base/printable.hpp"
 #include "cli/commands.hpp"
+#include "cli/info_materials.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "import/sequence_reader.hpp"
@@ -26,6 +27,8 @@ namespace clarity {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr size_t kShownMaterials = 30;  // in lines; JSON has all
 
 Json vector_json(const std::array<float, 3>& v) {
     return {short_double(v[0]), short_double(v[1]), short_double(v[2])};
@@ -129,6 +132,8 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["unit_scale"] = scene.unit_scale > 0 ? Json(scene.unit_scale) : Json();
     json["camera_list"] = Json::array();
     for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera, scene));
+    json["material_list"] = Json::array();
+    for (const Material& material : scene.materials) json["material_list"].push_back(material_json(material));
     json["animations"] = Json::array();
     for (const ClipInfo& clip : animations) json["animations"].push_back(clip_json(clip));
     json["warnings"] = scene.warnings;
@@ -176,6 +181,9 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("shapes", scene.shapes.size(), kinds);
     const uint64_t clear = materials_with_alpha(scene);
     count_row("materials", scene.materials.size(), clear > 0 ? ", of " + grouped(clear) + " alpha counts" : "");
+    for (size_t i = 0; i < std::min(scene.materials.size(), kShownMaterials); ++i) row("", material_text(scene.materials[i]));
+    if (scene.materials.size() > kShownMaterials)
+        row("", "and " + grouped(scene.materials.size() - kShownMaterials) + " more, which --json lists");
     count_row("textures", scene.textures.size(), ", " + memory_text(scene.texels.size() * sizeof(uint32_t)));
     kinds.clear();
     for (const auto& [kind, count] : light_counts(scene)) kinds += ", " + grouped(count) + ' ' + kind;

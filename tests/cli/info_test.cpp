@@ -79,6 +79,22 @@ TEST(Info, LightsAreCountedByKind) {
     EXPECT_NE(text.find("1 plane, 2 polygons that are not convex, 1 surface that is cut out: "), std::string::npos) << text;
 }
 
+// Of each material the model and what differs from defaults; what only Whitted's tracers read follows other models.
+TEST(Info, ListsMaterials) {
+    const Scratch scratch;
+    const std::string scene = scratch.write("layers.scene",
+                                            "material steel model gltf metallic 1 roughness .25 sheen_color 0 .5 0\n"
+                                            "material glow emission 1 2 3 reflect .5\n"
+                                            "sphere radius 1 material steel\nsphere radius 2 material glow\n");
+    const nlohmann::json list = info_of(scene)["material_list"];
+    ASSERT_EQ(list.size(), 3u);
+    EXPECT_EQ(list[1], nlohmann::json::parse(
+                           R"({"name":"steel","model":"gltf","roughness":0.25,"metallic":1.0,"sheen_color":[0.0,0.5,0.0]})"));
+    EXPECT_EQ(list[2], nlohmann::json::parse(R"({"name":"glow","model":"whitted","emission":[1.0,2.0,3.0],"reflect":0.5})"));
+    const std::string text = run_program({"info", scene}).out;
+    EXPECT_NE(text.find("steel: gltf, roughness 0.25, metallic 1, sheen_color 0 0.5 0\n"), std::string::npos) << text;
+}
+
 TEST(Info, SeveralFilesAreOneScene) {
     const Scratch scratch;
     const std::string a = scratch.write("a.obj", kCube), b = scratch.write("b.scene", "sphere center 4 0 0 radius 2\n");

@@ -45,6 +45,23 @@ void read_property(const Value& of, const Property& p, importers::MaterialKeys& 
         keys.set(p.key, p.factor * of.number(p.name, 0));
 }
 
+// One warning for each material names the extensions that are left out.
+void name_unknown(const Value& material, const rt_scene_sink& sink) {
+    constexpr const char* kOthers[] = {"KHR_materials_ior", "KHR_materials_volume", "KHR_materials_emissive_strength",
+                                       "KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"};
+    if (!material.has("extensions") || !material["extensions"].json().is_object()) return;
+    std::string unknown;
+    for (const auto& extension : material["extensions"].json().items()) {
+        const std::string& name = extension.key();
+        const auto is_name = [&](const char* known) { return name == known; };
+        const bool known =
+            std::any_of(std::begin(kOthers), std::end(kOthers), is_name) ||
+            std::any_of(std::begin(kProperties), std::end(kProperties), [&](const Property& p) { return name == p.extension; });
+        if (!known) unknown += (unknown.empty() ? "" : ", ") + name;
+    }
+    if (!unknown.empty()) rt::warn(sink, material.path() + " has " + unknown + ", which is left out");
+}
+
 // KHR_materials_ior: 0 stands for an infinite one, which reflects all light, as one near 0 does.
 void read_ior(const Value& extension, importers::MaterialKeys& keys) {
     if (extension.has("ior")) keys.set("ior", std::max(extension.number("ior", 1.5), 1e-3));
@@ -110,6 +127,7 @@ rt_u32 Materials::add(const Value& material) {
         base = factor;
         importers::store_color(base, 1, 1, out.color);
     });
+    name_unknown(material, sink_);
     keys.set("model", extensions.has("KHR_materials_unlit") ? importers::unlit_model : importers::gltf_model);
     keys.set("metallic", is_gloss ? 0 : 1);  // specified defaults, which are not those of the host
     keys.set("roughness", 1);

@@ -10,7 +10,7 @@
 namespace clarity::test {
 namespace {
 
-constexpr unsigned kLayers = 12, kReads = 19 + kLayers, kWrites = 16;
+constexpr unsigned kLayers = 14, kReads = 19 + kLayers, kWrites = 16;
 static_assert(sizeof(LobeQuery) == 4 * 9 && sizeof(LobeAnswer) == 4 * kWrites);
 
 const char* const kBody = R"(
@@ -26,6 +26,7 @@ const char* const kBody = R"(
     m.transmission = n[4]; m.solid = RT_MASK(n[5] > 0.5f);
     m.clearcoat = n[6]; m.clearcoat_roughness = n[7];
     m.coat_normal = rt_normalize(rt_vec_of(n[10], rt_vfloat(0.0f), rt_vfloat(1.0f)));
+    m.iridescence = n[11]; m.iridescence_ior = n[12]; m.iridescence_thickness = n[13];
     m.sheen_color = rt_vec_of(n[8], n[8], n[8]); m.sheen_roughness = n[9];
     b.layered = rt_layered_of(&m, RT_MASK(n[0] > 0.5f), rt_vfloat(1.0f));
     b.eta = rt_select(b.layered.sheet, rt_vfloat(1.0f), b.eta);
@@ -51,7 +52,7 @@ LaneKernel& kernel(unsigned lanes) {
                                      "sampling/warps.h", "shading/power.h", "shading/albedo_grazing.h",
                                      "shading/albedo_sheen.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
                                      "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h",
-                                     "shading/matter.h", "shading/layers.h", "shading/bsdf.h"},
+                                     "shading/matter.h", "shading/film.h", "shading/layers.h", "shading/bsdf.h"},
             kReads, kWrites, kBody, lanes);
     return *found;
 }
@@ -112,7 +113,7 @@ std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& quer
         const rt_layers& l = lobe.layers;
         rows.insert(rows.end(), {float(lobe.layered), l.metallic, l.specular_weight, l.specular_color[0], l.transmission,
                                  float(l.flags & RT_LAYERS_SOLID), l.clearcoat, l.clearcoat_roughness, l.sheen_color[0],
-                                 l.sheen_roughness, lobe.coat_tilt, 0});
+                                 l.sheen_roughness, lobe.coat_tilt, l.iridescence, l.iridescence_ior, l.iridescence_thickness});
     }
     const std::vector<float> found = kernel(lanes).run(std::move(rows));
     std::vector<LobeAnswer> answers(queries.size());

@@ -76,6 +76,8 @@ std::vector<Lobe> layers_with_density() {
             layered("smooth varnish", 0.4f, [](rt_layers& l) { l.clearcoat = 1; }),
             layered("fibres", 0.6f, fibres),
             layered("fine fibres", 0.6f, [](rt_layers& l) { l.sheen_color[0] = 1, l.sheen_roughness = 0.2f; }),
+            layered("film", 0.4f, [](rt_layers& l) { l.iridescence = 0.8f; }),
+            colored(layered("film on metal", 0.5f, [](rt_layers& l) { l.iridescence = 1, l.metallic = 1; }), 0.9f, 0.5f, 0.1f),
             layered("all", 0.5f, all)};
 }
 std::vector<Lobe> all_with_density() {
@@ -328,16 +330,20 @@ TEST(PathLobes, WhiteLayersKeepLight) {
         EXPECT_LT(most, 1.08) << lobe.name << ", of one direction";
     };
     const auto metallic = [](float share) { return [=](rt_layers& l) { l.metallic = share; }; };
-    for (const float r : {0.0f, 0.3f, 0.7f, 1.0f}) {
+    const std::vector<float> all = {0, 0.3f, 0.7f, 1}, few = {0.3f, 1};
+    keeps(layered("fine fibres", 0.5f, [](rt_layers& l) { l.sheen_color[0] = 1, l.sheen_roughness = 0.15f; }));
+    for (const float r : quick() ? few : all) {
         for (const float share : {0.0f, 0.5f, 1.0f}) keeps(layered("metal " + std::to_string(share), r, metallic(share)));
         keeps(layered("half weight", r, [](rt_layers& l) { l.specular_weight = 0.5f; }));
         keeps(layered("bright", r, [](rt_layers& l) { l.specular_color[0] = 20; }));
         keeps(layered("sheet", r, [](rt_layers& l) { l.transmission = 1; }));
         keeps(layered("solid", r, [](rt_layers& l) { l.transmission = 1, l.flags = RT_LAYERS_SOLID; }));
-        for (const float below : {0.0f, 0.3f, 1.0f}) {
+        for (const float below : quick() ? std::vector<float>{0.3f} : all) {
             keeps(layered("varnish", below, [=](rt_layers& l) { l.clearcoat = 1, l.clearcoat_roughness = r; }));
             keeps(layered("varnish on metal", below,
                           [=](rt_layers& l) { l.clearcoat = 1, l.clearcoat_roughness = r, l.metallic = 1; }));
+            keeps(layered("film on metal", below,
+                          [=](rt_layers& l) { l.iridescence = 1, l.iridescence_thickness = 100 + 600 * r, l.metallic = 1; }));
             keeps(layered("fibres", below, [=](rt_layers& l) { l.sheen_color[0] = 1, l.sheen_roughness = r; }));
         }
         keeps(layered("all", r, [=](rt_layers& l) {

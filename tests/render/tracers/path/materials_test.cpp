@@ -43,6 +43,7 @@ LaneKernel& loader() {
          "shading/sheen.h",
          "shading/matter.h",
          "shading/matter_maps.h",
+         "shading/film.h",
          "shading/layers.h",
          "shading/bsdf.h",
          "shading/bsdf_of.h"},

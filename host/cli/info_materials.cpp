@@ -1,0 +1,55 @@
+#include "cli/info_materials.hpp"
+
+#include <cstring>
+
+#include "base/numbers.hpp"
+#include "base/printable.hpp"
+#include "scene/material_keys.hpp"
+
+namespace clarity {
+namespace {
+
+// Calls tell(key, value) for each value of the model that is no default. What only Whitted's tracers read follows other models.
+template <class Tell>
+void each_value(const MaterialValues& values, const Tell& tell) {
+    for (const Key& key : material_keys()) {
+        const std::array<float, 3> value = value_of(key, &values);
+        const bool follows = key.follows_model && values.model != RT_MODEL_WHITTED;
+        const bool is_model = std::strcmp(key.name, "model") == 0;
+        if (!key.alias && !follows && !is_model && has_key(values.model, key) && value != key.def) tell(key, value);
+    }
+}
+
+std::string model_of(const MaterialValues& values) {
+    const Key& model = material_key("model");
+    return value_text(model, value_of(model, &values), " ");
+}
+
+}  // namespace
+
+nlohmann::ordered_json material_json(const Material& material) {
+    nlohmann::ordered_json json = {{"name", material.name}, {"model", model_of(material.values)}};
+    each_value(material.values, [&](const Key& key, const std::array<float, 3>& value) {
+        if (key.kind == RT_KEY_FLAG)
+            json[key.name] = value[0] != 0;
+        else if (key.kind == RT_KEY_WORD)
+            json[key.name] = value_text(key, value, " ");
+        else if (count_of(key) == 1)
+            json[key.name] = short_double(value[0]);
+        else
+            json[key.name] = {short_double(value[0]), short_double(value[1]), short_double(value[2])};
+    });
+    if (material.values.texture != RT_NONE) json["texture"] = material.values.texture;
+    return json;
+}
+
+std::string material_text(const Material& material) {
+    std::string text = (material.name.empty() ? "(no name)" : printable_line(material.name)) + ": " + model_of(material.values);
+    each_value(material.values, [&](const Key& key, const std::array<float, 3>& value) {
+        text += std::string(", ") + key.name + ' ' + value_text(key, value, " ");
+    });
+    if (material.values.texture != RT_NONE) text += ", texture " + std::to_string(material.values.texture);
+    return text;
+}
+
+}  // namespace clarity

@@ -1,0 +1,15 @@
+// info_materials.hpp -- what `clarity info` tells of materials.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// Name, model, and all values of the model that are not defaults, by their keys; `texture` if it has one.
+nlohmann::ordered_json material_json(const Material& material);
+// The same in a line: "steel: gltf, color 0.5 0.5 0.5, metallic 1".
+std::string material_text(const Material& material);
+
+}  // namespace clarity
