@@ -12,6 +12,9 @@ typedef struct rt_bsdf {
     vfloat alpha;                         /* of metal and glass; 0: smooth */
     vfloat eta;                           /* ior of the other side / ior of this side */
     vmask compensate;                     /* light may meet several facets */
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    rt_layered layered; /* where it has lanes, glass is the only other share */
+#endif
 } rt_bsdf;
 
 typedef struct rt_bsdf_sample {
@@ -24,22 +27,57 @@ typedef struct rt_bsdf_sample {
 typedef struct rt_bsdf_lobes {
     vfloat diffuse, mirror, metal, glass; /* their sum is 1, or 0 of a black surface */
     vfloat again;                         /* of light that meets several facets, among that of metal or glass */
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    vfloat layers;          /* all lobes of layers.h together */
+    rt_layer_lobes layered; /* each of them, among these */
+    vfloat glass_dim;       /* by which they dim glass */
+#endif
 } rt_bsdf_lobes;
+
+/* The lanes that scatter diffusely, and those that light goes straight through, without a medium. */
+RT_INLINE vmask rt_is_diffuse(const rt_bsdf *b)
+{
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    return RT_MASK(rt_select(b->layered.lanes, b->layered.diffuse, b->diffuse) > rt_vfloat(0.0f));
+#else
+    return RT_MASK(b->diffuse > rt_vfloat(0.0f));
+#endif
+}
+RT_INLINE vmask rt_is_sheet(const rt_bsdf *b)
+{
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    return b->layered.sheet;
+#else
+    return rt_vint(0);
+#endif
+}
 
 /* The lanes with facets. */
 RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(share > rt_vfloat(0.0f)) & RT_MASK(b->alpha > rt_vfloat(0.0f)); }
 
-RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, vfloat mu)
+RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, rt_vec wo)
 {
-    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), mu = wo.z;
     rt_bsdf_lobes p;
     const vfloat diffuse = b->diffuse * rt_largest(b->color);
-    const vfloat sum = diffuse + b->mirror + b->metal + b->glass;
+    vfloat clear = b->glass;
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    p.layered = rt_layer_lobes_of(&b->layered, wo);
+    p.layers = rt_select(b->layered.lanes, p.layered.albedo, zero);
+    p.glass_dim = rt_select(b->layered.lanes, p.layered.below, one);
+    clear *= p.glass_dim;
+    const vfloat sum = diffuse + b->mirror + b->metal + clear + p.layers;
+#else
+    const vfloat sum = diffuse + b->mirror + b->metal + clear;
+#endif
     const vfloat scale = one / rt_max(sum, rt_vfloat(1e-20f));
     p.diffuse = diffuse * scale;
     p.mirror = b->mirror * scale;
     p.metal = b->metal * scale;
-    p.glass = b->glass * scale;
+    p.glass = clear * scale;
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    p.layers *= scale;
+#endif
     p.again = zero;
 #if RT_MAY_SCATTER(RT_LOBE_METAL)
     const vmask metal = rt_is_rough(b, b->metal) & b->compensate;
@@ -109,7 +147,7 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
 RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lanes, vfloat *pdf)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo.z);
+    const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo);
     const vmask above = lanes & RT_MASK(wi.z > zero) & RT_MASK(wo.z > zero);
     const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * wi.z;
     rt_vec f = rt_scale(rt_select(above, b->diffuse * cosine, zero), b->color);
@@ -150,6 +188,14 @@ RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
         *pdf = rt_select(frosted, fma(p.glass, density, *pdf), *pdf);
     }
 #endif
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    const vmask layered = lanes & b->layered.lanes & RT_MASK(wo.z > zero) & RT_MASK(wi.z != zero);
+    if (rt_any(layered)) {
+        vfloat density;
+        f = rt_choose(layered, rt_layers_eval(&b->layered, &p.layered, wo, wi, f, &density), f);
+        *pdf = rt_select(layered, fma(p.layers, density, *pdf), *pdf);
+    }
+#endif
     return f;
 }
 
@@ -169,13 +215,20 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const vmask smooth = RT_MASK(b->alpha <= zero);
-    const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo.z);
+    const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo);
     rt_bsdf_sample s;
-    /* The diffuse lobe comes first, then mirror, metal, glass. */
-    vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + p.mirror + p.metal + p.glass > zero);
+    /* The layers come first, then the diffuse lobe, mirror, metal, glass. */
+    const vfloat others = p.mirror + p.metal + p.glass;
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + others + p.layers > zero);
+    const vmask layers = rt_takes_lobe(left & b->layered.lanes, rt_select(RT_MASK(others > zero), p.layers, one), &u_lobe);
+    left &= ~layers;
+#else
+    vmask left = lanes & RT_MASK(wo.z > zero) & RT_MASK(p.diffuse + others > zero);
+#endif
     vmask diffuse = left, mirror = rt_vint(0);
     /* A share that alone is 1 may be rounded. */
-    if (RT_LOBES != 0u) diffuse = rt_takes_lobe(left, rt_select(RT_MASK(p.mirror + p.metal + p.glass > zero), p.diffuse, one), &u_lobe);
+    if (RT_LOBES != 0u) diffuse = rt_takes_lobe(left, rt_select(RT_MASK(others > zero), p.diffuse, one), &u_lobe);
     left &= ~diffuse;
     if (RT_MAY_SCATTER(RT_LOBE_MIRROR)) mirror = rt_takes_lobe(left, p.mirror / rt_max(one - p.diffuse, rt_vfloat(1e-20f)), &u_lobe);
     left &= ~mirror;
@@ -193,7 +246,11 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
         if (RT_MAY_SCATTER(RT_LOBE_GLASS) && rt_any(glass & smooth)) {
             vfloat cos_out;
             const vfloat reflected = rt_fresnel_dielectric(wo.z, b->eta, &cos_out);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+            const vfloat glass_share = b->glass * p.glass_dim / rt_max(p.glass, rt_vfloat(1e-20f));
+#else
             const vfloat glass_share = b->glass / rt_max(p.glass, rt_vfloat(1e-20f));
+#endif
             const vmask back = rt_takes_lobe(glass & smooth, reflected, &u_lobe), through = glass & smooth & ~back;
             s.transmitted |= through;
             s.pdf = rt_select(back, p.glass * reflected, rt_select(through, p.glass * (one - reflected), s.pdf));
@@ -203,10 +260,24 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
         }
     }
 
-    const vmask spread = (diffuse | metal | glass) & ~s.delta;
+    vmask spread = (diffuse | metal | glass) & ~s.delta;
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    rt_vec layer_wi = s.wi;
+    if (rt_any(layers)) {
+        const rt_layers_sample from = rt_layers_draw(&b->layered, &p.layered, wo, u_lobe, u1, u2);
+        const vmask there = layers & RT_MASK(from.wi.z != zero), mirrored = there & from.delta;
+        layer_wi = from.wi;
+        s.delta |= mirrored;
+        s.wi = rt_choose(mirrored, from.wi, s.wi);
+        s.weight = rt_choose(mirrored, rt_scale(one / rt_max(p.layers, rt_vfloat(1e-20f)), from.weight), s.weight);
+        s.pdf = rt_select(mirrored, p.layers * from.pdf, s.pdf);
+        s.transmitted |= mirrored & RT_MASK(from.wi.z < zero);
+        spread |= there & ~from.delta;
+    }
+#endif
     s.valid = s.delta;
     if (rt_any(spread)) {
-        const vmask facets = spread & ~diffuse & ~rt_takes_lobe(spread & ~diffuse, p.again, &u_lobe), frosted = spread & glass;
+        const vmask facets = (metal | glass) & spread & ~rt_takes_lobe((metal | glass) & spread, p.again, &u_lobe), frosted = spread & glass;
         rt_vec wi = rt_warp_cosine(u1, u2);
         vmask through = rt_vint(0);
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
@@ -229,6 +300,10 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
             }
             wi = rt_choose(facets, along, wi);
         }
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+        wi = rt_choose(layers, layer_wi, wi);
+        through |= layers & RT_MASK(layer_wi.z < zero);
+#endif
         vfloat pdf;
         const rt_vec f = rt_bsdf_eval(b, wo, wi, spread, &pdf);
         s.valid |= spread & RT_MASK(pdf > zero) & RT_MASK(rt_select(through, -wi.z, wi.z) > zero);

@@ -2,6 +2,46 @@
 #ifndef RT_BSDF_OF_H
 #define RT_BSDF_OF_H
 
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+/* Loads material `id` in the lanes `mine`. at: the points, world. */
+RT_INLINE void rt_load_matter(const rt_ctx *ctx, const rt_surface *s, int id, vmask mine, rt_vec at, rt_matter *out)
+{
+    const global rt_material *m = ctx->materials + id;
+    const global rt_layers *l = ctx->layers + id;
+    out->color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out->color);
+    out->specular_color = rt_choose(mine, rt_spread(l->specular_color), out->specular_color);
+    out->roughness = rt_select(mine, rt_vfloat(m->roughness), out->roughness);
+    out->metallic = rt_select(mine, rt_vfloat(l->metallic), out->metallic);
+    out->specular_weight = rt_select(mine, rt_vfloat(l->specular_weight), out->specular_weight);
+    out->transmission = rt_select(mine, rt_vfloat(l->transmission), out->transmission);
+    out->ior = rt_select(mine, rt_vfloat(m->ior), out->ior);
+    if (l->flags & RT_LAYERS_SOLID) out->solid |= mine;
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    out->clearcoat = rt_select(mine, rt_vfloat(l->clearcoat), out->clearcoat);
+    out->clearcoat_roughness = rt_select(mine, rt_vfloat(l->clearcoat_roughness), out->clearcoat_roughness);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_SHEEN)
+    out->sheen_color = rt_choose(mine, rt_spread(l->sheen_color), out->sheen_color);
+    out->sheen_roughness = rt_select(mine, rt_vfloat(l->sheen_roughness), out->sheen_roughness);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
+    vfloat sine, cosine;
+    rt_sin_cos_turns(rt_vfloat(l->anisotropy_rotation * (1.0f / 360.0f)), &sine, &cosine);
+    out->anisotropy = rt_select(mine, rt_vfloat(l->anisotropy), out->anisotropy);
+    out->grain_x = rt_select(mine, cosine, out->grain_x);
+    out->grain_y = rt_select(mine, sine, out->grain_y);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    out->iridescence = rt_select(mine, rt_vfloat(l->iridescence), out->iridescence);
+    out->iridescence_ior = rt_select(mine, rt_vfloat(l->iridescence_ior), out->iridescence_ior);
+    out->iridescence_thickness = rt_select(mine, rt_vfloat(l->iridescence_thickness), out->iridescence_thickness);
+#endif
+#ifdef RT_HAS_MAPS
+    rt_map_matter(ctx, id, s, mine, out);
+#endif
+}
+#endif
+
 /* The surfaces of the lanes in `bits`. entering: the ray comes from the side that the normal points to. around: ior on that side. at: the
  * points, world. */
 RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask entering, vfloat around, uint bits, rt_vec at)
@@ -52,10 +92,12 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
         if (m->flags & RT_MATERIAL_SINGLE_SCATTER) out.compensate &= ~mine;
     }
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    out.layered = rt_layered_of(&matter, layered, around);
+    const vfloat alpha = out.layered.alpha, eta = rt_select(entering, matter.ior / around, around / matter.ior);
     out.color = rt_choose(layered, matter.color, out.color);
-    out.diffuse = rt_select(layered, one - matter.metallic, out.diffuse);
-    out.metal = rt_select(layered, matter.metallic, out.metal);
-    out.alpha = rt_select(layered, rt_max(matter.roughness * matter.roughness, rt_vfloat(RT_LEAST_ALPHA)), out.alpha);
+    out.glass = rt_select(layered & matter.solid, (one - matter.metallic) * matter.transmission, out.glass);
+    out.alpha = rt_select(layered, alpha, out.alpha);
+    out.eta = rt_select(layered & matter.solid, eta, out.eta);
 #endif
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
@@ -64,5 +106,23 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
 #endif
     return out;
 }
+
+#if RT_MAY_SCATTER(RT_LOBE_UNLIT)
+/* The lanes in `bits` with RT_MODEL_UNLIT, and what they show. */
+RT_INLINE vmask rt_unlit(const rt_ctx *ctx, const rt_surface *s, uint bits, rt_vec at, rt_vec *shown)
+{
+    vmask unlit = rt_vint(0);
+    *shown = rt_splat(0.0f, 0.0f, 0.0f);
+    int id;
+    vmask mine;
+    for (rt_groups g = rt_group_lanes(s->material, bits); rt_next_group(&g, &id, &mine);) {
+        const global rt_material *m = ctx->materials + id;
+        if (m->model != RT_MODEL_UNLIT) continue;
+        unlit |= mine;
+        *shown = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), *shown);
+    }
+    return unlit;
+}
+#endif
 
 #endif

@@ -1,5 +1,5 @@
 /* lost_metal.h -- made by scripts/albedo_tables metal, which says what the numbers are: 65535 is 1. */
-#if !defined(RT_LOST_METAL_H) && RT_MAY_SCATTER(RT_LOBE_METAL)
+#if !defined(RT_LOST_METAL_H) && RT_MAY_SCATTER(RT_LOBE_METAL | RT_LOBE_LAYERS)
 #define RT_LOST_METAL_H
 
 constant ushort rt_lost_metal[] = {

@@ -53,43 +53,5 @@ RT_INLINE rt_matter rt_no_matter(void)
     return m;
 }
 
-/* Loads material `id` in the lanes `mine`. at: the points, world. */
-RT_INLINE void rt_load_matter(const rt_ctx *ctx, const rt_surface *s, int id, vmask mine, rt_vec at, rt_matter *out)
-{
-    const global rt_material *m = ctx->materials + id;
-    const global rt_layers *l = ctx->layers + id;
-    out->color = rt_choose(mine, rt_material_color(ctx, m, s, mine, at), out->color);
-    out->specular_color = rt_choose(mine, rt_spread(l->specular_color), out->specular_color);
-    out->roughness = rt_select(mine, rt_vfloat(m->roughness), out->roughness);
-    out->metallic = rt_select(mine, rt_vfloat(l->metallic), out->metallic);
-    out->specular_weight = rt_select(mine, rt_vfloat(l->specular_weight), out->specular_weight);
-    out->transmission = rt_select(mine, rt_vfloat(l->transmission), out->transmission);
-    out->ior = rt_select(mine, rt_vfloat(m->ior), out->ior);
-    if (l->flags & RT_LAYERS_SOLID) out->solid |= mine;
-#if RT_MAY_SCATTER(RT_LOBE_COAT)
-    out->clearcoat = rt_select(mine, rt_vfloat(l->clearcoat), out->clearcoat);
-    out->clearcoat_roughness = rt_select(mine, rt_vfloat(l->clearcoat_roughness), out->clearcoat_roughness);
-#endif
-#if RT_MAY_SCATTER(RT_LOBE_SHEEN)
-    out->sheen_color = rt_choose(mine, rt_spread(l->sheen_color), out->sheen_color);
-    out->sheen_roughness = rt_select(mine, rt_vfloat(l->sheen_roughness), out->sheen_roughness);
-#endif
-#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
-    vfloat sine, cosine;
-    rt_sin_cos_turns(rt_vfloat(l->anisotropy_rotation * (1.0f / 360.0f)), &sine, &cosine);
-    out->anisotropy = rt_select(mine, rt_vfloat(l->anisotropy), out->anisotropy);
-    out->grain_x = rt_select(mine, cosine, out->grain_x);
-    out->grain_y = rt_select(mine, sine, out->grain_y);
-#endif
-#if RT_MAY_SCATTER(RT_LOBE_FILM)
-    out->iridescence = rt_select(mine, rt_vfloat(l->iridescence), out->iridescence);
-    out->iridescence_ior = rt_select(mine, rt_vfloat(l->iridescence_ior), out->iridescence_ior);
-    out->iridescence_thickness = rt_select(mine, rt_vfloat(l->iridescence_thickness), out->iridescence_thickness);
-#endif
-#ifdef RT_HAS_MAPS
-    rt_map_matter(ctx, id, s, mine, out);
-#endif
-}
-
 #endif
 #endif

@@ -88,7 +88,7 @@ RT_INLINE vfloat rt_mix(vfloat a, vfloat b, vfloat share) { return fma(share, b 
 /* The tables' axis along the cosine: where alpha is small, the loss depends on mu / alpha. */
 RT_INLINE vfloat rt_facet_axis(vfloat mu, vfloat alpha) { return sqrt(mu * (rt_vfloat(1.0f) + alpha) / (mu + alpha)); }
 
-#if RT_MAY_SCATTER(RT_LOBE_METAL)
+#if RT_MAY_SCATTER(RT_LOBE_METAL | RT_LOBE_LAYERS)
 /* The share of the light from a direction of cosine mu that a metal with F = 1 loses when light meets one facet only. */
 RT_CALLED vfloat rt_lost_by_metal(vfloat mu, vfloat alpha)
 {

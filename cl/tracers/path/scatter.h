@@ -52,7 +52,7 @@ RT_INLINE vfloat rt_found_weight(const constant rt_frame *frame, const rt_path *
 RT_INLINE vint rt_first_kind(const rt_path *p, const rt_bsdf *bsdf, vmask sharp, vmask through)
 {
     const vint kind = rt_select(through, rt_vint(RT_FIRST_TRANSMISSION),
-                                rt_select(sharp | RT_MASK(bsdf->diffuse <= rt_vfloat(0.0f)), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
+                                rt_select(sharp | ~rt_is_diffuse(bsdf), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
     return rt_select(RT_MASK(p->event == rt_vint(0)), kind, p->first);
 }
 
@@ -198,7 +198,7 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     p->sharp = rt_select(on, s.delta, p->sharp);
     p->scale = rt_select(on, scale, p->scale);
 #if RT_MAY_SCATTER(RT_LOBE_GLASS)
-    if (rt_any(on & s.transmitted)) rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted);
+    if (rt_any(on & s.transmitted & ~rt_is_sheet(&m->bsdf))) rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted & ~rt_is_sheet(&m->bsdf));
 #endif
     p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
     p->event += rt_vint(1);
@@ -264,7 +264,14 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
         rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
     }
 
-    const vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
+    vmask scattered = hits & RT_MASK(p->event < rt_vint((int)frame->depth));
+#if RT_MAY_SCATTER(RT_LOBE_UNLIT)
+    /* Surfaces that are not lit end paths: with their colour where a camera sees them, directly or by what is smooth. */
+    rt_vec shown;
+    const vmask unlit = rt_unlit(ctx, &surface, hit_bits, m.point.at, &shown);
+    if (rt_any(unlit)) rt_collect(frame, p, unlit & p->sharp, shown, p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
+    scattered &= ~unlit;
+#endif
     const uint scattered_bits = rt_bits(scattered);
     if (scattered_bits == 0u) return scattered;
     const rt_sampler sampler = rt_sampler_of(frame, p);

@@ -22,7 +22,7 @@ bool is_colored(const float (&color)[3]) {
 rt_u32 lobes_of_layers(const MaterialValues& m) {
     const rt_layers& l = m.layers;
     const bool clear = l.transmission > 0 && l.metallic < 1, solid = (l.flags & RT_LAYERS_SOLID) != 0;
-    rt_u32 lobes = RT_LOBE_LAYERS | RT_LOBE_METAL;
+    rt_u32 lobes = RT_LOBE_LAYERS;
     if (l.clearcoat > 0) lobes |= RT_LOBE_COAT;
     if (is_colored(l.sheen_color)) lobes |= RT_LOBE_SHEEN;
     if (clear && !solid) lobes |= RT_LOBE_THIN;

@@ -1,7 +1,9 @@
 // materials.hpp -- the host's materials from the values that files have. For importers.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "rt_plugin.h"
 
@@ -28,6 +30,27 @@ inline void apply_metallic(double metallic_factor, double roughness_factor, rt_m
     for (int k = 0; k < 3; ++k) out.specular[k] = smooth * (0.04f + metallic * (out.color[k] - 0.04f));
 }
 
+// Further values by the keys of the host's table. A description that has them points to them.
+class MaterialKeys {
+ public:
+    void set(const char* key, double number) { set(key, std::array<double, 3>{number, number, number}); }
+    void set(const char* key, const std::array<double, 3>& numbers) {
+        rt_key_value value = {key, {}, 0};
+        for (size_t k = 0; k < 3; ++k) value.numbers[k] = static_cast<float>(numbers[k]);
+        values_.push_back(value);
+    }
+    void add(const rt_key_value* values, size_t count) { values_.insert(values_.end(), values, values + count); }
+    void give(rt_material_desc& out) const {
+        out.values = values_.data();
+        out.value_count = static_cast<rt_u32>(values_.size());
+    }
+
+ private:
+    std::vector<rt_key_value> values_;
+};
+// Numbers of the words of the key `model`.
+enum Model { whitted_model, lambert_model, conductor_model, dielectric_model, gltf_model, unlit_model };
+
 // How much of a surface is there, as keys of the host. A description that has them points to them.
 struct AlphaKeys {
     enum Mode { opaque, mask, blend };  // numbers of the words of `alpha`
@@ -40,6 +63,9 @@ struct AlphaKeys {
         if (values[0].numbers[0] == opaque) return;
         out.values = values;
         out.value_count = 3;
+    }
+    void give(MaterialKeys& keys) const {
+        if (values[0].numbers[0] != opaque) keys.add(values, 3);
     }
     rt_key_value values[3] = {{"alpha", {opaque, 0, 0}, 0}, {"opacity", {1, 0, 0}, 0}, {"cutoff", {0.5f, 0, 0}, 0}};
 };

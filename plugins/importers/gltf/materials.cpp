@@ -19,6 +19,57 @@ Value color_texture(const Value& material) {
     return material.object("pbrMetallicRoughness").object("baseColorTexture");
 }
 
+// The properties that are keys of the host as they are, by extension ("": of the material's pbrMetallicRoughness). Sources:
+// glTF 2.0, section 3.9, and the README of each extension in Khronos' registry.
+struct Property {
+    const char *extension, *name, *key;
+    unsigned count;
+    double factor;
+};
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr Property kProperties[] = {
+    {"", "metallicFactor", "metallic", 1, 1},
+    {"", "roughnessFactor", "roughness", 1, 1},
+    {"KHR_materials_specular", "specularFactor", "specular_weight", 1, 1},
+    {"KHR_materials_specular", "specularColorFactor", "specular_color", 3, 1},
+    {"KHR_materials_clearcoat", "clearcoatFactor", "clearcoat", 1, 1},
+    {"KHR_materials_clearcoat", "clearcoatRoughnessFactor", "clearcoat_roughness", 1, 1},
+    {"KHR_materials_sheen", "sheenColorFactor", "sheen_color", 3, 1},
+    {"KHR_materials_sheen", "sheenRoughnessFactor", "sheen_roughness", 1, 1},
+    {"KHR_materials_transmission", "transmissionFactor", "transmission", 1, 1},
+    {"KHR_materials_anisotropy", "anisotropyStrength", "anisotropy", 1, 1},
+    {"KHR_materials_anisotropy", "anisotropyRotation", "anisotropy_rotation", 1, kDegrees},
+    {"KHR_materials_iridescence", "iridescenceFactor", "iridescence", 1, 1},
+    {"KHR_materials_iridescence", "iridescenceIor", "iridescence_ior", 1, 1},
+    {"KHR_materials_iridescence", "iridescenceThicknessMaximum", "iridescence_thickness", 1, 1},
+    {"KHR_materials_iridescence", "iridescenceThicknessMinimum", "iridescence_thickness_min", 1, 1},
+};
+
+void read_property(const Value& of, const Property& p, importers::MaterialKeys& keys) {
+    if (!of.has(p.name)) return;
+    if (p.count == 3)
+        keys.set(p.key, of.numbers<3>(p.name, {}));
+    else
+        keys.set(p.key, p.factor * of.number(p.name, 0));
+}
+
+// KHR_materials_ior: 0 stands for an infinite one, which reflects all light, as one near 0 does.
+void read_ior(const Value& extension, importers::MaterialKeys& keys) {
+    if (extension.has("ior")) keys.set("ior", std::max(extension.number("ior", 1.5), 1e-3));
+}
+
+// KHR_materials_volume: a thickness above 0 says that the surface bounds a solid, whose colour is what is left of white light
+// after the distance.
+void read_volume(const Value& extension, importers::MaterialKeys& keys) {
+    if (!(extension.number("thicknessFactor", 0) > 0)) return;
+    keys.set("thin", 0);
+    if (!extension.has("attenuationDistance")) return;
+    const double distance = extension.number("attenuationDistance", 0);
+    std::array<double, 3> absorption = extension.numbers<3>("attenuationColor", {1, 1, 1});
+    for (double& channel : absorption) channel = distance > 0 ? -std::log(std::clamp(channel, 1e-6, 1.0)) / distance : 0;
+    keys.set("absorption", absorption);
+}
+
 // Specification, section 3.9.4.
 void read_alpha(const Value& material, double opacity, importers::AlphaKeys& alpha) {
     const std::string mode = material.text("alphaMode", "OPAQUE");
@@ -68,39 +119,44 @@ rt_u32 Materials::add(const Value& material) {
     rt_material_desc out = rt::material(name.c_str());
     std::array<double, 4> base = {1, 1, 1, 1};
     importers::AlphaKeys alpha;
+    importers::MaterialKeys keys;
+    const Value extensions = material.object("extensions");
+    const bool is_gloss = extensions.has("KHR_materials_pbrSpecularGlossiness");
     const auto group = [&](const auto& read) { spared(sink_, "the material keeps the default there", read); };
     importers::store_color(base, 1, 1, out.color);
     group([&] {
-        const Value gloss = material.object("extensions").object("KHR_materials_pbrSpecularGlossiness");
+        const Value gloss = extensions.object("KHR_materials_pbrSpecularGlossiness");
         const std::array<double, 4> factor = gloss.numbers<4>(
             "diffuseFactor", material.object("pbrMetallicRoughness").numbers<4>("baseColorFactor", {1, 1, 1, 1}));
         base = factor;
         importers::store_color(base, 1, 1, out.color);
     });
     group([&] { out.texture = texture(color_texture(material)); });
-    group([&] {
-        const Value pbr = material.object("pbrMetallicRoughness");
-        importers::apply_metallic(pbr.number("metallicFactor", 1), pbr.number("roughnessFactor", 1), out);
-    });
+    keys.set("model", extensions.has("KHR_materials_unlit") ? importers::unlit_model : importers::gltf_model);
+    keys.set("metallic", is_gloss ? 0 : 1);  // specified defaults, which are not those of the host
+    keys.set("roughness", 1);
+    for (const Property& p : kProperties)
+        group([&] {
+            const bool is_core = *p.extension == 0;
+            if (is_core && is_gloss) return;
+            read_property(is_core ? material.object("pbrMetallicRoughness") : extensions.object(p.extension), p, keys);
+        });
+    group([&] { read_ior(extensions.object("KHR_materials_ior"), keys); });
+    group([&] { read_volume(extensions.object("KHR_materials_volume"), keys); });
     group([&] {
         // The host has one texture, which multiplies the colour. A picture that confines emission to a part of the surface is
         // lost.
         const std::array<double, 3> emission = material.numbers<3>("emissiveFactor", {0, 0, 0});
-        const double strength =
-            material.object("extensions").object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+        const double strength = extensions.object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
         const bool shines = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
         if (shines && material.has("emissiveTexture"))
             rt::warn(sink_, material.path() + " shines as a picture says (emissiveTexture); that light is left out");
         else
             importers::store_color(emission, strength, 1000, out.emission);
     });
-    group([&] {
-        const Value extensions = material.object("extensions");
-        const double transmission = extensions.object("KHR_materials_transmission").number("transmissionFactor", 0);
-        importers::apply_transparency(1, transmission, extensions.object("KHR_materials_ior").number("ior", 0), alpha, out);
-    });
     group([&] { read_alpha(material, base[3], alpha); });
-    alpha.give(out);
+    alpha.give(keys);
+    keys.give(out);
     return rt::id(sink_.material(sink_.ctx, &out));
 }
 

@@ -217,6 +217,63 @@ TEST_F(GltfParts, AlphaCountsAsItsModeSays) {
     spared("materials[0].alphaMode: found 'GLASS'", [](Model& m) { m["materials"][0]["alphaMode"] = "GLASS"; });
 }
 
+// Each property that the importer knows reaches its key, with a value that no default has.
+TEST_F(GltfParts, MaterialsHaveTheLayersOfTheirExtensions) {
+    const auto read = [&](const std::string& extensions, const std::string& core = "{}") {
+        Model model = rich();
+        json& m = model["materials"][0];
+        m["pbrMetallicRoughness"] = json::parse(core);
+        m["extensions"] = json::parse(extensions);
+        return import(model).materials.back().values;
+    };
+    const MaterialValues plain = read("{}");
+    EXPECT_EQ(plain.model, RT_MODEL_GLTF);
+    EXPECT_EQ(plain.layers.metallic, 1) << "as the specification has it";
+    EXPECT_EQ(plain.roughness, 1);
+    EXPECT_EQ(plain.ior, 1.5f);
+    const MaterialValues core = read("{}", R"({"metallicFactor": 0.25, "roughnessFactor": 0.5})");
+    EXPECT_EQ(core.layers.metallic, 0.25f);
+    EXPECT_EQ(core.roughness, 0.5f);
+    EXPECT_EQ(core.reflect, 0.125f) << "what Whitted's tracers show";
+    EXPECT_EQ(read(R"({"KHR_materials_unlit": {}})").model, RT_MODEL_UNLIT);
+    EXPECT_EQ(read(R"({"KHR_materials_ior": {"ior": 1.25}})").ior, 1.25f);
+    EXPECT_EQ(read(R"({"KHR_materials_ior": {"ior": 0}})").ior, 1e-3f) << "reflects all";
+    const MaterialValues glass = read(
+        R"({"KHR_materials_transmission": {"transmissionFactor": 0.75}, "KHR_materials_volume": {"thicknessFactor": 1,
+            "attenuationDistance": 2, "attenuationColor": [0.5, 1, 0.25]}})");
+    EXPECT_EQ(glass.layers.transmission, 0.75f);
+    EXPECT_EQ(glass.refract, 0.75f);
+    EXPECT_EQ(glass.layers.flags, RT_LAYERS_SOLID);
+    EXPECT_FLOAT_EQ(glass.absorption[0], float(std::log(2.0) / 2)) << "half is left after two units";
+    EXPECT_EQ(glass.absorption[1], 0);
+    EXPECT_FLOAT_EQ(glass.absorption[2], float(std::log(2.0)));
+    const rt_layers more = read(R"({"KHR_materials_specular": {"specularFactor": 0.125, "specularColorFactor": [0.5, 2, 0.25]},
+        "KHR_materials_clearcoat": {"clearcoatFactor": 0.375, "clearcoatRoughnessFactor": 0.625},
+        "KHR_materials_sheen": {"sheenColorFactor": [0.25, 0.5, 0.75], "sheenRoughnessFactor": 0.875},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1},
+        "KHR_materials_iridescence": {"iridescenceFactor": 0.75, "iridescenceIor": 1.75, "iridescenceThicknessMinimum": 50,
+                                      "iridescenceThicknessMaximum": 250}})")
+                               .layers;
+    EXPECT_EQ(more.flags, 0u) << "a sheet";
+    const float found[] = {more.specular_weight,
+                           more.specular_color[1],
+                           more.clearcoat,
+                           more.clearcoat_roughness,
+                           more.sheen_color[2],
+                           more.sheen_roughness,
+                           more.anisotropy,
+                           more.anisotropy_rotation,
+                           more.iridescence,
+                           more.iridescence_ior,
+                           more.iridescence_thickness_min,
+                           more.iridescence_thickness};
+    const float expected[] = {0.125f, 2, 0.375f, 0.625f, 0.75f, 0.875f, 0.5f, 57.29578f, 0.75f, 1.75f, 50, 250};
+    for (size_t i = 0; i < std::size(expected); ++i) EXPECT_FLOAT_EQ(found[i], expected[i]) << i;
+    spared("materials[0].extensions.KHR_materials_clearcoat.clearcoatFactor: found 'much'", [](Model& m) {
+        m["materials"][0]["extensions"] = json::parse(R"({"KHR_materials_clearcoat": {"clearcoatFactor": "much"}})");
+    });
+}
+
 // Specification, section 3.7.2.1: floats or shares of an integer's range, with or without alpha, linear, limited to 0..1.
 TEST_F(GltfParts, ColoursOfVerticesAreReadInEveryForm) {
     const auto colors = [&](const std::function<size_t(Model&)>& add) {

@@ -22,8 +22,9 @@ KernelRow row_of(const std::vector<const char*>& headers, unsigned traits, const
 }
 
 // One pixel a work-item, as only GPUs have it: there rays that do not split need no array.
-const std::vector<const char*> kOnePixel = {"shading/material.h", "shading/cutouts.h",  "tracers/iterative/ray_queue.h",
-                                            "shading/shading.h",  "tracers/ray_step.h", "tracers/iterative/iterative_single.h"};
+const std::vector<const char*> kOnePixel = {
+    "shading/material.h", "shading/cutouts.h",  "tracers/iterative/ray_queue.h",       "shading/power.h",
+    "shading/shading.h",  "tracers/ray_step.h", "tracers/iterative/iterative_single.h"};
 
 const KernelRow& kernel(const Settings& settings, const Layout& layout) {
     static const KernelRow packets = row_of(headers_by_generations(false), kLimitRegisters | kLayers),
@@ -38,7 +39,7 @@ const KernelRow& kernel(const Settings& settings, const Layout& layout) {
 std::vector<const char*> headers_by_generations(bool recorded) {
     std::vector<const char*> headers = {"shading/material.h", "shading/cutouts.h", "tracers/iterative/ray_queue.h"};
     if (recorded) headers.emplace_back("tracers/inspect/recorder.h");
-    headers.emplace_back("shading/shading.h");
+    headers.insert(headers.end(), {"shading/power.h", "shading/shading.h"});
     if (recorded) headers.emplace_back("tracers/inspect/record_hits.h");
     headers.emplace_back("tracers/iterative/generations.h");
     return headers;

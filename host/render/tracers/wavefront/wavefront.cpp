@@ -131,8 +131,13 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.what = "tracer wavefront";
         r.file = "tracers/wavefront/wavefront.cl";
         r.entry = "trace_wavefront";
-        r.headers = {"shading/material.h", "shading/cutouts.h",         "shading/shading.h",
-                     "tracers/ray_step.h", "lanes/work_distribution.h", "tracers/wavefront/wavefront_rays.h"};
+        r.headers = {"shading/material.h",
+                     "shading/cutouts.h",
+                     "shading/power.h",
+                     "shading/shading.h",
+                     "tracers/ray_step.h",
+                     "lanes/work_distribution.h",
+                     "tracers/wavefront/wavefront_rays.h"};
         r.traits = kLimitRegisters | kFrame | kCountsRays | kWhitted;
         return r;
     }();

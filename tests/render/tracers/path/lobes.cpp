@@ -10,7 +10,7 @@
 namespace clarity::test {
 namespace {
 
-constexpr unsigned kReads = 19, kWrites = 16;
+constexpr unsigned kLayers = 12, kReads = 19 + kLayers, kWrites = 16;
 static_assert(sizeof(LobeQuery) == 4 * 9 && sizeof(LobeAnswer) == 4 * kWrites);
 
 const char* const kBody = R"(
@@ -18,6 +18,17 @@ const char* const kBody = R"(
     b.color = rt_vec_of(in[0], in[1], in[2]);
     b.diffuse = in[3]; b.mirror = in[4]; b.metal = in[5]; b.glass = in[6]; b.alpha = in[7]; b.eta = in[8];
     b.compensate = RT_MASK(in[9] > 0.5f);
+    rt_matter m = rt_no_matter();
+    const vfloat *n = in + 19;
+    m.color = b.color;
+    m.roughness = sqrt(b.alpha); m.ior = b.eta;
+    m.metallic = n[1]; m.specular_weight = n[2]; m.specular_color = rt_vec_of(n[3], n[3], n[3]);
+    m.transmission = n[4]; m.solid = RT_MASK(n[5] > 0.5f);
+    m.clearcoat = n[6]; m.clearcoat_roughness = n[7];
+    m.coat_normal = rt_normalize(rt_vec_of(n[10], rt_vfloat(0.0f), rt_vfloat(1.0f)));
+    m.sheen_color = rt_vec_of(n[8], n[8], n[8]); m.sheen_roughness = n[9];
+    b.layered = rt_layered_of(&m, RT_MASK(n[0] > 0.5f), rt_vfloat(1.0f));
+    b.eta = rt_select(b.layered.sheet, rt_vfloat(1.0f), b.eta);
     const rt_vec wo = rt_vec_of(in[10], in[11], in[12]), wi = rt_vec_of(in[16], in[17], in[18]);
     const vmask all = RT_MASK(in[9] > -1.0f);
     const rt_bsdf_sample s = rt_bsdf_draw(&b, wo, in[13], in[14], in[15], all);
@@ -37,8 +48,10 @@ LaneKernel& kernel(unsigned lanes) {
     if (!found)
         found = std::make_unique<LaneKernel>(
             std::vector<std::string>{"rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h", "sampling/math.h",
-                                     "sampling/warps.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
-                                     "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/bsdf.h"},
+                                     "sampling/warps.h", "shading/power.h", "shading/albedo_grazing.h",
+                                     "shading/albedo_sheen.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
+                                     "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h",
+                                     "shading/matter.h", "shading/layers.h", "shading/bsdf.h"},
             kReads, kWrites, kBody, lanes);
     return *found;
 }
@@ -71,6 +84,23 @@ Lobe glass(float roughness, float eta, bool compensate) {
     return lobe;
 }
 
+Lobe layered(const std::string& name, float roughness, const std::function<void(rt_layers&)>& change) {
+    Lobe lobe{name + " of roughness " + std::to_string(roughness)};
+    lobe.layered = true;
+    lobe.alpha = roughness * roughness;
+    lobe.eta = 1.5f;
+    lobe.layers = default_material().layers;
+    change(lobe.layers);
+    const bool solid = (lobe.layers.flags & RT_LAYERS_SOLID) != 0;
+    if (solid) lobe.glass = (1 - lobe.layers.metallic) * lobe.layers.transmission;
+    return lobe;
+}
+
+bool Lobe::passes() const {
+    const bool sheet = layered && layers.transmission > 0 && layers.metallic < 1;
+    return alpha > 0 && (glass > 0 || sheet);
+}
+
 std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes) {
     std::vector<float> rows;
     rows.reserve(queries.size() * kReads);
@@ -79,6 +109,10 @@ std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& quer
                                  lobe.alpha, lobe.eta, float(lobe.compensate)});
         const float* const numbers = query.wo;
         rows.insert(rows.end(), numbers, numbers + 9);
+        const rt_layers& l = lobe.layers;
+        rows.insert(rows.end(), {float(lobe.layered), l.metallic, l.specular_weight, l.specular_color[0], l.transmission,
+                                 float(l.flags & RT_LAYERS_SOLID), l.clearcoat, l.clearcoat_roughness, l.sheen_color[0],
+                                 l.sheen_roughness, lobe.coat_tilt, 0});
     }
     const std::vector<float> found = kernel(lanes).run(std::move(rows));
     std::vector<LobeAnswer> answers(queries.size());

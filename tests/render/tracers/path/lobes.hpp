@@ -1,8 +1,11 @@
 // lobes.hpp -- draws and evaluates surfaces of cl/shading/bsdf.h by themselves, on the default device.
 #pragma once
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
+
+#include "scene/scene.hpp"
 
 namespace clarity::test {
 
@@ -11,9 +14,16 @@ struct Lobe {
     float color[3] = {1, 1, 1};
     float diffuse = 0, mirror = 0, metal = 0, glass = 0, alpha = 0, eta = 1;
     bool compensate = true;
+    bool layered = false;  // RT_MODEL_GLTF by these, and not by the shares
+    rt_layers layers{};
+    float coat_tilt = 0;  // slope of the varnish against the surface
+    bool passes() const;  // light through the surface, with a density
 };
 Lobe lambert(float r, float g, float b);
 Lobe metal(float roughness, bool compensate = true);
+// White, of ior 1.5 and RT_MODEL_GLTF.
+Lobe layered(
+    const std::string& name, float roughness, const std::function<void(rt_layers&)>& change = [](rt_layers&) {});
 Lobe glass(float roughness, float eta, bool compensate = true);
 
 // What is asked of one lane: a direction is drawn for wo by u, and the lobe is evaluated for wi.

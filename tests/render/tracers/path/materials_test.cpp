@@ -15,28 +15,49 @@ namespace {
 constexpr unsigned kWords = 24;  // of a material, and so of a row
 static_assert(sizeof(rt_material) == 4 * kWords);
 
-// The first rows are materials; the next one is a texture and its texels. The others ask for a material, at texture
-// coordinates.
+// The first rows are materials; the next one is a texture and its texels, and the next one the layers of the last material. The
+// others ask for a material, at texture coordinates.
 LaneKernel& loader() {
     static LaneKernel compiled(
-        {"#define RT_HAS_TEXTURES 1\n", "rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h",
+        {"#define RT_HAS_TEXTURES 1\n",
+         "rt_shared.h",
+         "rt_types.h",
+         "lanes/lanes.h",
+         "lanes/vec.h",
          "typedef struct rt_ctx { const global rt_material *materials; const global rt_layers *layers; const global rt_texture "
          "*textures; const global uint "
          "*texels; } rt_ctx;\n"
          "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
-         "sampling/math.h", "sampling/warps.h", "shading/material.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
-         "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/matter.h", "shading/bsdf.h", "shading/bsdf_of.h"},
-        kWords, 10,
-        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.layers = (const global rt_layers *)given; "
-        "ctx.textures = (const global rt_texture *)(given + 8 * "
-        "READS);"
-        "ctx.texels = (const global uint *)(given + 8 * READS + 4);"
-        "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(7)); s.tex_u = in[1]; s.tex_v = in[2];"
+         "sampling/math.h",
+         "sampling/warps.h",
+         "shading/power.h",
+         "shading/material.h",
+         "shading/albedo_grazing.h",
+         "shading/albedo_sheen.h",
+         "shading/lost_metal.h",
+         "shading/lost_glass_outside.h",
+         "shading/lost_glass_inside.h",
+         "shading/microfacets.h",
+         "shading/sheen.h",
+         "shading/matter.h",
+         "shading/layers.h",
+         "shading/bsdf.h",
+         "shading/bsdf_of.h"},
+        kWords, 22,
+        "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.layers = (const global rt_layers *)(given + 10 * "
+        "READS) - 8; "
+        "ctx.textures = (const global rt_texture *)(given + 9 * READS);"
+        "ctx.texels = (const global uint *)(given + 9 * READS + 4);"
+        "rt_surface s; s.material = min(max(rt_to_int(in[0]), rt_vint(0)), rt_vint(8)); s.tex_u = in[1]; s.tex_v = in[2];"
         "const rt_bsdf b = rt_bsdf_of(&ctx, &s, RT_MASK(in[3] > 0.5f), rt_vfloat(1.0f), RT_ALL_LANES, rt_vec_of(in[4], in[5], "
         "in[6]));"
         "out[0] = b.color.x; out[1] = b.color.y; out[2] = b.color.z; out[3] = b.diffuse; out[4] = b.mirror; out[5] = b.metal; "
         "out[6] = b.glass;"
-        "out[7] = b.alpha; out[8] = b.eta; out[9] = rt_select(b.compensate, rt_vfloat(1.0f), rt_vfloat(0.0f));",
+        "out[7] = b.alpha; out[8] = b.eta; out[9] = rt_select(b.compensate, rt_vfloat(1.0f), rt_vfloat(0.0f));"
+        "const rt_layered *l = &b.layered; out[10] = rt_select(l->lanes, rt_vfloat(1.0f), rt_vfloat(0.0f)); out[11] = l->alpha;"
+        "out[12] = l->metal; out[13] = l->gloss; out[14] = l->diffuse; out[15] = l->thin; out[16] = l->straight.x; out[17] = "
+        "l->grazing;"
+        "out[18] = l->coat; out[19] = l->coat_alpha; out[20] = l->sheen.y; out[21] = l->sheen_roughness;",
         8);
     return compiled;
 }
@@ -61,21 +82,27 @@ TEST(PathMaterials, BecomeLobes) {
     for (float& c : textured.color) c = 1;
     rt_material air = material(RT_MODEL_DIELECTRIC, 0.5f);
     air.ior = 1;
-    const rt_material materials[8] = {material(RT_MODEL_WHITTED),
+    const rt_material materials[9] = {material(RT_MODEL_WHITTED),
                                       material(RT_MODEL_LAMBERT),
                                       material(RT_MODEL_CONDUCTOR, 0.5f),
                                       material(RT_MODEL_DIELECTRIC, 0.001f, RT_MATERIAL_SINGLE_SCATTER),
                                       material(RT_MODEL_DIELECTRIC),
                                       checker,
                                       textured,
-                                      air};
-    std::vector<float> rows(8 * kWords);
+                                      air,
+                                      material(RT_MODEL_GLTF, 0.5f)};
+    std::vector<float> rows(9 * kWords);
     std::memcpy(rows.data(), materials, sizeof materials);
     // A texture of 16 texels in a row; texel k has k, 16 + k, and 255 - k.
     rt_u32 texture[kWords] = {0, 16, 1, 0};
     for (rt_u32 k = 0; k < 16; ++k) texture[4 + k] = k | (16 + k) << 8 | (255 - k) << 16;
-    rows.resize(9 * kWords);
-    std::memcpy(&rows[8 * kWords], texture, sizeof texture);
+    rows.resize(11 * kWords);
+    std::memcpy(&rows[9 * kWords], texture, sizeof texture);
+    rt_layers layers = default_material().layers;
+    layers.metallic = 0.25f, layers.transmission = 0.5f, layers.specular_weight = 0.75f, layers.specular_color[0] = 0.5f;
+    layers.clearcoat = 0.375f, layers.clearcoat_roughness = 0.75f, layers.sheen_color[1] = 0.625f,
+    layers.sheen_roughness = 0.875f;
+    std::memcpy(&rows[10 * kWords], &layers, sizeof layers);
     struct Asked {
         float material, u, v, entering, x, y, z;
     };
@@ -86,12 +113,13 @@ TEST(PathMaterials, BecomeLobes) {
     asked.push_back({5, 0, 0, 1, 1.5f, 0, 0.5f});
     for (int k = 0; k < 16; ++k) asked.push_back({6, (float(k) + 0.5f) / 16, 0.5f, 1, 0, 0, 0});
     asked.push_back({7, 0, 0, 1, 0, 0, 0});
+    asked.push_back({8, 0, 0, 1, 0, 0, 0});
     for (const Asked& a : asked) {
         rows.resize(rows.size() + kWords);
         std::memcpy(&rows[rows.size() - kWords], &a, sizeof a);
     }
     const std::vector<float> found = loader().run(rows);
-    const auto lobe = [&](size_t i) { return &found[(9 + i) * 10]; };
+    const auto lobe = [&](size_t i) { return &found[(11 + i) * 22]; };
     const float expected[10][7] = {// diffuse, mirror, metal, glass, alpha, eta, compensate
                                    {0.25f, 0.25f, 0, 0.5f, 0, 1.25f, 1},
                                    {0.25f, 0.25f, 0, 0.5f, 0, 0.8f, 1},
@@ -110,6 +138,12 @@ TEST(PathMaterials, BecomeLobes) {
     }
     EXPECT_EQ(lobe(28)[7], 0) << "facets that refract nothing";
     EXPECT_EQ(lobe(28)[8], 1);
+    // A sheet: lanes, alpha, metal, gloss, diffuse, thin, straight, grazing, coat and its alpha, sheen and its roughness
+    const float layered[12] = {1, 0.25f, 0.25f, 0.75f, 0.375f, 0.375f, 0.375f / 81, 0.75f, 0.375f, 0.5625f, 0.625f, 0.875f};
+    for (size_t k = 0; k < 12; ++k) EXPECT_FLOAT_EQ(lobe(29)[10 + k], layered[k]) << k;
+    EXPECT_EQ(lobe(29)[6], 0) << "no glass";
+    EXPECT_EQ(lobe(29)[8], 1) << "the same medium on both sides";
+    EXPECT_EQ(lobe(28)[10], 0) << "another model";
     EXPECT_FLOAT_EQ(lobe(10)[0], 0.5f);
     EXPECT_FLOAT_EQ(lobe(11)[0], 0.5f / 3);
     for (int k = 0; k < 16; ++k) {
