@@ -10,47 +10,21 @@
 #include <cmath>
 #include <vector>
 
+#include "clarity_space/primitives.hpp"
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "grid_types.h"
 
 namespace {
 
+using clarity::space::is_huge;
+using clarity::space::kEps;
+using clarity::space::TrianglePlane;
+
 enum Param { kDensity, kExact };
 constexpr rt_param kParams[] = {
     rt::float_param("density", "Density", "cells for each primitive", 0.1, 64, 5),
     rt::bool_param("exact", "Exact", "a triangle is in the cells that its plane meets; else in all that its box meets", true),
-};
-constexpr double kEps = 1.0 / (1 << 24);
-
-bool is_huge(const rt_prim& p) {  // NaN, too: a huge sphere's box may be infinite
-    for (int k = 0; k < 3; ++k)
-        if (!(std::fabs(p.lo[k]) < 1e15f && std::fabs(p.hi[k]) < 1e15f)) return true;
-    return false;
-}
-
-// The plane of a triangle, widened by the rounding of the kernels' own normal.
-struct Plane {
-    double normal[3], offset, slack;
-    explicit Plane(const rt_packed_prim& t) {
-        double e[2][3], longest[2] = {0, 0};
-        for (int k = 0; k < 3; ++k) {
-            e[0][k] = double{t.b[k]} - t.a[k], e[1][k] = double{t.c[k]} - t.a[k];
-            for (int i = 0; i < 2; ++i) longest[i] = std::max(longest[i], std::fabs(e[i][k]));
-        }
-        offset = 0;
-        for (int k = 0; k < 3; ++k) {
-            const int i = (k + 1) % 3, j = (k + 2) % 3;
-            normal[k] = e[0][i] * e[1][j] - e[0][j] * e[1][i];
-            offset += normal[k] * t.a[k];
-        }
-        slack = 16 * kEps * longest[0] * longest[1] * std::max(longest[0], longest[1]);
-    }
-    bool meets(const double center[3], const double half[3]) const {
-        double height = -offset, reach = slack;
-        for (int k = 0; k < 3; ++k) height += normal[k] * center[k], reach += std::fabs(normal[k]) * half[k];
-        return !(std::fabs(height) > reach);
-    }
 };
 
 // The grid of one group, as it is built.
@@ -142,7 +116,7 @@ class Grid {
                     for (int x = lo[0]; x <= hi[0]; ++x) body(index(x, y, z));
             return;
         }
-        const Plane plane(triangles_[RT_REF_INDEX(p.ref)]);
+        const TrianglePlane plane(triangles_[RT_REF_INDEX(p.ref)]);
         double half[3], center[3];
         for (int k = 0; k < 3; ++k) half[k] = 0.5 * head.size[k] + slack_[k];
         for (int z = lo[2]; z <= hi[2]; ++z)

@@ -11,6 +11,7 @@
 // need the types of rt_shared.h, so they must follow the headers above:
 #include "grid_types.h"
 #include "kdtree_types.h"
+#include "octree_types.h"
 
 using namespace accel_test;
 
@@ -86,6 +87,39 @@ uint64_t points_lost_by_kdtree(const Input& input, const Built& built) {
     return lost;
 }
 
+bool is_named_by_octree(const Built& built, rt_u32 at, const double* p, rt_u32 ref) {
+    const octree_node& node = built.slot<octree_node>(1)[at];
+    if (node.code & OCTREE_LEAF) {
+        const rt_u32* const list = built.slot<rt_u32>(2) + node.at.first;
+        return std::any_of(list, list + (node.code & ~OCTREE_LEAF), [&](rt_u32 i) { return built.leaves[i] == ref; });
+    }
+    rt_u32 child = node.code;
+    for (int k = 0; k < 3; ++k) child += p[k] > node.at.center[k] ? 1u << k : 0u;
+    return is_named_by_octree(built, child, p, ref);
+}
+
+TEST(Octree, NamesATriangleInEachLeafThatItMeets) {
+    for (const float middle : {0.0f, 1000.0f}) {
+        const Input input = shards(2000, 1, middle);
+        const Built built = build(load("octree"), input);
+        ASSERT_EQ(built.status, RT_OK) << built.why;
+        EXPECT_GT(built.stats.at("depth"), 3);
+        uint64_t lost = 0;
+        each_point(input, [&](const double* p, rt_u32 ref) {
+            lost += !is_named_by_octree(built, built.slot<octree_head>()[built.roots[0]].node, p, ref);
+        });
+        EXPECT_EQ(lost, 0u) << middle;
+        EXPECT_GT(built.defines.at("OCTREE_STACK"), 7 * built.stats.at("depth"));
+    }
+}
+
+// What lies in one place cannot be parted: one leaf, and no cells without end.
+TEST(Octree, EndsWherePartingGainsNothing) {
+    std::vector<rt_prim> prims;
+    for (rt_u32 i = 0; i < 500; ++i) prims.push_back(cube(0, 0, 0, 1, i));
+    EXPECT_EQ(build(load("octree"), one_group(prims)).stats.at("nodes"), 1);
+}
+
 TEST(Grid, NamesATriangleInEachCellThatItMeets) {
     for (const float middle : {0.0f, 1000.0f})
         for (const double exact : {0.0, 1.0}) {
@@ -130,7 +164,7 @@ TEST(Grid, KeepsHugePrimitivesApart) {
 
 TEST(Kdtree, NamesATriangleInEachLeafThatItMeets) {
     for (const float middle : {0.0f, 1000.0f}) {
-        const Input input = shards(6000, 1, middle);  // by bins, and below 2048 by all bounds
+        const Input input = shards(9000, 1, middle);  // above 8192 in parallel, by bins, and below 2048 by all bounds
         const Built built = build(load("kdtree"), input);
         ASSERT_EQ(built.status, RT_OK) << built.why;
         EXPECT_EQ(points_lost_by_kdtree(input, built), 0u) << middle;
@@ -189,7 +223,7 @@ TEST(Kdtree, TheStackHoldsItsDepth) {
 
 TEST(Cells, TreesDoNotDependOnThreads) {
     const Input input = shards(20000, 1, 0);
-    for (const char* id : {"grid", "kdtree"}) {
+    for (const char* id : {"grid", "kdtree", "octree"}) {
         const Built one = build(load(id), input, {{}, 1, {}}), two = build(load(id), input, {{}, 3, {}});
         EXPECT_TRUE(same_tree(load(id), one, two)) << id;
         EXPECT_EQ(build(load(id), input, {{}, 1, [](float) { return false; }}).status, RT_CANCELLED) << id;
