@@ -34,6 +34,16 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     p.normal = rt_scale(side, s->normal);
     /* At silhouettes an interpolated normal may point away from the viewer. Then the geometric normal replaces it. */
     p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
+#if defined(RT_HAS_TANGENTS) && defined(RT_HAS_MAPS)
+    /* A mirror would lose what it sends below its own plane. The normal of a map bends until the mirrored ray stays above it: Keller et
+     * al. 2017, "The Iray Light Transport Simulation and Rendering System". */
+    const rt_vec turned = rt_scale(side, s->normal), back = rt_scale(-one, p.incoming);
+    const rt_vec mirrored = rt_sub(rt_scale(2.0f * rt_dot(turned, back), turned), back);
+    const vfloat least = rt_min(rt_vfloat(0.01f), 0.5f * rt_dot(back, p.geometric)), rise = rt_dot(mirrored, p.geometric);
+    const rt_vec raised = rt_normalize(rt_along(least - rise, p.geometric, mirrored));
+    const vmask bends = RT_MASK(rise < least) & RT_MASK(rt_dot(s->normal, s->unmapped) < rt_vfloat(0.9999f));
+    p.normal = rt_choose(bends, rt_normalize(rt_add(back, raised)), p.normal);
+#endif
     p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
     const vfloat height = side * s->height;
     p.outward = rt_max(s->error - height, zero);
