@@ -35,27 +35,20 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     /* At silhouettes an interpolated normal may point away from the viewer. Then the geometric normal replaces it. */
     p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
 #if defined(RT_HAS_TANGENTS) && defined(RT_HAS_MAPS)
-    /* A mapped normal may mirror the ray into the surface, which would be black there. It is turned until the mirrored ray grazes the
-     * surface (Keller et al. 2017, The Iray Light Transport Simulation and Rendering System, on shading normals). */
-    const rt_vec mirrored = rt_along(rt_vfloat(-2.0f) * rt_dot(p.normal, p.incoming), p.normal, p.incoming);
-    const vfloat lift = rt_vfloat(0.01f) - rt_dot(mirrored, p.geometric);
-    const vmask turns = RT_MASK(lift > zero) & RT_MASK(rt_dot(s->normal, s->unmapped) < rt_vfloat(0.9999f));
-    p.normal = rt_choose(turns, rt_normalize(rt_sub(rt_normalize(rt_along(lift, p.geometric, mirrored)), p.incoming)), p.normal);
+    /* A mirror would lose what it sends below its own plane. The normal of a map bends until the mirrored ray stays above it: Keller et
+     * al. 2017, "The Iray Light Transport Simulation and Rendering System". */
+    const rt_vec turned = rt_scale(side, s->normal), back = rt_scale(-one, p.incoming);
+    const rt_vec mirrored = rt_sub(rt_scale(2.0f * rt_dot(turned, back), turned), back);
+    const vfloat least = rt_min(rt_vfloat(0.01f), 0.5f * rt_dot(back, p.geometric)), rise = rt_dot(mirrored, p.geometric);
+    const rt_vec raised = rt_normalize(rt_along(least - rise, p.geometric, mirrored));
+    const vmask bends = RT_MASK(rise < least) & RT_MASK(rt_dot(s->normal, s->unmapped) < rt_vfloat(0.9999f));
+    p.normal = rt_choose(bends, rt_normalize(rt_add(back, raised)), p.normal);
 #endif
     p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
     const vfloat height = side * s->height;
     p.outward = rt_max(s->error - height, zero);
     p.inward = -s->error - height;
     return p;
-}
-
-/* How the light of a point falls off: by the inverse square of the distance, and to nothing at its range, 0 if it has none
- * (KHR_lights_punctual). */
-RT_INLINE vfloat rt_fall_off(vfloat squared, vfloat range)
-{
-    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), least = rt_vfloat(1e-30f);
-    const vfloat share = squared / rt_max(range * range, least);
-    return rt_select(RT_MASK(range > zero), clamp(fma(-share, share, one), zero, one), one) / rt_max(squared, least);
 }
 
 #endif

@@ -392,6 +392,15 @@ TEST(NormalMaps, FollowTheTransformOfTheirTexture) {
     EXPECT_NEAR(cosine_seen(scene, kSun), cosine_of({-0.3, 0.5, 0.75}, kSun), 1e-2);
 }
 
+// The mirrored ray of a steep normal would go below the square. It stays above, so that a white mirror shows all of an even
+// sky.
+TEST(NormalMaps, AMirrorLosesNoLight) {
+    Scene scene = bent(0.8, 0, 0.6);
+    scene.materials[0].values.reflect = 1;
+    const PathPicture p = trace_paths(scene, flat_view(), 4, {{"depth", "2"}});
+    EXPECT_NEAR(p.average(), 1, 1e-3);
+}
+
 TEST(NormalMaps, HaveAScale) {
     Scene scene = bent(0.5, 0.2, 0.8);
     scene.maps[0].scale = 0.5f;
