@@ -42,6 +42,7 @@ LaneKernel& loader() {
          "shading/matter.h",
          "shading/film.h",
          "shading/layers.h",
+         "shading/layer_lobes.h",
          "shading/bsdf.h",
          "shading/bsdf_of.h"},
         kWords, 22,
