@@ -77,11 +77,18 @@ double mean(const FloatImage& image) {
 
 struct Case {
     const char* name;
-    rt_material surface;
+    MaterialValues surface;
     std::vector<rt_light> lights;
     Optics expected;  // of the view alone, for `path`
     bool glows = false, sky = false;
 };
+
+// RT_MODEL_GLTF with one layer.
+MaterialValues layered(void (*change)(rt_layers&)) {
+    MaterialValues m = of_model(RT_MODEL_GLTF, 0.4f);
+    change(m.layers);
+    return m;
+}
 
 std::vector<Case> cases() {
     const auto bit = [](rt_u32 kind) { return 1u << kind; };
@@ -109,6 +116,23 @@ std::vector<Case> cases() {
          {light(RT_LIGHT_SUN), light(RT_LIGHT_DIRECTIONAL)},
          {bit(RT_LIGHT_SUN) | bit(RT_LIGHT_DIRECTIONAL) | bit(RT_EMITTER_SURFACE), RT_LOBE_GLASS | RT_LOBE_FROSTED},
          true},
+        {"glTF's core",
+         layered([](rt_layers& l) { l.metallic = 0.5f; }),
+         {light(RT_LIGHT_POINT)},
+         {bit(RT_LIGHT_POINT), RT_LOBE_LAYERS}},
+        {"varnish and fibres",
+         layered([](rt_layers& l) { l.clearcoat = 1, l.sheen_color[0] = 0.5f; }),
+         {light(RT_LIGHT_SPHERE)},
+         {bit(RT_LIGHT_SPHERE), RT_LOBE_LAYERS | RT_LOBE_COAT | RT_LOBE_SHEEN}},
+        {"a sheet with a film",
+         layered([](rt_layers& l) { l.transmission = 0.7f, l.iridescence = 1; }),
+         {light(RT_LIGHT_SPHERE)},
+         {bit(RT_LIGHT_SPHERE), RT_LOBE_LAYERS | RT_LOBE_THIN | RT_LOBE_FILM}},
+        {"a solid",
+         layered([](rt_layers& l) { l.transmission = 0.7f, l.flags = RT_LAYERS_SOLID; }),
+         {light(RT_LIGHT_SPHERE)},
+         {bit(RT_LIGHT_SPHERE), RT_LOBE_LAYERS | RT_LOBE_GLASS | RT_LOBE_FROSTED}},
+        {"unlit", of_model(RT_MODEL_UNLIT), {light(RT_LIGHT_POINT)}, {bit(RT_LIGHT_POINT), RT_LOBE_UNLIT}},
     };
 }
 

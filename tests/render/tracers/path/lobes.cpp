@@ -48,11 +48,11 @@ LaneKernel& kernel(unsigned lanes) {
     std::unique_ptr<LaneKernel>& found = compiled[lanes];
     if (!found)
         found = std::make_unique<LaneKernel>(
-            std::vector<std::string>{"rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h", "sampling/math.h",
-                                     "sampling/warps.h", "shading/power.h", "shading/albedo_grazing.h",
-                                     "shading/albedo_sheen.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
-                                     "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h",
-                                     "shading/matter.h", "shading/film.h", "shading/layers.h", "shading/bsdf.h"},
+            std::vector<std::string>{
+                "rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h", "sampling/math.h", "sampling/warps.h",
+                "shading/power.h", "shading/albedo_grazing.h", "shading/albedo_sheen.h", "shading/lost_metal.h",
+                "shading/lost_glass_outside.h", "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h",
+                "shading/matter.h", "shading/film.h", "shading/layers.h", "shading/layer_lobes.h", "shading/bsdf.h"},
             kReads, kWrites, kBody, lanes);
     return *found;
 }

@@ -45,6 +45,7 @@ LaneKernel& loader() {
          "shading/matter_maps.h",
          "shading/film.h",
          "shading/layers.h",
+         "shading/layer_lobes.h",
          "shading/bsdf.h",
          "shading/bsdf_of.h"},
         kWords, 22,
