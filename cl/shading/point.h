@@ -51,4 +51,13 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     return p;
 }
 
+/* How the light of a point falls off: by the inverse square of the distance, and to nothing at its range, 0 if it has none
+ * (KHR_lights_punctual). */
+RT_INLINE vfloat rt_fall_off(vfloat squared, vfloat range)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), least = rt_vfloat(1e-30f);
+    const vfloat share = squared / rt_max(range * range, least);
+    return rt_select(RT_MASK(range > zero), clamp(fma(-share, share, one), zero, one), one) / rt_max(squared, least);
+}
+
 #endif
