@@ -21,6 +21,32 @@ uint64_t entries_of(const char* folder) {
     return count;
 }
 
+// What grows from one look to the next and to the one after it, `times` / 2 repetitions apart.
+Outcome compare_sizes(const std::string& what, unsigned times, const ProcessSize& begin, const ProcessSize& middle,
+                      const ProcessSize& end) {
+    // Memory that grows in both halves is leaked; a cache grows once.
+    const auto grows = [&](uint64_t ProcessSize::*member, uint64_t each) {
+        const uint64_t a = begin.*member, b = middle.*member, c = end.*member, least = each * uint64_t(times / 2);
+        return b > a && c > b && b - a >= least && c - b >= least;
+    };
+    const auto each = [&](uint64_t ProcessSize::*member) {
+        return std::to_string((end.*member - begin.*member) / uint64_t(times));
+    };
+    const std::string after = " after " + std::to_string(times) + " " + what + "s";
+    // Threads and files first: what belongs to them is on the heap, too.
+    if (end.files > begin.files)
+        return Outcome::failed(std::to_string(end.files - begin.files) + " files or pipes stay open" + after);
+    if (end.threads > begin.threads + 4)
+        return Outcome::failed(std::to_string(end.threads - begin.threads) + " threads go on" + after);
+    if (grows(&ProcessSize::heap_bytes, 8))
+        return Outcome::failed("each " + what + " leaves " + each(&ProcessSize::heap_bytes) +
+                               " bytes on the heap: it leaks memory");
+    if (grows(&ProcessSize::mapped_bytes, 4096))
+        return Outcome::failed("each " + what + " leaves " + each(&ProcessSize::mapped_bytes) +
+                               " bytes mapped: it leaks memory");
+    return Outcome::passed("nothing grows over " + std::to_string(times) + " " + what + "s");
+}
+
 }  // namespace
 
 void use_one_arena() {
@@ -54,28 +80,18 @@ Outcome find_leaks(const std::string& what, unsigned times, const std::function<
         return process_size();
     };
     repeat(20);  // caches fill
-    const ProcessSize begin = repeat(times / 2), middle = repeat(times / 2), end = repeat(times / 2);
-    // Memory that grows in both halves is leaked; a cache grows once.
-    const auto grows = [&](uint64_t ProcessSize::*member, uint64_t each) {
-        const uint64_t a = begin.*member, b = middle.*member, c = end.*member, least = each * uint64_t(times / 2);
-        return b > a && c > b && b - a >= least && c - b >= least;
-    };
-    const auto each = [&](uint64_t ProcessSize::*member) {
-        return std::to_string((end.*member - begin.*member) / uint64_t(times));
-    };
-    const std::string after = " after " + std::to_string(times) + " " + what + "s";
-    // Threads and files first: what belongs to them is on the heap, too.
-    if (end.files > begin.files)
-        return Outcome::failed(std::to_string(end.files - begin.files) + " files or pipes stay open" + after);
-    if (end.threads > begin.threads + 4)
-        return Outcome::failed(std::to_string(end.threads - begin.threads) + " threads go on" + after);
-    if (grows(&ProcessSize::heap_bytes, 8))
-        return Outcome::failed("each " + what + " leaves " + each(&ProcessSize::heap_bytes) +
-                               " bytes on the heap: it leaks memory");
-    if (grows(&ProcessSize::mapped_bytes, 4096))
-        return Outcome::failed("each " + what + " leaves " + each(&ProcessSize::mapped_bytes) +
-                               " bytes mapped: it leaks memory");
-    return Outcome::passed("nothing grows over " + std::to_string(times) + " " + what + "s");
+    // Each thread of a pool has memory of its own from the first work that it gets, which may be late where there are many
+    // cores. What is leaked grows every time.
+    constexpr unsigned kLooks = 4;
+    Outcome outcome;
+    ProcessSize begin = repeat(0);
+    for (unsigned look = 0; look < kLooks; ++look) {
+        const ProcessSize middle = repeat(times / 2), end = repeat(times / 2);
+        outcome = compare_sizes(what, times, begin, middle, end);
+        if (outcome.kind != Outcome::Kind::failed) break;
+        begin = end;
+    }
+    return outcome;
 }
 
 }  // namespace clarity::check

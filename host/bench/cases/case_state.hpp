@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bench/cases/agreement.hpp"
@@ -12,6 +13,11 @@
 #include "render/tracers/rays/ray_blocks.hpp"
 
 namespace clarity::bench {
+
+// Numbers of a work-item of a kernel, as NVIDIA's compiler tells them.
+struct RegisterUse {
+    int registers = -1, spilled_bytes = -1;  // -1: not told
+};
 
 struct CaseState {
     CaseState(Fixture& fixture, const BenchCase& definition, Progress& progress)
@@ -34,6 +40,7 @@ struct CaseState {
     const RaySet* rays = nullptr;         // of this case; null until one of our rows can trace them
     std::optional<WhittedScene> whitted;  // the frame that baselines render too; empty until one of our rows can render it
     std::optional<FloatImage> light_reference;                    // of suite light; empty until the first row has it
+    std::map<std::string, RegisterUse> register_uses;             // of suite light, by the program's text
     std::map<unsigned, std::shared_ptr<const RayBlocks>> packed;  // `rays` packed for each number of lanes
 };
 

@@ -49,9 +49,8 @@ void describe_program(CaseState& state, LightRun& light, const Fixture::Held& he
     const std::shared_ptr<Device>& opened = state.fixture.opened(device);
     const bool nvidia = opened->info().nvidia && !opened->info().pocl;
     const KernelSource source = kernel_for(prepared, prepared.program->row);
-    // A driver says nothing of a text that it has compiled before, so each row has its own.
-    const std::string text = source.text + "\n/* " + light.sampler +
-                             " */\nkernel void rt_state_bytes(global uint *bytes) { *bytes = sizeof(rt_path) / RT_LANES; }\n";
+    const std::string text =
+        source.text + "\nkernel void rt_state_bytes(global uint *bytes) { *bytes = sizeof(rt_path) / RT_LANES; }\n";
     const BuildResult built =
         build_program(*opened, text, options_for(opened->info(), source) + (nvidia ? " -cl-nv-verbose" : ""), source.what);
     cl::Buffer bytes(opened->context(), CL_MEM_WRITE_ONLY, sizeof light.state_bytes);
@@ -59,7 +58,9 @@ void describe_program(CaseState& state, LightRun& light, const Fixture::Held& he
     kernel.setArg(0, bytes);
     opened->queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1));
     opened->queue().enqueueReadBuffer(bytes, CL_TRUE, 0, sizeof light.state_bytes, &light.state_bytes);
-    const RegisterUse use = register_use(built.log, prepared.program->row.entry);
+    // A driver says nothing of a text that it has compiled before, as for an earlier row.
+    RegisterUse& use = state.register_uses[text];
+    if (const RegisterUse told = register_use(built.log, prepared.program->row.entry); told.registers >= 0) use = told;
     light.registers = use.registers;
     light.spilled_bytes = use.spilled_bytes;
 }

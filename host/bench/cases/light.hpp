@@ -10,10 +10,7 @@ namespace clarity::bench {
 // file of another size Error(usage).
 void add_light(CaseState& state, Entry& entry, const Settings& settings, const Fixture::Held& held, const std::string& file);
 
-// Numbers of a work-item of the kernel `entry` in a log that NVIDIA's compiler writes with -cl-nv-verbose.
-struct RegisterUse {
-    int registers = -1, spilled_bytes = -1;  // -1: the log does not tell
-};
+// Of the kernel `entry`, from a log that NVIDIA's compiler writes with -cl-nv-verbose.
 RegisterUse register_use(const std::string& log, const std::string& entry);
 
 }  // namespace clarity::bench
