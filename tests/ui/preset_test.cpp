@@ -62,7 +62,7 @@ TEST_F(Presets, AnInvalidPresetChangesNothing) {
         {"[1, 2]", "clarity_preset"},
         {R"({"clarity_preset": 99})", "version"},
         {start + R"(, "colour": 1})", "colour"},
-        {start + R"(, "accel": {"id": "octree"}})", "octree"},
+        {start + R"(, "accel": {"id": "no_such_tree"}})", "no_such_tree"},
         {start + R"(, "accel": {"id": "bvh2", "max_leaf": "-3"}})", "max_leaf"},
         {start + R"(, "edits": [["exposure", "1"]]})", "edit"},
         {start + R"(, "edits": [["background", "1,0,0"], ["material.99.color", "1,0,0"]]})", "material.99"},

@@ -19,9 +19,10 @@ bool is_colored(const float (&color)[3]) {
     return std::any_of(std::begin(color), std::end(color), [](float channel) { return channel > 0; });
 }
 
+// A map may make any value smaller: a metal of 1 may have parts that are none, and let light through.
 rt_u32 lobes_of_layers(const MaterialValues& m) {
     const rt_layers& l = m.layers;
-    const bool clear = l.transmission > 0 && l.metallic < 1, solid = (l.flags & RT_LAYERS_SOLID) != 0;
+    const bool clear = l.transmission > 0, solid = (l.flags & RT_LAYERS_SOLID) != 0;
     rt_u32 lobes = RT_LOBE_LAYERS;
     if (l.clearcoat > 0) lobes |= RT_LOBE_COAT;
     if (is_colored(l.sheen_color)) lobes |= RT_LOBE_SHEEN;

@@ -59,7 +59,7 @@ TEST(Preset, RefusesUnknownKeysAndValues) {
         {R"({"clarity_preset": 1, "settings": {"deepth": "3"}})", "deepth"},
         {R"({"clarity_preset": 1, "settings": {"depth": "300"}})", "depth"},
         {R"({"clarity_preset": 1, "settings": []})", "no object"},
-        {R"({"clarity_preset": 1, "accel": {"id": "octree"}})", "octree"},
+        {R"({"clarity_preset": 1, "accel": {"id": "no_such_tree"}})", "no_such_tree"},
         {R"({"clarity_preset": 1, "accel": {"id": "bvh2", "leaves": "3"}})", "leaves"},
         {R"({"clarity_preset": 1, "edits": [["depth", "3"]]})", "no edit"},
         {R"({"clarity_preset": 1, "edits": [["light.0"]]})", "no edit"},
