@@ -192,7 +192,7 @@ TEST_F(BenchCommand, UnknownOptionsAndValuesAreUsageErrors) {
         {{"fastest"}, "no such suite"},
         {{"quick", "--set", "lanes"}, "key=value"},
         {{"quick", "--set", "nonsense=1"}, "nonsense"},
-        {{"quick", "--accel", "octree"}, "octree"},
+        {{"quick", "--accel", "no_such_tree"}, "no_such_tree"},
         {{"quick", "--accel", "bvh2,max_leaf=0"}, "max_leaf"},
         {{"quick", "--aov", "t"}, "colour only"},
         {{"quick", "--spp", "4"}, "one sample"},

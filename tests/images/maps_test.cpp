@@ -351,10 +351,11 @@ double cosine_of(std::array<double, 3> n, const Point& towards) {
 
 constexpr Point kSun = {0.36f, 0.48f, 0.8f};
 
+// No normal is so steep that a mirrored ray would go below the square, seen from any pixel: `path` bends those.
 TEST(NormalMaps, TurnTheNormalAlongTheCoordinates) {
     for (const char* tracer : {"iterative", "wavefront", "path"}) {
         EXPECT_NEAR(cosine_seen(bent(0.5, 0, 0.8), kSun, tracer), cosine_of({0.5, 0, 0.8}, kSun), 1e-3) << tracer;
-        EXPECT_NEAR(cosine_seen(bent(-0.2, 0.6, 0.7), kSun, tracer), cosine_of({-0.2, 0.6, 0.7}, kSun), 1e-3) << tracer;
+        EXPECT_NEAR(cosine_seen(bent(-0.2, 0.5, 0.8), kSun, tracer), cosine_of({-0.2, 0.5, 0.8}, kSun), 1e-3) << tracer;
     }
 }
 
