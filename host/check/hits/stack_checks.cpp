@@ -26,7 +26,7 @@ std::string stack_in(const rt_plugin& tracer) {
 // any push.
 struct Effort {
     uint64_t tests[2] = {0, 0};  // nearest, any
-    uint32_t most[2] = {0, 0};   // of one ray
+    uint32_t most[2] = {0, 0};   // of one ray; those of nearest hits are whole for that
     uint64_t steps[2] = {0, 0};
     uint32_t most_steps[2] = {0, 0};  // of one ray
     uint64_t asked = 0;
@@ -41,18 +41,26 @@ Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step
         const RaySet& set = bench.set(name, step);
         const std::vector<Truth>& truths = bench.truths(set, step);
         CheckedScene& scene = bench.scene(step);
-        for (const bool any_hit : {false, true}) {
-            std::vector<rt_ray> rays = set.rays;
-            for (size_t i = 0; i < rays.size(); ++i)
-                if (!truths[i].contacts.empty()) rays[i].t_max = static_cast<float>(truths[i].contacts.front().t * 0.99);
+        std::vector<rt_ray> ended = set.rays;
+        for (size_t i = 0; i < ended.size(); ++i)
+            if (!truths[i].contacts.empty()) ended[i].t_max = static_cast<float>(truths[i].contacts.front().t * 0.99);
+        const auto count = [&](const std::vector<rt_ray>& rays, bool any_hit) {
             step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(bench.options()));
-            const Traced traced = scene.count(variant, rays, any_hit);
+            return scene.count(variant, rays, any_hit);
+        };
+        const auto most_of = [](const Traced& traced) {
+            uint32_t most = 0;
+            for (const rt_hit& hit : traced.hits) most = std::max<uint32_t>(most, hit.leaf_tests);
+            return most;
+        };
+        for (const bool any_hit : {false, true}) {
+            const Traced traced = count(ended, any_hit);
             for (const rt_hit& hit : traced.hits) {
                 effort.tests[any_hit] += hit.leaf_tests;
                 effort.steps[any_hit] += hit.steps;
                 effort.most_steps[any_hit] = std::max<uint32_t>(effort.most_steps[any_hit], hit.steps);
-                effort.most[any_hit] = std::max<uint32_t>(effort.most[any_hit], hit.leaf_tests);
             }
+            effort.most[any_hit] = std::max(effort.most[any_hit], most_of(any_hit ? traced : count(set.rays, false)));
             effort.asked += traced.overflows;
         }
     }
