@@ -168,10 +168,12 @@ class ElementReader {
         } catch (const End&) {
             const Element *vertices = header_.find(Kind::vertices), *faces = header_.find(Kind::faces);
             if (!faces) faces = header_.find(Kind::strips);
-            throw std::runtime_error(values_.where() + "ends after " + std::to_string(done_[size_t(Kind::vertices)]) + " of " +
-                                     std::to_string(vertices->count) + " vertices and " +
-                                     std::to_string(done_[size_t(faces->kind)]) + " of " + std::to_string(faces->count) +
-                                     (faces->kind == Kind::faces ? " faces" : " strips") + ": it is cut off or damaged");
+            const auto part = [&](const Element& e) {
+                return std::to_string(done_[size_t(e.kind)]) + " of " + std::to_string(e.count);
+            };
+            std::string text = values_.where() + "ends after " + part(*vertices) + " vertices";
+            if (faces) text += " and " + part(*faces) + (faces->kind == Kind::faces ? " faces" : " strips");
+            throw std::runtime_error(text + ": it is cut off or damaged");
         }
     }
 
@@ -289,10 +291,8 @@ class ElementReader {
     std::vector<float> texcoords_;
 };
 
-}  // namespace
-
-Reading read_ply(const Source& source, FlatMesh& mesh) {
-    const Header header = ply::parse_header(source.bytes);
+Header read_elements(const Source& source, FlatMesh& mesh, bool needs_faces) {
+    Header header = ply::parse_header(source.bytes, needs_faces);
     if (header.is_ascii()) {
         ElementReader<AsciiValues>(source, header, mesh).read();
     } else if (header.format == "binary_little_endian") {
@@ -300,6 +300,13 @@ Reading read_ply(const Source& source, FlatMesh& mesh) {
     } else {
         ElementReader<BinaryValues<true>>(source, header, mesh, source.bytes.size()).read();
     }
+    return header;
+}
+
+}  // namespace
+
+Reading read_ply(const Source& source, FlatMesh& mesh) {
+    const Header header = read_elements(source, mesh, true);
     // Triangles of strips have no uvs of corners.
     if (!mesh.uv_of_corner.empty()) mesh.uv_of_corner.resize(mesh.corners.size(), RT_NONE);
     for (const Element& element : header.elements)
@@ -307,6 +314,11 @@ Reading read_ply(const Source& source, FlatMesh& mesh) {
     Reading reading;
     reading.texture = header.texture;
     return reading;
+}
+
+Reading read_ply_points(const Source& source, FlatMesh& mesh) {
+    (void)read_elements(source, mesh, false);
+    return {};
 }
 
 }  // namespace openmesh_import

@@ -121,7 +121,7 @@ unsigned long long least_bytes(const Element& element, bool ascii) {
 }
 
 // Throws std::runtime_error if the file is too short for what the header declares, or if something is missing.
-void check(const Header& header) {
+void check(const Header& header, bool needs_faces) {
     if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
         throw std::runtime_error("found the PLY format " + quoted(header.format) +
                                  ", expected ascii, binary_little_endian or binary_big_endian");
@@ -132,7 +132,7 @@ void check(const Header& header) {
     }
     const Element* vertices = header.find(Kind::vertices);
     if (!vertices) throw std::runtime_error("the PLY header has no element 'vertex'");
-    if (!header.find(Kind::faces) && !header.find(Kind::strips))
+    if (needs_faces && !header.find(Kind::faces) && !header.find(Kind::strips))
         throw std::runtime_error("contains no polygons: it is a point cloud");
     for (const auto& [role, axis] : {std::pair(Role::x, "x"), std::pair(Role::y, "y"), std::pair(Role::z, "z")})
         if (!vertices->has(role)) throw std::runtime_error(std::string("its vertices have no number ") + axis);
@@ -180,7 +180,7 @@ const Element* Header::find(Kind kind) const {
     return found == elements.end() ? nullptr : &*found;
 }
 
-Header parse_header(std::string_view bytes) {
+Header parse_header(std::string_view bytes, bool needs_faces) {
     Header header;
     Lines lines(bytes);
     std::string_view line;
@@ -191,7 +191,7 @@ Header parse_header(std::string_view bytes) {
         if (next_word(words) == "end_header") {
             header.body = lines.data();
             header.lines = lines.number();
-            check(header);
+            check(header, needs_faces);
             return header;
         }
         try {

@@ -44,7 +44,7 @@ struct Header {
 };
 
 // Parses the header. Throws std::runtime_error with the reason, also if the file is too short for what the header declares, or
-// if something that is needed is not there.
-Header parse_header(std::string_view bytes);
+// if something that is needed is not there, such as faces unless only points are read.
+Header parse_header(std::string_view bytes, bool needs_faces = true);
 
 }  // namespace openmesh_import::ply

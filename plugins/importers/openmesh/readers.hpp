@@ -28,6 +28,7 @@ void warn(const Source& source, const std::string& text);
 
 Reading read_obj(const Source& source, FlatMesh& mesh);
 Reading read_ply(const Source& source, FlatMesh& mesh);
+Reading read_ply_points(const Source& source, FlatMesh& mesh);  // a file without faces: its vertices alone
 Reading read_stl(const Source& source, FlatMesh& mesh);
 Reading read_off(const Source& source, FlatMesh& mesh);
 Reading read_om(const Source& source, FlatMesh& mesh);
