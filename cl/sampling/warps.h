@@ -57,17 +57,18 @@ RT_INLINE rt_vec rt_warp_cone(vfloat u1, vfloat u2, vfloat height)
 }
 
 /* A normal of the facets of GGX that are seen from wo, wo.z > 0: density D(h) G1(wo) max(wo.h, 0) / wo.z. Where facets are stretched to
- * a hemisphere, mirrored directions fill a spherical cap (Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps). */
-RT_INLINE rt_vec rt_warp_visible_normal(rt_vec wo, vfloat alpha, vfloat u1, vfloat u2)
+ * a hemisphere, mirrored directions fill a spherical cap (Dupuy and Benyoub 2023, Sampling Visible GGX Normals with Spherical Caps).
+ * along, across: alphas along x and y. */
+RT_INLINE rt_vec rt_warp_visible_normal(rt_vec wo, vfloat along, vfloat across, vfloat u1, vfloat u2)
 {
     const vfloat one = rt_vfloat(1.0f);
-    const rt_vec view = rt_normalize(rt_vec_of(alpha * wo.x, alpha * wo.y, wo.z));
+    const rt_vec view = rt_normalize(rt_vec_of(along * wo.x, across * wo.y, wo.z));
     const vfloat z = fma(one - u1, one + view.z, -view.z);
     vfloat sine, cosine;
     rt_sin_cos_turns(u2, &sine, &cosine);
     const vfloat radius = sqrt(rt_max(fma(-z, z, one), rt_vfloat(0.0f)));
     const rt_vec h = rt_add(rt_vec_of(radius * cosine, radius * sine, z), view);
-    return rt_normalize(rt_vec_of(alpha * h.x, alpha * h.y, rt_max(h.z, rt_vfloat(1e-7f))));
+    return rt_normalize(rt_vec_of(along * h.x, across * h.y, rt_max(h.z, rt_vfloat(1e-7f))));
 }
 
 #endif

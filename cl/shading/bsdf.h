@@ -9,7 +9,7 @@
 typedef struct rt_bsdf {
     rt_vec color;
     vfloat diffuse, mirror, metal, glass; /* shares */
-    vfloat alpha;                         /* of metal and glass; 0: smooth */
+    rt_facets facets;                     /* of metal and glass */
     vfloat eta;                           /* ior of the other side / ior of this side */
     vmask compensate;                     /* light may meet several facets */
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)
@@ -53,7 +53,7 @@ RT_INLINE vmask rt_is_sheet(const rt_bsdf *b)
 }
 
 /* The lanes with facets. */
-RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(share > rt_vfloat(0.0f)) & RT_MASK(b->alpha > rt_vfloat(0.0f)); }
+RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(share > rt_vfloat(0.0f)) & RT_MASK(b->facets.alpha > rt_vfloat(0.0f)); }
 
 RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, rt_vec wo)
 {
@@ -81,11 +81,11 @@ RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, rt_vec wo)
     p.again = zero;
 #if RT_MAY_SCATTER(RT_LOBE_METAL)
     const vmask metal = rt_is_rough(b, b->metal) & b->compensate;
-    if (rt_any(metal)) p.again = rt_select(metal, rt_lost_by_metal(mu, b->alpha), zero);
+    if (rt_any(metal)) p.again = rt_select(metal, rt_lost_by_metal(mu, rt_even_alpha(&b->facets, wo, RT_SWING_OF_LOSS)), zero);
 #endif
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     const vmask glass = rt_is_rough(b, b->glass) & b->compensate;
-    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_glass(mu, b->alpha, b->eta), p.again);
+    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_glass(mu, rt_even_alpha(&b->facets, wo, RT_SWING_OF_LOSS), b->eta), p.again);
 #endif
     return p;
 }
@@ -100,8 +100,8 @@ RT_INLINE rt_glass_again rt_glass_again_of(const rt_bsdf *b)
 {
     const vfloat one = rt_vfloat(1.0f), least = rt_vfloat(1e-9f);
     rt_glass_again g;
-    g.mean_here = rt_max(rt_lost_by_glass_mean(b->alpha, b->eta), least);
-    g.mean_there = rt_max(rt_lost_by_glass_mean(b->alpha, one / b->eta), least);
+    g.mean_here = rt_max(rt_lost_by_glass_mean(b->facets.alpha, b->eta), least);
+    g.mean_there = rt_max(rt_lost_by_glass_mean(b->facets.alpha, one / b->eta), least);
     /* The mean reflectance of the outside is a fit of Kulla and Conty 2017. */
     const vfloat n = rt_max(b->eta, one / b->eta);
     const vfloat let_in = one - (n - one) / fma(n, rt_vfloat(1.00071f), rt_vfloat(4.08567f));
@@ -113,7 +113,8 @@ RT_INLINE rt_glass_again rt_glass_again_of(const rt_bsdf *b)
 RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_vec wo, rt_vec wi, vfloat *density)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), two = rt_vfloat(2.0f);
-    const vfloat alpha = rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA)), eta = b->eta, mu_i = fabs(wi.z);
+    const vfloat eta = b->eta, mu_i = fabs(wi.z);
+    const rt_facets rough = rt_rough_facets(&b->facets);
     const vmask through = RT_MASK(wi.z < zero);
     /* The facet's normal halves the angle of mirrored light; of refracted light it is along wo + eta wi. */
     rt_vec along = rt_along(rt_select(through, eta, one), wi, wo);
@@ -122,8 +123,8 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
     const vfloat to_facet = scale * rt_dot(wo, along), from_facet = scale * rt_dot(wi, along);
     vfloat cos_out;
     const vfloat reflected = rt_fresnel_dielectric(rt_max(to_facet, zero), eta, &cos_out);
-    const vfloat smith_o = rt_smith(wo.z, alpha), smith_i = rt_smith(mu_i, alpha);
-    const vfloat facets = rt_facets_along(along, alpha) / wo.z;
+    const vfloat smith_o = rt_smith(wo, &rough), smith_i = rt_smith(wi, &rough);
+    const vfloat facets = rt_facets_along(along, &rough) / wo.z;
     /* D / (4 cos wo) times G, and D |wo.h| |wi.h| / ((wo.h + eta wi.h)^2 cos wo) times G, without and with the eta^2 of a density. */
     const vfloat bent = facets * to_facet * -from_facet * scale * scale;
     vfloat mirrored = reflected * facets / (two * (smith_o + smith_i)), passed = (one - reflected) * bent * rt_vfloat(4.0f) / ((one + smith_o) * (one + smith_i));
@@ -134,7 +135,7 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
     if (rt_any(b->compensate & rt_is_rough(b, b->glass))) {
         const rt_glass_again g = rt_glass_again_of(b);
         const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * mu_i;
-        const vfloat lost_i = rt_lost_by_glass(mu_i, alpha, rt_select(through, one / eta, eta));
+        const vfloat lost_i = rt_lost_by_glass(mu_i, rt_even_alpha(&rough, wi, RT_SWING_OF_LOSS), rt_select(through, one / eta, eta));
         const vfloat share = rt_select(through, g.through / (g.mean_there * eta * eta), (one - g.through) / g.mean_here);
         value = fma(rt_select(b->compensate, p->again, zero), cosine * lost_i * share, value);
         *density = fma(p->again, cosine * rt_select(through, g.through, one - g.through), *density);
@@ -156,18 +157,18 @@ RT_CALLED rt_vec rt_bsdf_eval(const rt_bsdf *b, rt_vec wo, rt_vec wi, vmask lane
 #if RT_MAY_SCATTER(RT_LOBE_METAL)
     const vmask rough = above & rt_is_rough(b, b->metal);
     if (rt_any(rough)) {
-        const vfloat alpha = rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA));
+        const rt_facets facets = rt_rough_facets(&b->facets);
         const rt_vec along = rt_add(wo, wi);
         const vfloat to_facet = rt_dot(wo, rt_normalize(along));
-        const vfloat smith_o = rt_smith(wo.z, alpha), smith_i = rt_smith(wi.z, alpha);
-        const vfloat seen = rt_facets_along(along, alpha) / (rt_vfloat(2.0f) * wo.z); /* D / (4 cos wo), times G */
+        const vfloat smith_o = rt_smith(wo, &facets), smith_i = rt_smith(wi, &facets);
+        const vfloat seen = rt_facets_along(along, &facets) / (rt_vfloat(2.0f) * wo.z); /* D / (4 cos wo), times G */
         const rt_vec fresnel = rt_fresnel_metal(b->color, to_facet);
         rt_vec value = rt_scale(seen / (smith_o + smith_i), fresnel);
         vfloat density = (one - p.again) * seen / (one + smith_o);
         if (rt_any(rough & b->compensate)) {
             /* Kulla and Conty 2017. The metal's mean reflectance is Schlick's; each further facet reflects it once more. */
-            const vfloat mean = rt_max(rt_lost_by_metal_mean(alpha), rt_vfloat(1e-9f));
-            const vfloat share = cosine * p.again * rt_lost_by_metal(wi.z, alpha) / mean;
+            const vfloat mean = rt_max(rt_lost_by_metal_mean(facets.alpha), rt_vfloat(1e-9f));
+            const vfloat share = cosine * p.again * rt_lost_by_metal(wi.z, rt_even_alpha(&facets, wi, RT_SWING_OF_LOSS)) / mean;
             const rt_vec average = rt_along(rt_vfloat(20.0f / 21.0f), b->color, rt_splat(1.0f / 21.0f, 1.0f / 21.0f, 1.0f / 21.0f));
             const vfloat kept = one - mean;
             const rt_vec several = rt_vec_of(average.x * average.x * kept / (one - average.x * mean), average.y * average.y * kept / (one - average.y * mean),
@@ -214,7 +215,7 @@ RT_INLINE vmask rt_takes_lobe(vmask of, vfloat p, vfloat *u)
 RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe, vfloat u1, vfloat u2, vmask lanes)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    const vmask smooth = RT_MASK(b->alpha <= zero);
+    const vmask smooth = RT_MASK(b->facets.alpha <= zero);
     const rt_bsdf_lobes p = rt_bsdf_lobes_of(b, wo);
     rt_bsdf_sample s;
     /* The layers come first, then the diffuse lobe, mirror, metal, glass. */
@@ -287,7 +288,8 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
         }
 #endif
         if (RT_MAY_SCATTER(RT_LOBE_METAL | RT_LOBE_FROSTED) && rt_any(facets)) {
-            const rt_vec h = rt_warp_visible_normal(wo, rt_max(b->alpha, rt_vfloat(RT_LEAST_ALPHA)), u1, u2);
+            const rt_facets rough = rt_rough_facets(&b->facets);
+            const rt_vec h = rt_visible_normal(wo, &rough, u1, u2);
             const vfloat to_facet = rt_max(rt_dot(wo, h), zero);
             rt_vec along = rt_sub(rt_scale(to_facet + to_facet, h), wo);
             if (RT_MAY_SCATTER(RT_LOBE_FROSTED) && rt_any(frosted & facets)) {

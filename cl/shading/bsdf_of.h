@@ -49,7 +49,8 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     rt_bsdf out;
     out.color = rt_splat(0.0f, 0.0f, 0.0f);
-    out.diffuse = out.mirror = out.metal = out.glass = out.alpha = zero;
+    out.diffuse = out.mirror = out.metal = out.glass = zero;
+    out.facets = rt_even_facets(zero);
     out.eta = one;
     out.compensate = rt_vint(-1);
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)
@@ -86,23 +87,23 @@ RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enter
         out.mirror = rt_select(mine, rt_vfloat(mirror), out.mirror);
         out.metal = rt_select(mine, rt_vfloat(metal), out.metal);
         out.glass = rt_select(mine, rt_vfloat(glass), out.glass);
-        out.alpha = rt_select(mine, rt_vfloat(alpha > 0.0f ? max(alpha, RT_LEAST_ALPHA) : 0.0f), out.alpha);
+        out.facets = rt_choose_facets(mine, rt_even_facets(rt_vfloat(alpha > 0.0f ? max(alpha, RT_LEAST_ALPHA) : 0.0f)), out.facets);
         const vfloat ior = rt_vfloat(m->ior);
         out.eta = rt_select(mine, rt_select(entering, ior / around, around / ior), out.eta);
         if (m->flags & RT_MATERIAL_SINGLE_SCATTER) out.compensate &= ~mine;
     }
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)
     out.layered = rt_layered_of(&matter, layered, around);
-    const vfloat alpha = out.layered.alpha, eta = rt_select(entering, matter.ior / around, around / matter.ior);
+    const vfloat eta = rt_select(entering, matter.ior / around, around / matter.ior);
     out.color = rt_choose(layered, matter.color, out.color);
     out.glass = rt_select(layered & matter.solid, (one - matter.metallic) * matter.transmission, out.glass);
-    out.alpha = rt_select(layered, alpha, out.alpha);
+    out.facets = rt_choose_facets(layered, out.layered.facets, out.facets);
     out.eta = rt_select(layered & matter.solid, eta, out.eta);
 #endif
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     /* Where nothing is refracted, facets have no effect, and their normals cannot be told from directions. */
     const vmask straight = RT_MASK(rt_max(out.eta, one / out.eta) < rt_vfloat(1.001f));
-    out.alpha = rt_select(RT_MASK(out.glass > zero) & straight, zero, out.alpha);
+    out.facets.alpha = rt_select(RT_MASK(out.glass > zero) & straight, zero, out.facets.alpha);
 #endif
     return out;
 }

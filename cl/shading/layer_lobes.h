@@ -42,11 +42,11 @@ RT_INLINE rt_layer_lobes rt_layer_lobes_of(const rt_layered *l, rt_vec wo)
     return p;
 }
 
-/* D G cos wi / (4 cos wo cos wi) of GGX, and the density with which rt_warp_visible_normal() finds wi. wo.z, wi.z > 0. */
-RT_INLINE vfloat rt_facets_seen(rt_vec wo, rt_vec wi, vfloat alpha, vfloat *density)
+/* D G cos wi / (4 cos wo cos wi) of GGX, and the density with which rt_visible_normal() finds wi. wo.z, wi.z > 0. */
+RT_INLINE vfloat rt_facets_seen(rt_vec wo, rt_vec wi, rt_facets rough, vfloat *density)
 {
-    const vfloat smith_o = rt_smith(wo.z, alpha), smith_i = rt_smith(wi.z, alpha);
-    const vfloat seen = rt_facets_along(rt_add(wo, wi), alpha) / (rt_vfloat(2.0f) * rt_max(wo.z, rt_vfloat(1e-6f)));
+    const vfloat smith_o = rt_smith(wo, &rough), smith_i = rt_smith(wi, &rough);
+    const vfloat seen = rt_facets_along(rt_add(wo, wi), &rough) / (rt_vfloat(2.0f) * rt_max(wo.z, rt_vfloat(1e-6f)));
     *density = seen / (rt_vfloat(1.0f) + smith_o);
     return seen / (smith_o + smith_i);
 }
@@ -76,7 +76,7 @@ RT_CALLED rt_vec rt_layers_eval(const rt_layered *l, const rt_layer_lobes *p, rt
     const rt_aspect i = rt_aspect_of(l, wi);
     const vmask above = RT_MASK(wi.z > zero);
     const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * fabs(wi.z);
-    const vfloat mirror_dim = rt_below_all(l, o, &i, l->alpha), spread_dim = rt_below_all(l, o, &i, one);
+    const vfloat mirror_dim = rt_below_all(l, o, &i, l->facets.alpha), spread_dim = rt_below_all(l, o, &i, one);
     rt_vec f = rt_scale(mirror_dim, inside);
 
     /* What is diffuse below the facets, and light that several facets scatter. */
@@ -95,13 +95,12 @@ RT_CALLED rt_vec rt_layers_eval(const rt_layered *l, const rt_layer_lobes *p, rt
     f = rt_along(cosine * spread_dim, spread, f);
 
     /* Facets: mirrored light, and light through a sheet as if the sheet mirrored it to the other side. */
-    const vmask rough = RT_MASK(l->alpha > zero) & (RT_MAY_SCATTER(RT_LOBE_THIN) ? rt_vint(-1) : above);
+    const vmask rough = RT_MASK(l->facets.alpha > zero) & (RT_MAY_SCATTER(RT_LOBE_THIN) ? rt_vint(-1) : above);
     if (rt_any(rough)) {
-        const vfloat alpha = rt_max(l->alpha, rt_vfloat(RT_LEAST_ALPHA));
         const rt_vec mirrored = rt_vec_of(wi.x, wi.y, fabs(wi.z));
         const vfloat to_facet = rt_dot(wo, rt_normalize(rt_add(wo, mirrored)));
         vfloat density;
-        const vfloat seen = rt_facets_seen(wo, mirrored, alpha, &density);
+        const vfloat seen = rt_facets_seen(wo, mirrored, rt_rough_facets(&l->facets), &density);
         const rt_vec gloss = rt_gloss_fresnel(l, to_facet);
         rt_vec value = rt_along(l->gloss, gloss, rt_scale(l->metal, rt_metal_fresnel(l, to_facet)));
         if (RT_MAY_SCATTER(RT_LOBE_THIN)) value = rt_choose(above, value, rt_scale(l->thin, rt_mul(l->color, rt_rest(gloss))));
@@ -120,7 +119,7 @@ RT_CALLED rt_vec rt_layers_eval(const rt_layered *l, const rt_layer_lobes *p, rt
     const vmask coated = above & RT_MASK(l->coat_alpha > zero) & RT_MASK(coat_o.z > zero) & RT_MASK(coat_i.z > zero);
     if (rt_any(coated)) {
         vfloat density;
-        const vfloat seen = l->coat * rt_facets_seen(coat_o, coat_i, rt_max(l->coat_alpha, rt_vfloat(RT_LEAST_ALPHA)), &density);
+        const vfloat seen = l->coat * rt_facets_seen(coat_o, coat_i, rt_even_facets(rt_max(l->coat_alpha, rt_vfloat(RT_LEAST_ALPHA))), &density);
         const vfloat value = seen * rt_coat_fresnel(rt_dot(coat_o, rt_normalize(rt_add(coat_o, coat_i))));
         f = rt_choose(coated, rt_along(value * wi.z / coat_i.z, rt_splat(1.0f, 1.0f, 1.0f), f), f);
         *pdf = rt_select(coated, fma(p->coat, density, *pdf), *pdf);
@@ -159,7 +158,7 @@ RT_INLINE rt_layers_sample rt_layers_draw(const rt_layered *l, const rt_layer_lo
     left &= ~coat;
     if (rt_any(coat)) {
         const rt_vec o = rt_to_coat(l, wo);
-        const rt_vec h = rt_warp_visible_normal(o, rt_max(l->coat_alpha, least), u1, u2);
+        const rt_vec h = rt_warp_visible_normal(o, rt_max(l->coat_alpha, least), rt_max(l->coat_alpha, least), u1, u2);
         const vmask smooth = RT_MASK(l->coat_alpha <= zero);
         const rt_vec facet = rt_choose(smooth, rt_splat(0.0f, 0.0f, 1.0f), h);
         const rt_vec i = rt_sub(rt_scale(two * rt_dot(o, facet), facet), o);
@@ -185,8 +184,9 @@ RT_INLINE rt_layers_sample rt_layers_draw(const rt_layered *l, const rt_layer_lo
     s.wi.z = rt_select(left, -s.wi.z, s.wi.z); /* thin_cosine */
 #endif
     if (rt_any(facets | thin)) {
-        const rt_vec h = rt_warp_visible_normal(wo, rt_max(l->alpha, least), u1, u2);
-        const vmask smooth = RT_MASK(l->alpha <= zero);
+        const rt_facets rough = rt_rough_facets(&l->facets);
+        const rt_vec h = rt_visible_normal(wo, &rough, u1, u2);
+        const vmask smooth = RT_MASK(l->facets.alpha <= zero);
         const rt_vec facet = rt_choose(smooth, rt_splat(0.0f, 0.0f, 1.0f), h);
         const vfloat to_facet = rt_dot(wo, facet);
         rt_vec wi = rt_sub(rt_scale(two * to_facet, facet), wo);

@@ -18,7 +18,7 @@ typedef struct rt_layered {
     vmask lanes;          /* the surface has the model */
     vmask sheet;          /* what goes through it stays in the same medium */
     rt_vec color;         /* of the metal, and of what is below the facets of the rest */
-    vfloat alpha;         /* of the facets; 0: smooth */
+    rt_facets facets;
     vfloat metal, gloss;  /* shares: of metal, and of the rest that reflects as a dielectric and is no solid glass */
     vfloat diffuse, thin; /* of gloss: what is below is diffuse, or light goes straight through */
     rt_vec straight;      /* reflectance of gloss, straight on */
@@ -129,8 +129,8 @@ RT_CALLED rt_aspect rt_aspect_of(const rt_layered *l, rt_vec w)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), mu = rt_min(fabs(w.z), one);
     rt_aspect a;
-    a.lost = rt_lost_by_metal(mu, l->alpha);
-    a.bent = rt_grazing(mu, l->alpha);
+    a.lost = rt_lost_by_metal(mu, rt_even_alpha(&l->facets, w, RT_SWING_OF_LOSS));
+    a.bent = rt_grazing(mu, rt_even_alpha(&l->facets, w, RT_SWING_OF_GRAZING));
     const vfloat gloss = rt_filmed(l, rt_gloss_fresnel(l, mu), a.lost, rt_facets_albedo(l->most, l->grazing, a.lost, a.bent));
     a.gloss = fma(a.lost, rt_largest(l->gloss_again), gloss);
     a.coat = a.sheen = zero;
@@ -149,11 +149,11 @@ RT_CALLED void rt_prepare_layers(rt_layered *l)
 {
     const vfloat one = rt_vfloat(1.0f), least = rt_vfloat(1e-6f);
     l->most = rt_largest(l->straight);
-    l->lost_mean = rt_lost_by_metal_mean(l->alpha);
+    l->lost_mean = rt_lost_by_metal_mean(l->facets.alpha);
     l->metal_again = rt_again_of(l->color, one, l->lost_mean);
     l->gloss_again = rt_again_of(l->straight, l->grazing, l->lost_mean);
     const vfloat gloss_mean = fma(l->lost_mean, rt_largest(l->gloss_again), rt_filmed(l, rt_gloss_fresnel(l, rt_vfloat(RT_MEAN_COSINE)), l->lost_mean,
-                                                                                                        rt_facets_albedo(l->most, l->grazing, l->lost_mean, rt_grazing_mean(l->alpha))));
+                                                                                                        rt_facets_albedo(l->most, l->grazing, l->lost_mean, rt_grazing_mean(l->facets.alpha))));
 #if RT_MAY_SCATTER(RT_LOBE_COAT)
     l->coat_mean = l->coat * rt_facets_albedo(rt_vfloat(RT_COAT_STRAIGHT), one, rt_lost_by_metal_mean(l->coat_alpha), rt_grazing_mean(l->coat_alpha));
 #endif
@@ -161,7 +161,7 @@ RT_CALLED void rt_prepare_layers(rt_layered *l)
     l->sheen_mean = rt_largest(l->sheen) * rt_sheen_albedo_mean(l->sheen_roughness);
 #endif
     /* The mean of a product is more than that of the means, as all reflect most at grazing angles. */
-    const vfloat gloss = (l->grazing - l->most) * rt_grazing_deviation(l->alpha) / rt_max(one - gloss_mean, least);
+    const vfloat gloss = (l->grazing - l->most) * rt_grazing_deviation(l->facets.alpha) / rt_max(one - gloss_mean, least);
     vfloat sum = gloss, squares = gloss * gloss;
 #if RT_MAY_SCATTER(RT_LOBE_COAT)
     const vfloat coat = l->coat * rt_grazing_deviation(l->coat_alpha) / rt_max(one - l->coat_mean, least);
@@ -191,7 +191,11 @@ RT_INLINE rt_layered rt_layered_of(const rt_matter *m, vmask lanes, vfloat aroun
     l.lanes = lanes;
     l.sheet = lanes & ~m->solid;
     l.color = m->color;
-    l.alpha = rt_alpha_of(m->roughness);
+#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
+    l.facets = rt_grained_facets(rt_alpha_of(m->roughness), m->anisotropy, m->grain_x, m->grain_y);
+#else
+    l.facets = rt_even_facets(rt_alpha_of(m->roughness));
+#endif
     l.metal = m->metallic;
     l.gloss = rt_select(m->solid, other - clear, other);
     l.diffuse = other - clear;

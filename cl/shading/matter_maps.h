@@ -44,11 +44,15 @@ RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vma
 #if RT_MAY_SCATTER(RT_LOBE_GRAIN)
     const global rt_map *grain = RT_MAP(RT_MAP_ANISOTROPY);
     if (grain) {
-        const rt_vec color = rt_sample_map(ctx, grain, s, mine);
-        const vfloat two = rt_vfloat(2.0f), one = rt_vfloat(1.0f), x = fma(two, color.x, -one), y = fma(two, color.y, -one);
-        const vfloat scale = one / sqrt(rt_max(fma(x, x, y * y), rt_vfloat(1e-12f)));
-        const vfloat turned_x = scale * fma(x, m->grain_x, -(y * m->grain_y)), turned_y = scale * fma(x, m->grain_y, y * m->grain_x);
-        m->anisotropy = rt_select(mine, m->anisotropy * color.z, m->anisotropy);
+        const vfloat one = rt_vfloat(1.0f), least = rt_vfloat(1e-12f);
+        rt_vec mapped = rt_vec_of(one, rt_vfloat(0.0f), fma(rt_vfloat(2.0f), rt_sample_map_channel(ctx, grain, s, mine, 2), -one));
+#ifdef RT_HAS_TANGENTS
+        mapped = rt_mapped_normal(ctx, grain, s, mine);
+#endif
+        const vfloat length2 = fma(mapped.x, mapped.x, mapped.y * mapped.y), scale = one / sqrt(rt_max(length2, least));
+        const vfloat x = rt_select(RT_MASK(length2 > least), scale * mapped.x, one), y = scale * mapped.y;
+        const vfloat turned_x = fma(x, m->grain_x, -(y * m->grain_y)), turned_y = fma(x, m->grain_y, y * m->grain_x);
+        m->anisotropy = rt_select(mine, m->anisotropy * fma(rt_vfloat(0.5f), mapped.z, rt_vfloat(0.5f)), m->anisotropy);
         m->grain_x = rt_select(mine, turned_x, m->grain_x);
         m->grain_y = rt_select(mine, turned_y, m->grain_y);
     }

@@ -52,7 +52,7 @@ std::vector<Key> layer_keys() {
         shown(flag_key("thin", offsetof(L, flags), RT_LAYERS_SOLID, true), "Thin",
               "whether it is a sheet that light goes straight through", "otherwise it bounds a solid that refracts by `ior`"),
         shown(number_key("anisotropy", offsetof(L, anisotropy), 0, 1, 0), "Anisotropy", "strength",
-              "how much wider highlights are along the grain. No tracer shows it yet"),
+              "how much wider highlights are along the grain"),
         shown(number_key("anisotropy_rotation", offsetof(L, anisotropy_rotation), -360, 360, 0), "Grain", "angle in degrees",
               "of the grain, counter-clockwise from the tangent"),
         shown(number_key("iridescence", offsetof(L, iridescence), 0, 1, 0), "Iridescence",

@@ -24,7 +24,7 @@ rt_u32 lobes_of_layers(const MaterialValues& m) {
     if (l.clearcoat > 0) lobes |= RT_LOBE_COAT;
     if (!is_black(l.sheen_color)) lobes |= RT_LOBE_SHEEN;
     if (clear && !solid) lobes |= RT_LOBE_THIN;
-    if (clear && solid) lobes |= m.roughness > 0 ? RT_LOBE_GLASS | RT_LOBE_FROSTED : RT_LOBE_GLASS;
+    if (clear && solid) lobes |= m.roughness > 0 || l.anisotropy > 0 ? RT_LOBE_GLASS | RT_LOBE_FROSTED : RT_LOBE_GLASS;
     if (l.anisotropy > 0) lobes |= RT_LOBE_GRAIN;
     if (l.iridescence > 0) lobes |= RT_LOBE_FILM;
     return lobes;

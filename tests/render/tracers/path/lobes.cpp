@@ -5,30 +5,35 @@
 #include <map>
 #include <memory>
 
+#include "base/angle.hpp"
 #include "render/tracers/path/lane_kernel.hpp"
 
 namespace clarity::test {
 namespace {
 
-constexpr unsigned kLayers = 14, kReads = 19 + kLayers, kWrites = 16;
+constexpr unsigned kLayers = 17, kReads = 19 + kLayers, kWrites = 16;
 static_assert(sizeof(LobeQuery) == 4 * 9 && sizeof(LobeAnswer) == 4 * kWrites);
 
 const char* const kBody = R"(
     rt_bsdf b;
     b.color = rt_vec_of(in[0], in[1], in[2]);
-    b.diffuse = in[3]; b.mirror = in[4]; b.metal = in[5]; b.glass = in[6]; b.alpha = in[7]; b.eta = in[8];
+    b.diffuse = in[3]; b.mirror = in[4]; b.metal = in[5]; b.glass = in[6]; b.eta = in[8];
     b.compensate = RT_MASK(in[9] > 0.5f);
     rt_matter m = rt_no_matter();
     const vfloat *n = in + 19;
     m.color = b.color;
-    m.roughness = sqrt(b.alpha); m.ior = b.eta;
+    m.roughness = sqrt(in[7]); m.ior = b.eta;
     m.metallic = n[1]; m.specular_weight = n[2]; m.specular_color = rt_vec_of(n[3], n[3], n[3]);
     m.transmission = n[4]; m.solid = RT_MASK(n[5] > 0.5f);
     m.clearcoat = n[6]; m.clearcoat_roughness = n[7];
     m.coat_normal = rt_normalize(rt_vec_of(n[10], rt_vfloat(0.0f), rt_vfloat(1.0f)));
     m.iridescence = n[11]; m.iridescence_ior = n[12]; m.iridescence_thickness = n[13];
     m.sheen_color = rt_vec_of(n[8], n[8], n[8]); m.sheen_roughness = n[9];
+#if RT_MAY_SCATTER(RT_LOBE_GRAIN)
+    m.anisotropy = n[14]; m.grain_x = n[15]; m.grain_y = n[16];
+#endif
     b.layered = rt_layered_of(&m, RT_MASK(n[0] > 0.5f), rt_vfloat(1.0f));
+    b.facets = rt_choose_facets(b.layered.lanes, b.layered.facets, rt_even_facets(in[7]));
     b.eta = rt_select(b.layered.sheet, rt_vfloat(1.0f), b.eta);
     const rt_vec wo = rt_vec_of(in[10], in[11], in[12]), wi = rt_vec_of(in[16], in[17], in[18]);
     const vmask all = RT_MASK(in[9] > -1.0f);
@@ -43,16 +48,32 @@ const char* const kBody = R"(
     out[12] = f.x; out[13] = f.y; out[14] = f.z;
 )";
 
-LaneKernel& kernel(unsigned lanes) {
-    static std::map<unsigned, std::unique_ptr<LaneKernel>> compiled;
-    std::unique_ptr<LaneKernel>& found = compiled[lanes];
+LaneKernel& kernel(unsigned lanes, bool grain) {
+    static std::map<std::pair<unsigned, bool>, std::unique_ptr<LaneKernel>> compiled;
+    std::unique_ptr<LaneKernel>& found = compiled[{lanes, grain}];
     if (!found)
         found = std::make_unique<LaneKernel>(
             std::vector<std::string>{
-                "rt_shared.h", "rt_types.h", "lanes/lanes.h", "lanes/vec.h", "sampling/math.h", "sampling/warps.h",
-                "shading/power.h", "shading/albedo_grazing.h", "shading/albedo_sheen.h", "shading/lost_metal.h",
-                "shading/lost_glass_outside.h", "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h",
-                "shading/matter.h", "shading/film.h", "shading/layers.h", "shading/layer_lobes.h", "shading/bsdf.h"},
+                "rt_shared.h",
+                grain ? "\n" : "#define RT_LIGHTS RT_LIGHTS_ALL\n#define RT_LOBES (RT_LOBES_ALL & ~RT_LOBE_GRAIN)\n",
+                "rt_types.h",
+                "lanes/lanes.h",
+                "lanes/vec.h",
+                "sampling/math.h",
+                "sampling/warps.h",
+                "shading/power.h",
+                "shading/albedo_grazing.h",
+                "shading/albedo_sheen.h",
+                "shading/lost_metal.h",
+                "shading/lost_glass_outside.h",
+                "shading/lost_glass_inside.h",
+                "shading/microfacets.h",
+                "shading/sheen.h",
+                "shading/matter.h",
+                "shading/film.h",
+                "shading/layers.h",
+                "shading/layer_lobes.h",
+                "shading/bsdf.h"},
             kReads, kWrites, kBody, lanes);
     return *found;
 }
@@ -102,7 +123,7 @@ bool Lobe::passes() const {
     return alpha > 0 && (glass > 0 || sheet);
 }
 
-std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes) {
+std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes, bool grain) {
     std::vector<float> rows;
     rows.reserve(queries.size() * kReads);
     for (const LobeQuery& query : queries) {
@@ -111,11 +132,13 @@ std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& quer
         const float* const numbers = query.wo;
         rows.insert(rows.end(), numbers, numbers + 9);
         const rt_layers& l = lobe.layers;
+        const double turn = l.anisotropy_rotation * kPi / 180;
         rows.insert(rows.end(), {float(lobe.layered), l.metallic, l.specular_weight, l.specular_color[0], l.transmission,
                                  float(l.flags & RT_LAYERS_SOLID), l.clearcoat, l.clearcoat_roughness, l.sheen_color[0],
-                                 l.sheen_roughness, lobe.coat_tilt, l.iridescence, l.iridescence_ior, l.iridescence_thickness});
+                                 l.sheen_roughness, lobe.coat_tilt, l.iridescence, l.iridescence_ior, l.iridescence_thickness,
+                                 l.anisotropy, float(std::cos(turn)), float(std::sin(turn))});
     }
-    const std::vector<float> found = kernel(lanes).run(std::move(rows));
+    const std::vector<float> found = kernel(lanes, grain).run(std::move(rows));
     std::vector<LobeAnswer> answers(queries.size());
     std::memcpy(answers.data(), found.data(), found.size() * sizeof(float));
     return answers;

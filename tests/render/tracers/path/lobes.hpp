@@ -39,9 +39,9 @@ struct LobeAnswer {
     bool transmitted() const { return int(flags) & 4; }
 };
 
-// Asks `queries` of a lobe, with as many lanes as named. The programs are compiled once. faults: #define lines, for planted
-// faults.
-std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes = 16);
+// Asks `queries` of a lobe, with as many lanes as named. The programs are compiled once. grain: whether they know surfaces with
+// a grain.
+std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes = 16, bool grain = true);
 
 // A direction with a cosine of mu to the normal and `count` triples of random numbers.
 std::vector<LobeQuery> draws(double mu, size_t count, unsigned seed);

@@ -61,6 +61,9 @@ std::vector<Lobe> layers_with_density() {
     const auto solid = [](rt_layers& l) { l.transmission = 0.8f, l.metallic = 0.2f, l.flags = RT_LAYERS_SOLID; };
     const auto coat = [](rt_layers& l) { l.clearcoat = 0.8f, l.clearcoat_roughness = 0.4f; };
     const auto fibres = [](rt_layers& l) { l.sheen_color[0] = 0.7f, l.sheen_roughness = 0.5f; };
+    const auto grain = [](float strength, float degrees) {
+        return [=](rt_layers& l) { l.anisotropy = strength, l.anisotropy_rotation = degrees; };
+    };
     const auto all = [=](rt_layers& l) { sheet(l), coat(l), fibres(l), l.metallic = 0.4f, l.specular_weight = 0.7f; };
     return {layered("core", 0.5f),
             layered("metal", 0.4f, [](rt_layers& l) { l.metallic = 1; }),
@@ -78,7 +81,13 @@ std::vector<Lobe> layers_with_density() {
             layered("fine fibres", 0.6f, [](rt_layers& l) { l.sheen_color[0] = 1, l.sheen_roughness = 0.2f; }),
             layered("film", 0.4f, [](rt_layers& l) { l.iridescence = 0.8f; }),
             colored(layered("film on metal", 0.5f, [](rt_layers& l) { l.iridescence = 1, l.metallic = 1; }), 0.9f, 0.5f, 0.1f),
-            layered("all", 0.5f, all)};
+            layered("grain", 0.3f, grain(0.6f, 0)),
+            layered("grain, turned", 0.4f, grain(0.9f, 30)),
+            layered("grain on metal", 0.1f, [=](rt_layers& l) { grain(0.5f, 70)(l), l.metallic = 1; }),
+            layered("smooth but for its grain", 0, [=](rt_layers& l) { grain(0.7f, 110)(l), l.metallic = 1; }),
+            layered("grain, solid", 0.4f, [=](rt_layers& l) { grain(0.7f, 30)(l), solid(l); }),
+            layered("grain, sheet", 0.4f, [=](rt_layers& l) { grain(0.7f, 30)(l), sheet(l); }),
+            layered("all", 0.5f, [=](rt_layers& l) { all(l), grain(0.5f, 40)(l); })};
 }
 std::vector<Lobe> all_with_density() {
     std::vector<Lobe> all = lobes_with_density();
@@ -176,12 +185,14 @@ Energy energy(const Lobe& lobe, double mu, unsigned side, unsigned seed) {
 
 // Fixed seeds. A failure by chance (beyond 4 sigma, one in 30,000) is repeated with another seed.
 TEST(PathLobes, DirectionsAreDrawnWithTheirDensity) {
-    for (const Lobe& lobe : all_with_density())
+    for (const Lobe& lobe : all_with_density()) {
+        if (lobe.alpha == 0 && lobe.layers.anisotropy > 0) continue;  // narrower than the cells
         for (const double mu : quick() ? std::vector<double>{0.6} : std::vector<double>{0.95, 0.6, 0.15}) {
             double misfit = density_misfit(lobe, mu, 11);
             if (misfit > 4) misfit = density_misfit(lobe, mu, 12);
             EXPECT_LT(misfit, 4) << lobe.name << ", cosine " << mu;
         }
+    }
 }
 
 TEST(PathLobes, WeightsAreValuesOverDensities) {
@@ -350,6 +361,73 @@ TEST(PathLobes, WhiteLayersKeepLight) {
             l.clearcoat = 1, l.clearcoat_roughness = 0.2f, l.sheen_color[0] = 1, l.sheen_roughness = 0.5f, l.metallic = 0.3f;
             l.transmission = 0.5f;
         }));
+    }
+}
+
+// The same, of spheres whose grain lies in all directions.
+TEST(PathLobes, WhiteGrainsKeepLight) {
+    for (const float roughness : {0.0f, 0.3f, 0.7f})
+        for (const float strength : quick() ? std::vector<float>{1} : std::vector<float>{0.3f, 0.7f, 1})
+            for (const auto& [metallic, clear] : {std::pair(1.0f, 0.0f), std::pair(0.0f, 0.0f), std::pair(0.0f, 1.0f)}) {
+                double mean = 0, error = 0, most = 0;
+                const int rings = 8, turns = 6;
+                std::string name;
+                for (int i = 0; i < rings * turns; ++i) {
+                    const Lobe lobe = layered("grain " + std::to_string(strength) +
+                                                  (metallic > 0 ? " metal"
+                                                   : clear > 0  ? " sheet"
+                                                                : ""),
+                                              roughness, [&, m = metallic, c = clear](rt_layers& l) {
+                                                  l.anisotropy = strength, l.metallic = m, l.transmission = c;
+                                                  l.anisotropy_rotation = 180 * (float(i % turns) + 0.5f) / turns;
+                                              });
+                    const Energy e = energy(lobe, std::sqrt((i / turns + 0.5) / rings), 80, 91u + unsigned(i));
+                    mean += e.mean[0] / (rings * turns);
+                    error += e.error / (rings * turns);
+                    most = std::max(most, e.mean[0]);
+                    name = lobe.name;
+                }
+                EXPECT_NEAR(mean, 0.991, 0.011 + error) << name;
+                EXPECT_LT(most, 1.08) << name << ", of one direction";
+            }
+}
+
+// KHR_materials_anisotropy's formulas, one direction after another.
+TEST(PathLobes, AGrainIsThatOfTheExtension) {
+    const double across = 0.3 * 0.3, along = across + (1 - across) * 0.6 * 0.6, turn = 25 * kPi / 180;
+    Lobe lobe = layered("grain", 0.3f, [](rt_layers& l) { l.anisotropy = 0.6f, l.anisotropy_rotation = 25, l.metallic = 1; });
+    const auto project = [&](const Vec& w) {
+        return Vec{along * (std::cos(turn) * w[0] + std::sin(turn) * w[1]),
+                   across * (std::cos(turn) * w[1] - std::sin(turn) * w[0]), w[2]};
+    };
+    std::vector<LobeQuery> queries = draws(0.7, 3000, 17);
+    for (LobeQuery& query : queries) {
+        const double phi = 2 * kPi * query.u[0], z = 0.1 + 0.9 * query.u[1], r = std::sqrt(1 - z * z);
+        query.wi[0] = float(r * std::cos(phi)), query.wi[1] = float(r * std::sin(phi)), query.wi[2] = float(z);
+    }
+    const auto white = ask(lobe, queries), black = ask(colored(lobe, 0, 0, 0), queries);
+    for (size_t i = 0; i < queries.size(); ++i) {
+        const Vec o = to_vec(queries[i].wo), w = to_vec(queries[i].wi), h = normalized(o + w);
+        const double x = std::cos(turn) * h[0] + std::sin(turn) * h[1], y = std::cos(turn) * h[1] - std::sin(turn) * h[0];
+        const double stretched = x * x / (along * along) + y * y / (across * across) + h[2] * h[2];
+        const double facets = 1 / (kPi * along * across * stretched * stretched);
+        const double seen = 0.5 / (w[2] * length(project(o)) + o[2] * length(project(w))) * facets * w[2];
+        // The difference of white and black is free of what does not depend on the colour; light of several facets is in both.
+        const double schlick = std::pow(1 - dot(o, h), 5);
+        const double single = white[i].f[1] - black[i].f[1], rest = single - seen * (1 - schlick);
+        EXPECT_GE(rest, -2e-3 * seen - 1e-6) << i;
+        EXPECT_LE(rest, 2e-3 * seen + 0.45 * w[2] / kPi) << i;
+    }
+}
+
+// A grain without strength is none: the same bits as of kernels that know no grain.
+TEST(PathLobes, AGrainWithoutStrengthIsNone) {
+    for (Lobe lobe : all_with_density()) {
+        if (lobe.layers.anisotropy > 0) continue;
+        lobe.layers.anisotropy_rotation = 25;
+        const auto queries = draws(0.5, 3000, 19);
+        const auto with = ask(lobe, queries), without = ask(lobe, queries, 16, false);
+        EXPECT_EQ(std::memcmp(with.data(), without.data(), with.size() * sizeof with[0]), 0) << lobe.name;
     }
 }
 

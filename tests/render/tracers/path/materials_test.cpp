@@ -58,8 +58,9 @@ LaneKernel& loader() {
         "in[6]));"
         "out[0] = b.color.x; out[1] = b.color.y; out[2] = b.color.z; out[3] = b.diffuse; out[4] = b.mirror; out[5] = b.metal; "
         "out[6] = b.glass;"
-        "out[7] = b.alpha; out[8] = b.eta; out[9] = rt_select(b.compensate, rt_vfloat(1.0f), rt_vfloat(0.0f));"
-        "const rt_layered *l = &b.layered; out[10] = rt_select(l->lanes, rt_vfloat(1.0f), rt_vfloat(0.0f)); out[11] = l->alpha;"
+        "out[7] = b.facets.alpha; out[8] = b.eta; out[9] = rt_select(b.compensate, rt_vfloat(1.0f), rt_vfloat(0.0f));"
+        "const rt_layered *l = &b.layered; out[10] = rt_select(l->lanes, rt_vfloat(1.0f), rt_vfloat(0.0f)); out[11] = "
+        "l->facets.alpha;"
         "out[12] = l->metal; out[13] = l->gloss; out[14] = l->diffuse; out[15] = l->thin; out[16] = l->straight.x; out[17] = "
         "l->grazing;"
         "out[18] = l->coat; out[19] = l->coat_alpha; out[20] = l->sheen.y; out[21] = l->sheen_roughness;",
