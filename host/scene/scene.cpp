@@ -53,6 +53,14 @@ std::vector<rt_u32> used_vertices(const Scene& scene, const Mesh& mesh) {
 
 }  // namespace
 
+rt_texture smaller_picture(const rt_texture& picture) {
+    rt_texture next = picture;
+    next.first += picture.width * picture.height;
+    next.width = std::max(picture.width / 2, rt_u32(1));
+    next.height = std::max(picture.height / 2, rt_u32(1));
+    return next;
+}
+
 void Bounds::add(const float* p) {
     for (int i = 0; i < 3; ++i) {
         min[i] = empty ? p[i] : std::min(min[i], p[i]);

@@ -181,11 +181,18 @@ struct Scene {
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
     // Number of triangles in the world: the sum over all instances.
     uint64_t placed_triangle_count() const;
+    // Whether vertices have more than positions, so that kernels have to know the corners of triangles.
+    bool has_attributes() const {
+        return !normals.empty() || !uvs.empty() || !uvs2.empty() || !tangents.empty() || !colors.empty();
+    }
     // World-space box of everything finite; planes are left out.
     Bounds bounds() const;
     // World-space area of the triangles of all instances, the polygons and the spheres. That of shapes is not known.
     double surface_area() const;
 };
+
+// The next smaller picture of a texture's picture or of one of its smaller ones, which follows it in the texels.
+rt_texture smaller_picture(const rt_texture& picture);
 
 // The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres,
 // polygons, planes and shapes.

@@ -247,7 +247,7 @@ bool SceneSink::take_maps(const rt_material_desc& d, Material& material, std::st
         map.set = desc.set;
         map.scale = desc.scale;
         if (!are_usable(matrix) || !is_usable(map.scale)) {
-            problem = "has a texture whose placement is not a finite number; it lies as the coordinates say";
+            problem = "places a texture by numbers that are not finite; the texture lies as the coordinates say";
             matrix = identity;
             map.scale = is_usable(map.scale) ? map.scale : 1;
         }
