@@ -58,7 +58,7 @@ typedef struct rt_material {
 #define RT_ALPHA_MASK 1u
 #define RT_ALPHA_BLEND 2u  /* the share of the surface that is there; through the rest one sees what is behind */
 
-/* What only RT_MODEL_GLTF has, one for each rt_material, whose color, roughness and ior it shares. 96 B. */
+/* The values of a material that only RT_MODEL_GLTF has. There is one for each rt_material, which has color, roughness and ior. 96 B. */
 typedef struct rt_layers {
     rt_f32 specular_color[3]; /* of the reflection of what is no metal, straight on */
     rt_f32 specular_weight;   /* 0..1, of that reflection */

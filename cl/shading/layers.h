@@ -18,7 +18,7 @@ typedef struct rt_layered {
     vmask lanes;          /* the surface has the model */
     vmask sheet;          /* what goes through it stays in the same medium */
     rt_vec color;         /* of the metal, and of what is below the facets of the rest */
-    vfloat alpha;         /* of the facets; 0: smooth. With a grain its mean */
+    vfloat alpha;         /* of the facets; 0: smooth */
     vfloat metal, gloss;  /* shares: of metal, and of the rest that reflects as a dielectric and is no solid glass */
     vfloat diffuse, thin; /* of gloss: what is below is diffuse, or light goes straight through */
     rt_vec straight;      /* reflectance of gloss, straight on */

@@ -63,7 +63,7 @@ typedef struct rt_texture_point {
 #else
 #define RT_TAPS 4
 #endif
-/* Texels, RGBA8, and their weights, whose sum is 1. */
+/* Texels (RGBA8) and their weights. The weights add up to 1. */
 typedef struct rt_taps {
     vint color[RT_TAPS];
     vfloat weight[RT_TAPS];

@@ -26,8 +26,8 @@ Scene bent(Scene regular);
 Scene floor_scene();
 
 // Meshes of 1 to 20 triangles, each with a tree of its own, and 300 triangles in the world's tree. Another mesh has 300
-// triangles whose boxes share their centre, so that no builder can split them by centres. No triangle is close in front of
-// another.
+// triangles. The centres of their boxes are the same, so that no builder can split them by centres. No triangle is close in
+// front of another.
 Scene sizes_scene(uint64_t seed = 0);
 
 // `count` triangles around the origin, and a room around them. The box of each holds a cube of 0.3 around the origin, but a ray

@@ -10,7 +10,7 @@
 namespace clarity {
 
 bool emits(const rt_material& material) {
-    return std::any_of(std::begin(material.emission), std::end(material.emission), [](float channel) { return channel > 0; });
+    return !is_black(material.emission);
 }
 
 bool is_convex(const float* corners, size_t count) {

@@ -36,7 +36,7 @@ std::vector<Key> layer_keys() {
     // Khronos' specification of glTF 2.0, appendix B, and of its extensions KHR_materials_*.
     return {
         shown(number_key("metallic", offsetof(L, metallic), 0, 1, 0), "Metallic", "share of metal",
-              "whose reflectance is `color`"),
+              "`color` is the reflectance of the metal"),
         shown(number_key("specular_weight", offsetof(L, specular_weight), 0, 1, 1), "Reflection",
               "weight of what a surface that is no metal reflects"),
         shown(color_key("specular_color", offsetof(L, specular_color), kMostColor, 1), "Reflection colour", "r g b",
@@ -52,7 +52,7 @@ std::vector<Key> layer_keys() {
         shown(flag_key("thin", offsetof(L, flags), RT_LAYERS_SOLID, true), "Thin",
               "whether it is a sheet that light goes straight through", "otherwise it bounds a solid that refracts by `ior`"),
         shown(number_key("anisotropy", offsetof(L, anisotropy), 0, 1, 0), "Anisotropy", "strength",
-              "how much wider highlights are along the grain"),
+              "how much wider highlights are along the grain. No tracer shows it yet"),
         shown(number_key("anisotropy_rotation", offsetof(L, anisotropy_rotation), -360, 360, 0), "Grain", "angle in degrees",
               "of the grain, counter-clockwise from the tangent"),
         shown(number_key("iridescence", offsetof(L, iridescence), 0, 1, 0), "Iridescence",

@@ -53,6 +53,14 @@ std::vector<rt_u32> used_vertices(const Scene& scene, const Mesh& mesh) {
 
 }  // namespace
 
+rt_texture smaller_picture(const rt_texture& picture) {
+    rt_texture next = picture;
+    next.first += picture.width * picture.height;
+    next.width = std::max(picture.width / 2, rt_u32(1));
+    next.height = std::max(picture.height / 2, rt_u32(1));
+    return next;
+}
+
 void Bounds::add(const float* p) {
     for (int i = 0; i < 3; ++i) {
         min[i] = empty ? p[i] : std::min(min[i], p[i]);
@@ -157,6 +165,11 @@ PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
     among(scene.spheres, PrimPlace::Kind::sphere, place) || among(scene.polygons, PrimPlace::Kind::polygon, place) ||
         among(scene.planes, PrimPlace::Kind::plane, place) || among(scene.shapes, PrimPlace::Kind::shape, place);
     return place;
+}
+
+std::string texture_name(const Scene& scene, rt_u32 texture) {
+    const bool has_name = texture < scene.texture_names.size() && !scene.texture_names[texture].empty();
+    return has_name ? scene.texture_names[texture] : "texture " + std::to_string(texture);
 }
 
 uint64_t texel_count(const rt_texture& texture) {

@@ -161,7 +161,8 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<rt_map> maps;
     std::vector<rt_texture> textures;
-    SharedArray<uint32_t> texels;  // RGBA8, R in the low byte
+    std::vector<std::string> texture_names;  // one for each texture, or none
+    SharedArray<uint32_t> texels;            // RGBA8, R in the low byte
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     Sky sky;
@@ -180,11 +181,18 @@ struct Scene {
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
     // Number of triangles in the world: the sum over all instances.
     uint64_t placed_triangle_count() const;
+    // Whether vertices have more than positions, so that kernels have to know the corners of triangles.
+    bool has_attributes() const {
+        return !normals.empty() || !uvs.empty() || !uvs2.empty() || !tangents.empty() || !colors.empty();
+    }
     // World-space box of everything finite; planes are left out.
     Bounds bounds() const;
     // World-space area of the triangles of all instances, the polygons and the spheres. That of shapes is not known.
     double surface_area() const;
 };
+
+// The next smaller picture of a texture's picture or of one of its smaller ones, which follows it in the texels.
+rt_texture smaller_picture(const rt_texture& picture);
 
 // The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres,
 // polygons, planes and shapes.
@@ -201,6 +209,8 @@ Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 // Box of a shape's parts in its own space.
 Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
+// "wood.png", or "texture 3" if it has no name.
+std::string texture_name(const Scene& scene, rt_u32 texture);
 // Texels of a picture and of the smaller ones behind it; 0 if it is empty or has more levels than its size allows.
 uint64_t texel_count(const rt_texture& texture);
 MaterialValues default_material();  // in material_keys.cpp

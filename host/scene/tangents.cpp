@@ -54,7 +54,7 @@ void store(const Frame& frame, const Vec (&tangents)[3], bool is_mirrored, rt_u3
     std::copy_n(made, 3, words);
 }
 
-// What corners have in common whose tangents are one.
+// Corners with the same key have the same tangent.
 struct CornerKey {
     std::array<float, 8> values{};  // position, normal, coordinates
     bool is_mirrored = false;
@@ -75,7 +75,7 @@ struct CornerHash {
     }
 };
 
-// The uses whose textures hold directions.
+// Uses of textures that need tangents: their texels are directions.
 constexpr rt_u32 kDirections[] = {RT_MAP_NORMAL, RT_MAP_CLEARCOAT_NORMAL, RT_MAP_ANISOTROPY};
 
 // The set of coordinates that a material's tangents follow; RT_NONE: it needs none.

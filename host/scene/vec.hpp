@@ -34,6 +34,10 @@ inline Vec to_vec(const std::array<float, 3>& a) {
 inline std::array<float, 3> to_floats(const Vec& a) {
     return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
 }
+// Whether no channel of a colour is above 0.
+inline bool is_black(const float (&color)[3]) {
+    return !(color[0] > 0 || color[1] > 0 || color[2] > 0);
+}
 inline Vec cross(const Vec& a, const Vec& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }

@@ -34,24 +34,9 @@ rt_map& add_map(Scene& scene, rt_u32 material, rt_u32 use, rt_u32 texture, rt_u3
     return scene.maps.back();
 }
 
-// A square with corners at (0,0) and (2,2) in the xy plane, white; uv is half of the position.
-Scene square(const Affine& placed = kIdentity) {
-    TriangleMesh mesh;
-    const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0),
-                 d = mesh.add_vertex(0, 2, 0);
-    mesh.add_triangle(a, b, c);
-    mesh.add_triangle(a, c, d);
-    Scene scene = scene_of(mesh);
-    scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
-    scene.instances[0].world_from_object = placed;
-    scene.materials[0].values = diffuse(1, 1, 1);
-    return scene;
-}
-
-// Shows exactly the square, lit by ambient light of 1 and a sky of 1.
 View flat_view() {
-    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / kPi);
-    view.background = view.ambient = {1, 1, 1};
+    View view = view_of_square();
+    view.background = {1, 1, 1};
     return view;
 }
 
@@ -77,7 +62,7 @@ void expect_same(const FloatImage& a, const FloatImage& b, double room, const ch
 
 TEST(Maps, ATextureOfOneColourIsTheFactor) {
     const auto byte = uint32_t(188);  // 0.5029 in linear light
-    Scene mapped = square(), plain = square();
+    Scene mapped = white_square(), plain = white_square();
     mapped.uvs2 = mapped.uvs;
     add_map(mapped, 0, RT_MAP_COLOR, add_texture(mapped, 1, {0xff000000u | byte | byte << 8 | byte << 16}), 1);
     plain.materials[0].values = diffuse(0.50289f, 0.50289f, 0.50289f);
@@ -88,7 +73,7 @@ TEST(Maps, ATextureOfOneColourIsTheFactor) {
 // Coordinates of the second set are those of the first, turned by a half.
 TEST(Maps, NameTheirSetOfCoordinates) {
     for (const rt_u32 set : {0u, 1u}) {
-        Scene scene = square();
+        Scene scene = white_square();
         scene.uvs2 = {1, 1, 0, 1, 0, 0, 1, 0};
         scene.textures.clear();
         rt_map& map = add_map(scene, 0, RT_MAP_COLOR, add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}), set);
@@ -102,7 +87,7 @@ TEST(Maps, NameTheirSetOfCoordinates) {
 
 // A quarter of a turn counter-clockwise of the coordinates, and half a picture to the right.
 TEST(Maps, TransformTheirCoordinates) {
-    Scene scene = square();
+    Scene scene = white_square();
     rt_map& map = add_map(scene, 0, RT_MAP_COLOR, add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}));
     const float matrix[6] = {0, -1, 0.5f, 1, 0, 0};
     std::copy_n(matrix, 6, map.matrix);
@@ -116,21 +101,33 @@ TEST(Maps, TransformTheirCoordinates) {
 }
 
 TEST(Maps, ANearestTextureHasEdges) {
-    Scene scene = square();
+    Scene scene = white_square();
     scene.materials[0].values.texture = add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}, RT_TEXTURE_NEAREST);
     const FloatImage image = pictures(scene)[0];
     expect_color(image, 31, 10, {1, 0, 0}, 1e-4, "left of the edge");
     expect_color(image, 32, 10, {0, 1, 0}, 1e-4, "right of it");
 }
 
+// The picture is on the lower left quarter. Beyond it is the border, where others show it again.
+TEST(Maps, AClampedTextureEndsInItsBorder) {
+    Scene scene = white_square();
+    rt_map& map = add_map(scene, 0, RT_MAP_COLOR, add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}, RT_TEXTURE_NEAREST));
+    map.matrix[0] = map.matrix[4] = 2;
+    scene.textures.back().wrap = RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_CLAMP;
+    const FloatImage image = trace(scene, flat_view(), 64, 64, 1, {{"lanes", "8"}}).image;
+    expect_color(image, 8, 56, {0, 0, 1}, 1e-4, "in the picture");
+    expect_color(image, 36, 56, {1, 1, 1}, 1e-4, "on the right of it");
+    expect_color(image, 8, 4, {1, 0, 0}, 1e-4, "above it");
+}
+
 TEST(Maps, TexelsOfNumbersAreLinear) {
-    Scene scene = square();
+    Scene scene = white_square();
     scene.materials[0].values.texture = add_texture(scene, 1, {0xff808080u}, RT_TEXTURE_LINEAR);
     for (const FloatImage& image : pictures(scene)) expect_color(image, 30, 30, {.50196f, .50196f, .50196f}, 1e-3, "grey");
 }
 
 TEST(Maps, OcclusionDimsAmbientLightAlone) {
-    Scene scene = square();
+    Scene scene = white_square();
     add_map(scene, 0, RT_MAP_OCCLUSION, add_texture(scene, 1, {0xff000000u}, RT_TEXTURE_LINEAR)).scale = 0.75f;
     expect_color(trace(scene, flat_view(), 64, 64, 1).image, 30, 30, {.25f, .25f, .25f}, 1e-4, "ambient");
     const PathPicture path = trace_paths(scene, flat_view(), 16, {{"strategy", "bsdf"}});
@@ -140,7 +137,7 @@ TEST(Maps, OcclusionDimsAmbientLightAlone) {
 // Maps of the surface model of glTF: one texel of half a factor is half the factor.
 TEST(Maps, MultiplyTheSurfaceModel) {
     const auto model = [](float factor) {
-        Scene scene = square();
+        Scene scene = white_square();
         MaterialValues& values = scene.materials[0].values;
         values.model = RT_MODEL_GLTF;
         values.roughness = 0.8f * factor;
@@ -265,19 +262,25 @@ TEST(SmallerPictures, KeepTheMeanOfAnySize) {
     }
 }
 
-// A checker of 256 x 256 texels in 8 x 8 pixels is grey: the mean of linear light.
-TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
-    Scene scene = square();
+// The only texture: black and white texels by turns, side x side, with its smaller pictures.
+void put_checker(Scene& scene, rt_u32 side) {
     Texels texels;
-    for (int y = 0; y < 256; ++y)
-        for (int x = 0; x < 256; ++x) texels.push_back((x + y) % 2 ? kWhite : kBlack);
-    rt_texture texture = {0, 256, 256, 0, 0, 0, 0};
+    for (rt_u32 y = 0; y < side; ++y)
+        for (rt_u32 x = 0; x < side; ++x) texels.push_back((x + y) % 2 ? kWhite : kBlack);
+    rt_texture texture = {0, side, side, 0, 0, 0, 0};
     import::add_smaller_pictures(texels, texture);
     scene.texels.own() = texels;
     scene.textures = {texture};
     scene.materials[0].values.texture = 0;
+}
+
+// A checker of 256 x 256 texels in 7 x 7 pixels is grey: the mean of linear light. Where 8 pixels are hit, four texels meet,
+// and the picture itself is as grey.
+TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
+    Scene scene = white_square();
+    put_checker(scene, 256);
     for (const auto& [tracer, lanes] : {std::pair("iterative", "8"), std::pair("wavefront", "1")}) {
-        const FloatImage image = trace(scene, flat_view(), 8, 8, 1, {{"tracer", tracer}, {"lanes", lanes}}).image;
+        const FloatImage image = trace(scene, flat_view(), 7, 7, 1, {{"tracer", tracer}, {"lanes", lanes}}).image;
         for (const float channel : image.pixels) EXPECT_NEAR(channel, 0.5, 0.01) << tracer;
     }
     scene.textures[0].levels = 0;
@@ -286,20 +289,29 @@ TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
         << "without them the picture depends on which texels rays hit";
 }
 
+// 64 x 64 texels in 32 x 32 pixels are the first of the smaller pictures, in 16 x 16 the second. Here each has a colour of its
+// own.
+TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
+    Scene scene = white_square();
+    Texels texels;
+    for (const auto& [side, color] :
+         {std::pair(64, kRed), {32, kGreen}, {16, kBlue}, {8, kBlack}, {4, kBlack}, {2, kBlack}, {1, kBlack}})
+        texels.insert(texels.end(), size_t(side) * size_t(side), color);
+    scene.texels.own() = texels;
+    scene.textures = {{0, 64, 64, 0, 0, 6, 0}};
+    scene.materials[0].values.texture = 0;
+    expect_color(trace(scene, flat_view(), 64, 64, 1).image, 32, 32, {1, 0, 0}, 0.15, "one texel a pixel");
+    expect_color(trace(scene, flat_view(), 32, 32, 1).image, 16, 16, {0, 1, 0}, 0.15, "two along each side");
+    expect_color(trace(scene, flat_view(), 16, 16, 1).image, 8, 8, {0, 0, 1}, 0.15, "four");
+}
+
 // Seen as large as it is, the picture itself is shown. An instance of the same size, at any scale of its mesh, shows the same.
 TEST(SmallerPictures, AreNotShownUpClose) {
     const auto checker = [](const Affine& placed) {
-        Scene scene = square(placed);
+        Scene scene = white_square(placed);
         scene.instances[0].apart = true;
         for (float& p : scene.positions.own()) p /= placed[0];
-        Texels texels;
-        for (int y = 0; y < 8; ++y)
-            for (int x = 0; x < 8; ++x) texels.push_back((x + y) % 2 ? kWhite : kBlack);
-        rt_texture texture = {0, 8, 8, 0, 0, 0, 0};
-        import::add_smaller_pictures(texels, texture);
-        scene.texels.own() = texels;
-        scene.textures = {texture};
-        scene.materials[0].values.texture = 0;
+        put_checker(scene, 8);
         return scene;
     };
     for (const float scale : {1.f, 0.01f, 300.f}) {
@@ -310,7 +322,7 @@ TEST(SmallerPictures, AreNotShownUpClose) {
 }
 
 TEST(SmallerPictures, OnlyScenesThatHaveThemPayForThem) {
-    Scene scene = square();
+    Scene scene = white_square();
     scene.materials[0].values.texture = add_texture(scene, 1, {kWhite});
     EXPECT_FALSE(features_of(scene, {}).mips);
     EXPECT_FALSE(features_of(scene, {}).maps);
@@ -325,7 +337,7 @@ TEST(SmallerPictures, OnlyScenesThatHaveThemPayForThem) {
 // A square whose map of normals is one texel: the direction (x, y, z) in its frame.
 Scene bent(double x, double y, double z, const std::vector<float>& uvs = {0, 0, 1, 0, 1, 1, 0, 1},
            const Affine& placed = kIdentity) {
-    Scene scene = square(placed);
+    Scene scene = white_square(placed);
     scene.uvs.own() = uvs;
     const auto byte = [](double c) { return static_cast<uint32_t>(std::lround((c + 1) / 2 * 255)); };
     const uint32_t texel = 0xff000000u | byte(x) | byte(y) << 8 | byte(z) << 16;
@@ -411,7 +423,7 @@ TEST(NormalMaps, HaveAScale) {
 }
 
 TEST(NormalMaps, AFlatOneChangesNothing) {
-    Scene flat = square(), plain = square();
+    Scene flat = white_square(), plain = white_square();
     add_map(flat, 0, RT_MAP_NORMAL, add_texture(flat, 1, {0xffff8080u}, RT_TEXTURE_LINEAR));  // 128, 128, 255
     make_tangents(flat);
     for (const Point& sun : {kSun, Point{0, 0.6f, 0.8f}, Point{0.8f, 0, 0.6f}})
@@ -420,7 +432,7 @@ TEST(NormalMaps, AFlatOneChangesNothing) {
 
 // A smooth sphere of triangles with a seam: made tangents are those along its parallels.
 TEST(NormalMaps, TangentsAreThoseOfTheCoordinates) {
-    Scene scene = square();
+    Scene scene = white_square();
     add_map(scene, 0, RT_MAP_NORMAL, add_texture(scene, 1, {0xffff8080u}, RT_TEXTURE_LINEAR));
     make_tangents(scene);
     Scene given = scene;

@@ -45,4 +45,24 @@ void expect_picture(const Picture& picture, const View& view, const std::functio
     EXPECT_EQ(wrong, 0u) << "of " << compared << "; worst: " << where;
 }
 
+Scene white_square(const Affine& placed) {
+    TriangleMesh mesh;
+    const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0),
+                 d = mesh.add_vertex(0, 2, 0);
+    mesh.add_triangle(a, b, c);
+    mesh.add_triangle(a, c, d);
+    Scene scene = scene_of(mesh);
+    scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
+    scene.instances[0].world_from_object = placed;
+    scene.materials[0].values = diffuse(1, 1, 1);
+    return scene;
+}
+
+View view_of_square() {
+    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / 3.14159265358979);
+    view.background = {0, 0, 0};
+    view.ambient = {1, 1, 1};
+    return view;
+}
+
 }  // namespace clarity::test

@@ -21,26 +21,10 @@ rt_u32 add_texture(Scene& scene) {
     return static_cast<rt_u32>(scene.textures.size() - 1);
 }
 
-// A square in the xy plane with corners at (0,0) and (2,2); uv is half of the position.
 Scene textured_square(const Affine& placed = kIdentity) {
-    TriangleMesh mesh;
-    const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0),
-                 d = mesh.add_vertex(0, 2, 0);
-    mesh.add_triangle(a, b, c);
-    mesh.add_triangle(a, c, d);
-    Scene scene = scene_of(mesh);
-    scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
-    scene.instances[0].world_from_object = placed;
-    scene.materials[0].values = diffuse(1, 1, 1);
+    Scene scene = white_square(placed);
     scene.materials[0].values.texture = add_texture(scene);
     return scene;
-}
-
-View flat_view() {
-    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / 3.14159265358979);  // shows exactly the square
-    view.background = {0, 0, 0};
-    view.ambient = {1, 1, 1};
-    return view;
 }
 
 void expect_color(const std::array<float, 3>& seen, const std::array<float, 3>& wanted, const char* where) {
@@ -48,7 +32,7 @@ void expect_color(const std::array<float, 3>& seen, const std::array<float, 3>& 
 }
 
 TEST(Texture, BottomLeftIsUvZero) {
-    const Picture picture = trace(textured_square(), flat_view(), 64, 64, 1);
+    const Picture picture = trace(textured_square(), view_of_square(), 64, 64, 1);
     expect_color(picture.at(15, 15), {1, 0, 0}, "top left");
     expect_color(picture.at(48, 15), {0, 1, 0}, "top right");
     expect_color(picture.at(15, 48), {0, 0, 1}, "bottom left");
@@ -56,7 +40,7 @@ TEST(Texture, BottomLeftIsUvZero) {
 }
 
 TEST(Texture, IsBilinearBetweenTexels) {
-    const Picture picture = trace(textured_square(), flat_view(), 64, 64, 1);
+    const Picture picture = trace(textured_square(), view_of_square(), 64, 64, 1);
     const std::array<float, 3> middle = picture.at(31, 15);  // half a pixel to the left of the middle, between red and green
     EXPECT_NEAR(middle[0], 0.5, 0.05);
     EXPECT_NEAR(middle[1], 0.5, 0.05);
@@ -66,7 +50,8 @@ TEST(Texture, IsBilinearBetweenTexels) {
 TEST(Texture, RepeatsOutsideItsRange) {
     Scene scene = textured_square();
     for (float& uv : scene.uvs.own()) uv += -3;
-    const Picture shifted = trace(scene, flat_view(), 64, 64, 1), plain = trace(textured_square(), flat_view(), 64, 64, 1);
+    const Picture shifted = trace(scene, view_of_square(), 64, 64, 1),
+                  plain = trace(textured_square(), view_of_square(), 64, 64, 1);
     for (size_t i = 0; i < plain.image.pixels.size(); ++i)
         ASSERT_NEAR(shifted.image.pixels[i], plain.image.pixels[i], 1e-3) << i;
 }
@@ -92,7 +77,7 @@ TEST(Texture, WrapsAlongEachAxisAsItSays) {
                 Scene scene = textured_square();
                 scene.textures.front().wrap = wrap_u + RT_WRAP_ALONG_V * wrap_v;
                 for (float& uv : scene.uvs.own()) uv = 5 * uv - 2;
-                const Picture picture = trace(scene, flat_view(), 100, 100, 1, {{"lanes", lanes}});
+                const Picture picture = trace(scene, view_of_square(), 100, 100, 1, {{"lanes", lanes}});
                 // The middle of each texel, where the neighbours have no share.
                 for (int y = 5; y < 100; y += 10)
                     for (int x = 5; x < 100; x += 10) {
@@ -111,7 +96,7 @@ TEST(Texture, IsSmoothAtBordersThatAreClampedOrMirrored) {
         Scene scene = textured_square();
         scene.textures.front().wrap = mode * (1 + RT_WRAP_ALONG_V);
         for (float& uv : scene.uvs.own()) uv += 0.5f;  // the border of u is in the middle
-        const std::array<float, 3> border = trace(scene, flat_view(), 64, 64, 1).at(31, 48);
+        const std::array<float, 3> border = trace(scene, view_of_square(), 64, 64, 1).at(31, 48);
         if (mode == RT_WRAP_REPEAT)
             EXPECT_NEAR(border[0], 0.5, 0.1) << "half of it is the texel on the other side";
         else
@@ -131,7 +116,7 @@ TEST(Texture, WrapModesCostNothingWhereAllRepeat) {
 
 TEST(Texture, RotatesWithTheMesh) {
     // A quarter turn about the square's centre, counter-clockwise: the top right corner moves to the top left.
-    const Picture picture = trace(textured_square({0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}), flat_view(), 64, 64, 1);
+    const Picture picture = trace(textured_square({0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}), view_of_square(), 64, 64, 1);
     expect_color(picture.at(15, 15), {0, 1, 0}, "top left");
     expect_color(picture.at(48, 15), {1, 1, 1}, "top right");
     expect_color(picture.at(15, 48), {1, 0, 0}, "bottom left");
@@ -143,10 +128,10 @@ TEST(Texture, OnInstances) {
     Instance second = scene.instances[0];
     second.world_from_object = {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, -1};  // rotated, and hidden behind the first
     scene.instances.push_back(second);
-    const Picture front = trace(scene, flat_view(), 64, 64, 1);
+    const Picture front = trace(scene, view_of_square(), 64, 64, 1);
     expect_color(front.at(15, 48), {0, 0, 1}, "bottom left of the first");
     std::swap(scene.instances[0].world_from_object[11], scene.instances[1].world_from_object[11]);
-    const Picture turned = trace(scene, flat_view(), 64, 64, 1);
+    const Picture turned = trace(scene, view_of_square(), 64, 64, 1);
     expect_color(turned.at(15, 48), {1, 0, 0}, "bottom left of the second");
 }
 
@@ -178,7 +163,7 @@ TEST(Aov, UvNormalInstanceAndPrim) {
     scene.instances.push_back(scene.instances[0]);
     scene.instances[1].world_from_object[3] = 1;  // shifted right by half its width
     scene.instances[1].world_from_object[11] = -1;
-    const View view = flat_view();
+    const View view = view_of_square();
     const FloatImage uv = aov(scene, view, "uv"), normal = aov(scene, view, "normal"), instance = aov(scene, view, "instance"),
                      prim = aov(scene, view, "prim"), t = aov(scene, view, "t");
     const size_t middle = 40 * 64 + 20;

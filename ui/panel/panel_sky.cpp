@@ -32,7 +32,9 @@ void draw_sky_rows(Session& session) {
     const auto ready = session.ready();
     if (!ready) return;
     const Scene& scene = *ready->loaded->scene;
-    const clarity::View view = edited_view(session.desired).view;
+    clarity::View view;  // what the sky depends on
+    view.background = session.desired.background;
+    view.sky = session.desired.sky;
     SkyValues sky = sky_of(scene, view);
     bool changed = sky_kind_row(scene, view, sky);
     ImGui::PushID("sky");

@@ -6,6 +6,7 @@
 
 #include "base/parallel_for.hpp"
 #include "base/pictures/srgb.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::import {
 namespace {
@@ -51,19 +52,18 @@ std::vector<Cover> covers(rt_u32 size, rt_u32 half) {
 void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture) {
     static const Curves curves;
     const bool is_linear = (texture.flags & RT_TEXTURE_LINEAR) != 0;
-    rt_u32 width = texture.width, height = texture.height;
-    size_t first = texture.first;
-    while (width > 1 || height > 1) {
-        const rt_u32 w = std::max(width / 2, rt_u32(1)), h = std::max(height / 2, rt_u32(1));
-        const size_t to = texels.size();
-        texels.resize(to + size_t(w) * h);
-        const std::vector<Cover> columns = covers(width, w), rows = covers(height, h);
-        parallel_for(h, [&](uint32_t y) {
-            for (rt_u32 x = 0; x < w; ++x) {
+    rt_texture from = texture;
+    while (from.width > 1 || from.height > 1) {
+        const rt_texture to = smaller_picture(from);
+        texels.resize(to.first + size_t(to.width) * to.height);
+        const std::vector<Cover> columns = covers(from.width, to.width), rows = covers(from.height, to.height);
+        parallel_for(to.height, [&](uint32_t y) {
+            for (rt_u32 x = 0; x < to.width; ++x) {
                 float sum[4] = {0, 0, 0, 0};
                 for (rt_u32 j = 0; j < rows[y].count; ++j)
                     for (rt_u32 i = 0; i < columns[x].count; ++i) {
-                        const uint32_t texel = texels[first + size_t(rows[y].first + j) * width + columns[x].first + i];
+                        const uint32_t texel =
+                            texels[from.first + size_t(rows[y].first + j) * from.width + columns[x].first + i];
                         const float share = rows[y].share[j] * columns[x].share[i];
                         for (int k = 0; k < 4; ++k) {
                             const uint32_t byte = texel >> (8 * k) & 255u;
@@ -76,12 +76,10 @@ void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture) {
                     out |= (plain ? static_cast<uint32_t>(std::clamp(sum[k], 0.f, 1.f) * 255 + 0.5f) : curves.byte_of(sum[k]))
                            << (8 * k);
                 }
-                texels[to + size_t(y) * w + x] = out;
+                texels[to.first + size_t(y) * to.width + x] = out;
             }
         });
-        first = to;
-        width = w;
-        height = h;
+        from = to;
         ++texture.levels;
     }
 }

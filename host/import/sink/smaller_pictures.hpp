@@ -7,9 +7,9 @@
 
 namespace clarity::import {
 
-// Appends the smaller pictures of a texture, down to a single texel, whose own picture is the last one in `texels`. Each texel
-// is the mean of what it covers of the picture before: of linear light where the texture is sRGB, of plain numbers else, as is
-// alpha.
+// Appends the smaller pictures of a texture, down to one of a single texel. The texture's own picture is the last one in
+// `texels`. Each texel is the mean of the part of the picture before that it covers. Colours of sRGB textures are averaged in
+// linear light; alpha, and all of other textures, as plain numbers.
 void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture);
 
 }  // namespace clarity::import

@@ -24,8 +24,7 @@ std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& sce
     pieces.push_back({"leaves", (counts.references + kLeafPadding) * sizeof(rt_packed_prim)});
     if (accel.slot_count > 0)
         pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
-    if (!scene.normals.empty() || !scene.uvs.empty() || !scene.uvs2.empty() || !scene.tangents.empty() || !scene.colors.empty())
-        pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
+    if (scene.has_attributes()) pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
     pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
     pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});
     if (!scene.tangents.empty()) pieces.push_back({"tangents", 3 * counts.triangles * sizeof(rt_u32)});

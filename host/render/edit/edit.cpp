@@ -59,27 +59,27 @@ void read_camera(Camera& camera, const std::string& text, const std::array<doubl
     camera.focus = numbers->focus;
 }
 
-bool is_word(const Key& key) {
-    return key.kind == RT_KEY_WORD || key.kind == RT_KEY_FLAG;
-}
-// The keys of a kind whose numbers follow its name: those before the first word. Others have edits of their own.
-std::vector<Key> listed_keys(const LightKind& kind) {
-    std::vector<Key> keys;
-    for (const Key& key : kind.keys) {
-        if (is_word(key)) break;
-        if (!key.alias) keys.push_back(key);
+// The keys of a kind of lights, each once. Numbers of `listed` follow the name of the kind: they are the keys before the first
+// word. Each of the `others` has an edit of its own.
+struct LightKeys {
+    explicit LightKeys(const LightKind& kind) {
+        for (const Key& key : kind.keys) {
+            if (key.alias) continue;
+            const bool is_word = key.kind == RT_KEY_WORD || key.kind == RT_KEY_FLAG;
+            (is_word || !others.empty() ? others : listed).push_back(&key);
+        }
     }
-    return keys;
-}
+    std::vector<const Key*> listed, others;
+};
 
 // "x,y,z,r,g,b": the numbers of a kind of lights, and how many they are.
 std::string numbers_form(const LightKind& kind, size_t& count) {
     std::string form;
     count = 0;
-    for (const Key& key : listed_keys(kind)) {
-        const char* what = count_of(key) == 1 ? key.name : key.kind == RT_KEY_COLOR ? "r,g,b" : "x,y,z";
+    for (const Key* key : LightKeys(kind).listed) {
+        const char* what = count_of(*key) == 1 ? key->name : key->kind == RT_KEY_COLOR ? "r,g,b" : "x,y,z";
         form += (form.empty() ? "" : ",") + std::string(what);
-        count += count_of(key);
+        count += count_of(*key);
     }
     return form;
 }
@@ -111,11 +111,11 @@ rt_light read_light_numbers(const LightKind& kind, const std::string& name, cons
     std::vector<std::string> parts = split(numbers, ',');
     if (parts.size() != count) refuse_value(name, numbers, number_word(count) + " numbers after its kind: " + form);
     size_t at = 0;
-    for (const Key& key : listed_keys(kind)) {
+    for (const Key* key : LightKeys(kind).listed) {
         std::string text = parts[at];
-        for (size_t k = 1; k < count_of(key); ++k) text += "," + parts[at + k];
-        at += count_of(key);
-        set_edit_value(key, light, read_key(key, name, text, origin));
+        for (size_t k = 1; k < count_of(*key); ++k) text += "," + parts[at + k];
+        at += count_of(*key);
+        set_edit_value(*key, light, read_key(*key, name, text, origin));
     }
     return light;
 }
@@ -246,19 +246,16 @@ bool begins(const std::string& text, const char* with) {
 // The words that make a light from nothing.
 void add_light_words(const rt_light& light, size_t number, const std::array<double, 3>& origin, std::vector<Word>& words) {
     const std::string name = "light." + std::to_string(number);
+    const LightKeys keys(light_kind_of(light));
     std::string text = light_kind_of(light).name;
-    std::vector<Word> further;
-    const size_t listed = listed_keys(light_kind_of(light)).size();
-    size_t seen = 0;
-    for (const Key& key : light_kind_of(light).keys) {
-        const std::array<float, 3> value = edit_value(key, light);
-        if (!key.alias && seen++ < listed)
-            text += "," + (key.moves == Moves::point ? point_text(value.data(), origin, ",") : value_text(key, value, ","));
-        else if (!key.alias && value != key.def)
-            further.push_back({name + "." + key.name, value_text(key, value, ",")});
+    for (const Key* key : keys.listed) {
+        const std::array<float, 3> value = edit_value(*key, light);
+        text += "," + (key->moves == Moves::point ? point_text(value.data(), origin, ",") : value_text(*key, value, ","));
     }
     words.push_back({name, text});
-    words.insert(words.end(), further.begin(), further.end());
+    for (const Key* key : keys.others)
+        if (const std::array<float, 3> value = edit_value(*key, light); value != key->def)
+            words.push_back({name + "." + key->name, value_text(*key, value, ",")});
 }
 
 // The words that turn one material into another one. Where a key changes what others follow, those are written, too.

@@ -6,16 +6,9 @@
 #include "render/edit/edit.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/sky_kinds.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity {
-namespace {
-
-bool is_black(const rt_f32* color) {
-    return color[0] == 0 && color[1] == 0 && color[2] == 0;
-}
-
-}  // namespace
-
 bool is_possible_sky(const Scene& scene, rt_u32 kind) {
     return kind != RT_SKY_PICTURE || scene.sky.values.kind == RT_SKY_PICTURE;
 }

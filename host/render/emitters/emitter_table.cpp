@@ -88,9 +88,9 @@ class Collector {
     const rt_material& material(size_t i) const { return material_of(scene_, view_, i); }
     const rt_packed_prim& leaf(rt_u32 at) const { return leaves_[at]; }
 
-    // For each primitive of a kind that emits, by its ref: a leaf that holds it. Of a primitive that was cut there are several,
-    // all alike. all: also those whose own material does not emit, since an instance may have one that does. Light of a map is
-    // drawn from triangles only.
+    // For each primitive of a kind that emits, by its ref: one of the leaves that hold it. A primitive that was cut is in
+    // several leaves. all: counts primitives, too, whose own material does not emit, because an instance may have one that
+    // does. Light of a map is drawn from triangles only.
     std::vector<rt_u32> leaves_of(rt_u32 kind, size_t count, bool all) const {
         const std::vector<bool>& emits = kind == RT_REF_TRIANGLE ? emits_ : emits_evenly_;
         std::vector<rt_u32> found(count, RT_NONE);

@@ -41,15 +41,13 @@ double mean_of_map(const Scene& scene, rt_u32 number, rt_u32 triangle) {
         for (int k = 0; k < 2; ++k) lo[k] = std::min(lo[k], at[k]), hi[k] = std::max(hi[k], at[k]);
     }
     // The rectangle in texels of the picture that is small enough.
-    int64_t width = texture.width, height = texture.height;
-    const uint32_t* texels = scene.texels.data() + texture.first;
+    rt_texture picture = texture;
     for (rt_u32 level = 0; level < texture.levels; ++level) {
-        if ((hi[0] - lo[0]) * double(width) <= kMostSide && (hi[1] - lo[1]) * double(height) <= kMostSide) break;
-        texels += width * height;
-        width = std::max<int64_t>(width / 2, 1);
-        height = std::max<int64_t>(height / 2, 1);
+        if ((hi[0] - lo[0]) * picture.width <= kMostSide && (hi[1] - lo[1]) * picture.height <= kMostSide) break;
+        picture = smaller_picture(picture);
     }
-    const int64_t size[2] = {width, height};
+    const uint32_t* const texels = scene.texels.data() + picture.first;
+    const int64_t width = picture.width, height = picture.height, size[2] = {width, height};
     int64_t first[2], count[2];
     for (int k = 0; k < 2; ++k) {
         // Half a texel more, because colours are interpolated. Where the picture repeats, once is enough.

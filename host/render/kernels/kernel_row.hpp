@@ -44,6 +44,13 @@ inline Optics optics_known(const KernelRow& row, const Optics& optics) {
     return row.has(kWhitted) ? optics.for_whitted() : Optics{0, 0, optics.cutouts};
 }
 
+// Headers below cl/ that know what surfaces look like, in their order: the first of most kernels.
+inline const std::vector<const char*>& material_headers() {
+    static const std::vector<const char*> headers = {"shading/textures.h", "shading/maps.h", "shading/material.h",
+                                                     "shading/cutouts.h"};
+    return headers;
+}
+
 // Planes of the film of colours that a kernel traces into.
 inline unsigned film_planes(const KernelRow& row) {
     return row.has(kSumsSamples) ? 2 : 1;

@@ -128,9 +128,7 @@ std::vector<rt_texture> with_smaller_ones(const std::vector<rt_texture>& texture
         all[i].smaller = static_cast<rt_u32>(all.size());
         rt_texture at = textures[i];
         for (rt_u32 level = 0; level < textures[i].levels; ++level) {
-            at.first += at.width * at.height;
-            at.width = std::max(at.width / 2, rt_u32(1));
-            at.height = std::max(at.height / 2, rt_u32(1));
+            at = smaller_picture(at);
             at.levels = 0;
             all.push_back(at);
         }
@@ -158,8 +156,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         if (!scene_->maps.empty()) material_maps_.insert(material_maps_.end(), material.maps.begin(), material.maps.end());
     }
     const BuildScene& build = accel_->scene;
-    if (!scene_->normals.empty() || !scene_->uvs.empty() || !scene_->uvs2.empty() || !scene_->tangents.empty() ||
-        !scene_->colors.empty()) {
+    if (scene_->has_attributes()) {
         attributes_.resize(build.attribute_triangle.size());
         for (size_t i = 0; i < attributes_.size(); ++i)
             for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
@@ -215,6 +212,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     attributes_ = {};
     normals_ = {};
     tangents_ = {};
+    textures_ = {};
+    material_maps_ = {};
 }
 
 DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)

@@ -34,11 +34,11 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
     on_device.complete(queue, frame_.get(), frames.size());
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
     if (!own_materials_) return;
-    const std::vector<rt_material> plain(view.materials.begin(), view.materials.end());
-    std::vector<rt_layers> layers;
-    for (const MaterialValues& material : view.materials) layers.push_back(material.layers);
-    materials_.write(queue, plain.data(), plain.size() * sizeof plain[0]);
-    layers_.write(queue, layers.data(), layers.size() * sizeof layers[0]);
+    plain_materials_.assign(view.materials.begin(), view.materials.end());
+    material_layers_.clear();
+    for (const MaterialValues& material : view.materials) material_layers_.push_back(material.layers);
+    materials_.write(queue, plain_materials_.data(), plain_materials_.size() * sizeof(rt_material));
+    layers_.write(queue, material_layers_.data(), material_layers_.size() * sizeof(rt_layers));
 }
 
 void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,

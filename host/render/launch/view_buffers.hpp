@@ -55,6 +55,8 @@ class ViewBuffers {
         SkyValues sky;
     };
     UploadedBuffer frame_, lights_, materials_, layers_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
+    std::vector<rt_material> plain_materials_;  // these two are kept for their memory: frames allocate nothing
+    std::vector<rt_layers> material_layers_;
     EmittersOf emitters_of_;
     SharedArray<float> sky_of_;  // the picture that sky_ was made from
     SkyTable sky_;

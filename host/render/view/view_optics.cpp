@@ -5,6 +5,7 @@
 
 #include "render/settings/tracer_choice.hpp"
 #include "scene/emissive.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity {
 namespace {
@@ -15,17 +16,13 @@ void add(Optics& optics, const rt_light& light) {
     if (fades) optics.lights |= RT_LIGHTS_FADE;
 }
 
-bool is_colored(const float (&color)[3]) {
-    return std::any_of(std::begin(color), std::end(color), [](float channel) { return channel > 0; });
-}
-
 // A map may make any value smaller: a metal of 1 may have parts that are none, and let light through.
 rt_u32 lobes_of_layers(const MaterialValues& m) {
     const rt_layers& l = m.layers;
     const bool clear = l.transmission > 0, solid = (l.flags & RT_LAYERS_SOLID) != 0;
     rt_u32 lobes = RT_LOBE_LAYERS;
     if (l.clearcoat > 0) lobes |= RT_LOBE_COAT;
-    if (is_colored(l.sheen_color)) lobes |= RT_LOBE_SHEEN;
+    if (!is_black(l.sheen_color)) lobes |= RT_LOBE_SHEEN;
     if (clear && !solid) lobes |= RT_LOBE_THIN;
     if (clear && solid) lobes |= m.roughness > 0 ? RT_LOBE_GLASS | RT_LOBE_FROSTED : RT_LOBE_GLASS;
     if (l.anisotropy > 0) lobes |= RT_LOBE_GRAIN;
@@ -55,7 +52,7 @@ void add(Optics& optics, const MaterialValues& m) {
             lobes |= RT_LOBE_UNLIT;
             break;
     }
-    if ((lobes & RT_LOBE_GLASS) && is_colored(m.absorption)) lobes |= RT_LOBE_ABSORBS;
+    if ((lobes & RT_LOBE_GLASS) && !is_black(m.absorption)) lobes |= RT_LOBE_ABSORBS;
     optics.lobes |= lobes;
     if (m.alpha != RT_ALPHA_OPAQUE) optics.cutouts = 1;
 }

@@ -23,6 +23,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
     const uint nx = grid->cells[0], ny = grid->cells[1], nz = grid->cells[2];
     rt_mailbox tested;
     rt_clear_mailbox(&tested);
+    RT_COUNT_VISIT(hit, 1u); /* the grid's box, and the list of what no cell holds */
     RT_CAT(RT_TRAVERSE, _list)(ctx, starts + nx * ny * nz, &tested, ray, hit);
 
     rt_cells cells;

@@ -1,16 +1,17 @@
 // grid.cpp -- a uniform grid for each group: Fujimoto, Tanaka, Iwata 1986, "ARTS: Accelerated Ray-Tracing System"; Cleary,
 // Wyvill 1988, "Analysis of an algorithm for fast ray tracing using uniform space subdivision", for the number of cells.
 //
-// A cell takes 4 bytes, and 4 for each primitive in it. The traversal needs no stack. A grid is built in a fraction of the time
-// of a tree, and rays meet cells in the order of their distances. It is good at primitives of one size that fill their box,
-// such as height fields. It is bad at a small object in a large scene, which lies in few cells, and at empty space, through
-// which a ray goes cell by cell.
+// A cell takes 4 bytes, and 4 for each primitive in it. The traversal needs no stack. A build takes time in proportion to the
+// primitives and cells, and rays meet cells in the order of their distances. It is good at primitives of one size that fill
+// their box, such as height fields. It is bad at a small object in a large scene, which lies in few cells, and at empty space,
+// through which a ray goes cell by cell.
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <vector>
 
 #include "clarity_space/primitives.hpp"
+#include "clarity_space/tree.hpp"
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "grid_types.h"
@@ -130,12 +131,15 @@ class Grid {
 };
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    std::vector<rt_u32> firsts(in->group_count);
-    uint64_t count = 0;
-    for (rt_u32 g = 0; g < in->group_count; ++g) firsts[g] = rt_u32(count), count += in->groups[g].count;
-    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: instance meshes, or leave some out");
+    const rt_u32 count = clarity::space::primitive_count(host, *in);
+    std::vector<rt_u32> firsts;
     std::vector<Grid> grids;
-    for (rt_u32 g = 0; g < in->group_count; ++g) grids.emplace_back(*in, in->groups[g]);
+    rt_u32 first = 0;
+    for (rt_u32 g = 0; g < in->group_count; ++g) {
+        firsts.push_back(first);
+        first += in->groups[g].count;
+        grids.emplace_back(*in, in->groups[g]);
+    }
     rt::parallel_for(host, in->group_count, [&](rt_u32 g) { grids[g].fill(host, firsts[g]); });
 
     uint64_t starts = 0, references = 0, filled = 0;
@@ -147,13 +151,12 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     auto* const heads = rt::alloc<grid_head>(out, 0, in->group_count);
     auto* start = rt::alloc<rt_u32>(out, 1, starts);
     auto* list = rt::alloc<rt_u32>(out, 2, references);
-    rt_u32* leaf = rt::leaves(out, count);
+    clarity::space::put_leaves(*in, out, count);
     for (rt_u32 g = 0, before = 0; g < in->group_count; ++g) {
         heads[g] = grids[g].head;
         for (const rt_u32 s : grids[g].starts) *start++ = before + s;
         list = std::copy(grids[g].list.begin(), grids[g].list.end(), list);
         before += rt_u32(grids[g].list.size());
-        for (rt_u32 i = 0; i < in->groups[g].count; ++i) *leaf++ = in->prims[in->groups[g].first + i].ref;
         rt::root(out, g, g);
     }
     rt::stat(out, "nodes", double(starts - 2 * in->group_count));
@@ -162,7 +165,8 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     return RT_OK;
 }
 
-// Level 0 is the box, level 1 the cells with primitives. Primitives that are too large for the grid have no volume.
+// Level 0 is the box, level 1 the cells with primitives. Primitives that are too large for cells may be anywhere: each level
+// then has all of space, too.
 int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* sink) {
     if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const grid_head& grid = static_cast<const grid_head*>(built->slots[0])[built->roots[group]];

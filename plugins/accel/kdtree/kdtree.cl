@@ -9,6 +9,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
     kdtree_entry stack[KDTREE_STACK];
     uint top = 0u, at = ctx->kdtree_heads[root].node;
     float from, to;
+    RT_COUNT_VISIT(hit, 1u); /* the tree's box */
     if (!rt_enter_exit(ctx->kdtree_heads[root].box, ray, hit, &from, &to)) return;
     rt_mailbox tested;
     rt_clear_mailbox(&tested);
@@ -17,9 +18,10 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
         const uint axis = node.code & 3u;
         RT_COUNT_VISIT(hit, 1u);
         if (axis != KDTREE_LEAF) {
-            const float inverse = axis == 0u ? ray->ix : axis == 1u ? ray->iy : ray->iz;
-            const float near = axis == 0u ? ray->near_x : axis == 1u ? ray->near_y : ray->near_z;
-            const float far = axis == 0u ? ray->far_x : axis == 1u ? ray->far_y : ray->far_z;
+            /* Bits are tested, not the axis: oclgrind 21.10 misreads the switch over two bits which would come of it. */
+            const float inverse = axis & 2u ? ray->iz : axis & 1u ? ray->iy : ray->ix;
+            const float near = axis & 2u ? ray->near_z : axis & 1u ? ray->near_y : ray->near_x;
+            const float far = axis & 2u ? ray->far_z : axis & 1u ? ray->far_y : ray->far_x;
             const float earliest = fma(inverse, node.at.split, near), latest = fma(inverse, node.at.split, far) * RT_WIDE;
             const uint above = inverse < 0.0f ? 1u : 0u, nearer = (node.code >> 2) + above, farther = (node.code >> 2) + 1u - above;
             at = nearer;

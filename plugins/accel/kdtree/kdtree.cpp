@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "builder.hpp"
+#include "clarity_space/tree.hpp"
 
 namespace kdtree {
 namespace {
@@ -24,9 +25,7 @@ constexpr rt_param kParams[] = {
 };
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    uint64_t count = 0;
-    for (rt_u32 g = 0; g < in->group_count; ++g) count += in->groups[g].count;
-    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: instance meshes, or leave some out");
+    const rt_u32 count = clarity::space::primitive_count(host, *in);
     std::vector<Tree> trees(in->group_count);
     std::vector<Box> boxes(in->group_count);
     rt::parallel_for(host, in->group_count, [&](rt_u32 g) {
@@ -38,7 +37,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     });
 
     auto* const heads = rt::alloc<kdtree_head>(out, 0, in->group_count);
-    rt_u32* leaf = rt::leaves(out, count);
+    clarity::space::put_leaves(*in, out, count);
     Tree all;
     rt_u32 before = 0;  // positions in leaf order before the group's
     for (rt_u32 g = 0; g < in->group_count; ++g) {
@@ -51,7 +50,6 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
         trees[g] = Tree();
         if (all.nodes.size() >= 1u << 30 || all.list.size() > 0xFFFFFFF0u)
             throw rt::fail(host, "needs more than 2^30 nodes or 2^32 names of primitives: lower `max_depth`");
-        for (rt_u32 i = 0; i < in->groups[g].count; ++i) *leaf++ = in->prims[in->groups[g].first + i].ref;
         before += in->groups[g].count;
         rt::root(out, g, g);
     }
@@ -69,29 +67,18 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const kdtree_head& head = static_cast<const kdtree_head*>(built->slots[0])[built->roots[group]];
     const auto* const nodes = static_cast<const kdtree_node*>(built->slots[1]);
-    struct Visit {
-        rt_u32 node, level;
-        Box box;
-    };
-    Box all;
-    std::copy_n(head.box, 3, all.lo);
-    std::copy_n(head.box + 3, 3, all.hi);
-    std::vector<Visit> stack{{head.node, 0, all}};
-    while (!stack.empty()) {
-        const Visit at = stack.back();
-        stack.pop_back();
+    using Visit = clarity::space::Visit<Box>;
+    const auto is_leaf = [&](rt_u32 node) { return (nodes[node].code & 3u) == KDTREE_LEAF; };
+    const auto is_shown = [&](const Visit& at) { return !is_leaf(at.node) || nodes[at.node].code >> 2 != 0; };
+    const auto part = [&](const Visit& at, std::vector<Visit>& stack) {
         const kdtree_node& node = nodes[at.node];
-        const rt_u32 axis = node.code & 3u;
-        const bool leaf = axis == KDTREE_LEAF;
-        if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level) {
-            if (!leaf || node.code >> 2 != 0) sink->box(sink->ctx, at.box.lo, at.box.hi);
-        } else if (!leaf) {
-            Visit below{node.code >> 2, at.level + 1, at.box}, above{(node.code >> 2) + 1, at.level + 1, at.box};
-            below.box.hi[axis] = above.box.lo[axis] = node.at.split;
-            stack.push_back(below);
-            stack.push_back(above);
-        }
-    }
+        const rt_u32 axis = node.code & 3u, child = node.code >> 2;
+        Visit below{child, at.level + 1, at.cell}, above{child + 1, at.level + 1, at.cell};
+        below.cell.hi[axis] = above.cell.lo[axis] = node.at.split;
+        stack.push_back(below);
+        stack.push_back(above);
+    };
+    clarity::space::show_level<Box>(head.node, head.box, level, sink, is_leaf, is_shown, part);
     return RT_OK;
 }
 

@@ -10,6 +10,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
 {
     octree_entry stack[OCTREE_STACK];
     float from, to;
+    RT_COUNT_VISIT(hit, 1u); /* the tree's box */
     if (!rt_enter_exit(ctx->octree_heads[root].box, ray, hit, &from, &to)) return;
     uint top = 0u, at = ctx->octree_heads[root].node;
     const uint nearest = (ray->ix < 0.0f ? 1u : 0u) | (ray->iy < 0.0f ? 2u : 0u) | (ray->iz < 0.0f ? 4u : 0u);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "clarity_space/primitives.hpp"
+#include "clarity_space/tree.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "octree_types.h"
 
@@ -77,7 +78,7 @@ struct Tree {
         depth = std::max(depth, level);
         std::vector<rt_u32> below[8];
         float center[3];
-        bool splits = level<max_depth&& double(here.size())> traversal_cost;
+        bool splits = (level < max_depth) && (traversal_cost < double(here.size()));
         for (int k = 0; k < 3; ++k) {
             center[k] = float(0.5 * (double{cell.lo[k]} + cell.hi[k]));
             splits = splits && cell.lo[k] < center[k] && center[k] < cell.hi[k];
@@ -129,9 +130,8 @@ struct Tree {
 };
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    uint64_t count = 0, node_count = 0, references = 0;
-    for (rt_u32 g = 0; g < in->group_count; ++g) count += in->groups[g].count;
-    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: instance meshes, or leave some out");
+    const rt_u32 count = clarity::space::primitive_count(host, *in);
+    uint64_t node_count = 0, references = 0;
     std::vector<Tree> trees;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         const rt_group& group = in->groups[g];
@@ -146,7 +146,8 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
 
     auto* const heads = rt::alloc<octree_head>(out, 0, in->group_count);
     auto* const nodes = rt::alloc<octree_node>(out, 1, node_count);
-    rt_u32 *list = rt::alloc<rt_u32>(out, 2, references), *leaf = rt::leaves(out, count);
+    rt_u32* list = rt::alloc<rt_u32>(out, 2, references);
+    clarity::space::put_leaves(*in, out, count);
     rt_u32 node = 0, name = 0, before = 0, depth = 0, leaves = 0;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         const Tree& tree = trees[g];
@@ -158,7 +159,6 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
             nodes[node + i] = moved;
         }
         for (const rt_u32 prim : tree.list) *list++ = before + prim;
-        for (rt_u32 i = 0; i < in->groups[g].count; ++i) *leaf++ = in->prims[in->groups[g].first + i].ref;
         node += rt_u32(tree.nodes.size()), name += rt_u32(tree.list.size()), before += in->groups[g].count;
         depth = std::max(depth, tree.depth), leaves += tree.leaves;
         rt::root(out, g, g);
@@ -176,27 +176,18 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const octree_head& head = static_cast<const octree_head*>(built->slots[0])[built->roots[group]];
     const auto* const nodes = static_cast<const octree_node*>(built->slots[1]);
-    struct Visit {
-        rt_u32 node, level;
-        Cell cell;
+    using Visit = clarity::space::Visit<Cell>;
+    const auto is_leaf = [&](rt_u32 node) { return (nodes[node].code & OCTREE_LEAF) != 0; };
+    const auto is_shown = [&](const Visit& at) {
+        bool is_inside = true;
+        for (int k = 0; k < 3; ++k) is_inside = is_inside && at.cell.lo[k] <= at.cell.hi[k];
+        return is_inside && nodes[at.node].code != OCTREE_LEAF;
     };
-    Cell all;
-    std::copy_n(head.box, 3, all.lo);
-    std::copy_n(head.box + 3, 3, all.hi);
-    std::vector<Visit> stack{{head.node, 0, all}};
-    while (!stack.empty()) {
-        const Visit at = stack.back();
-        stack.pop_back();
+    const auto part = [&](const Visit& at, std::vector<Visit>& stack) {
         const octree_node& node = nodes[at.node];
-        const bool leaf = (node.code & OCTREE_LEAF) != 0;
-        if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level) {
-            const bool inside =
-                at.cell.lo[0] <= at.cell.hi[0] && at.cell.lo[1] <= at.cell.hi[1] && at.cell.lo[2] <= at.cell.hi[2];
-            if (node.code != OCTREE_LEAF && inside) sink->box(sink->ctx, at.cell.lo, at.cell.hi);
-        } else if (!leaf) {
-            for (rt_u32 i = 0; i < 8; ++i) stack.push_back({node.code + i, at.level + 1, at.cell.child(i, node.at.center)});
-        }
-    }
+        for (rt_u32 i = 0; i < 8; ++i) stack.push_back({node.code + i, at.level + 1, at.cell.child(i, node.at.center)});
+    };
+    clarity::space::show_level<Cell>(head.node, head.box, level, sink, is_leaf, is_shown, part);
     return RT_OK;
 }
 

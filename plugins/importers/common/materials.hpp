@@ -48,6 +48,13 @@ class MaterialKeys {
  private:
     std::vector<rt_key_value> values_;
 };
+// The description points to the maps, which must outlive it.
+inline void give_maps(const std::vector<rt_map_desc>& maps, rt_material_desc& out) {
+    out.maps = maps.data();
+    out.map_count = static_cast<rt_u32>(maps.size());
+    out.map_bytes = sizeof(rt_map_desc);
+}
+
 // Numbers of the words of the key `model`.
 enum Model { whitted_model, lambert_model, conductor_model, dielectric_model, gltf_model, unlit_model };
 

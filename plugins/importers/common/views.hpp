@@ -16,11 +16,11 @@ struct Cone {
 };
 
 // What a file means by the intensity of a light.
-//   relative   a white surface that faces it is as bright as its colour says, whatever the distance
-//   physical   an intensity, W/sr or candela, which fades by the square of the distance; of a sun an irradiance, W/m^2 or lux;
-//   of a
-//              light with a size a radiance
-enum class Unit { relative, physical };
+enum class Unit {
+    relative,  // a white surface that faces it is as bright as its colour says, whatever the distance
+    physical   // an intensity (W/sr, candela), which fades by the square of the distance; of a sun an irradiance (W/m^2, lux);
+               // of a light with a size a radiance
+};
 
 // The lights of a file. Relative ones are scaled until the brightest of them is 1; physical ones stay as they are.
 class Lights {

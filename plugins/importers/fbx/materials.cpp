@@ -71,9 +71,7 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const uint32_t found = texture(material, model);
     out.texture = found == kNoObject ? RT_NONE : picture(found, RT_SPACE_SRGB);
     const std::vector<rt_map_desc> maps = maps_of(material);
-    out.maps = maps.data();
-    out.map_count = static_cast<rt_u32>(maps.size());
-    out.map_bytes = sizeof(rt_map_desc);
+    give_maps(maps, out);
     const bool has_emission =
         std::any_of(maps.begin(), maps.end(), [](const rt_map_desc& map) { return map.use == RT_MAP_EMISSION; });
     AlphaKeys alpha;

@@ -19,7 +19,7 @@ struct Context {
     importers::FilePlace place;
     double fps;  // frames a second; 0: the file does not say
     double metres_per_unit;
-    bool by_blender;  // who wrote the file
+    bool by_blender;  // whether Blender wrote the file
 
     void warn(const std::string& text) const { sink.warn(sink.ctx, text.c_str()); }
     Properties properties(uint32_t object) const { return templates.of(objects[object]); }

@@ -13,13 +13,13 @@ std::vector<uint32_t> attributes_of(const Context& context, uint32_t model, std:
     return out;
 }
 
-// FBX has no units of light; those who write files have. What Intensity / 100 times the colour is:
-//   Blender      watts; of directional lights W/m^2 (export_fbx_bin.py; Blender's manual, "Light Objects"). A point of W watts
-//   has an
-//                intensity of W / (4 pi) W/sr, for distances in metres
-//   no decay     the brightness of a white surface that faces the light (Maya help, "Decay Rate")
-//   other decay  the same at a distance of one unit, which is an intensity of pi times the colour. Taken for quadratic
-//   area         the radiance of a square of 2 x 2 units of its node (Maya help, "Area Light")
+// FBX has no units of light, but those who write files have. Intensity / 100 times the colour means:
+// - of Blender, watts; of directional lights W/m^2 (export_fbx_bin.py; Blender's manual, "Light Objects"). A point of W watts
+// has an
+//   intensity of W / (4 pi) W/sr, for distances in metres.
+// - without decay, the brightness of a white surface that faces the light (Maya's help, "Decay Rate").
+// - with decay, the same at a distance of one unit: an intensity of pi times the colour. Each decay is taken for the square.
+// - of an area light, the radiance of a square of 2 x 2 units of its node (Maya's help, "Area Light").
 struct Meaning {
     double factor = 1;
     Unit unit = Unit::relative;

@@ -148,9 +148,7 @@ rt_u32 Materials::add(const Value& material) {
     group([&] {
         const bool emits = out.emission[0] > 0 || out.emission[1] > 0 || out.emission[2] > 0;
         maps = maps_.read(material, emits);
-        out.maps = maps.data();
-        out.map_count = static_cast<rt_u32>(maps.size());
-        out.map_bytes = sizeof(rt_map_desc);
+        importers::give_maps(maps, out);
     });
     group([&] { read_alpha(material, base[3], alpha); });
     alpha.give(keys);

@@ -1,4 +1,4 @@
-// materials.hpp -- converts metallic-roughness materials to Whitted materials of the host.
+// materials.hpp -- the materials of a file as those of the host.
 #pragma once
 #include <optional>
 #include <vector>

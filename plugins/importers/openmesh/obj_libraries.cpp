@@ -120,9 +120,7 @@ rt_u32 ObjLibraries::id(const std::string& name, const ObjMaterial* material) {
         std::copy_n(matrix, 6, out.matrix);
         if (out.texture != RT_NONE) maps.push_back(out);
     }
-    desc.maps = maps.data();
-    desc.map_count = static_cast<rt_u32>(maps.size());
-    desc.map_bytes = sizeof(rt_map_desc);
+    importers::give_maps(maps, desc);
     material->alpha.give(desc);
     return ids_[material] = rt::id(source_.sink.material(source_.sink.ctx, &desc));
 }

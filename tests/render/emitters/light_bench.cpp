@@ -88,7 +88,8 @@ const KernelRow& kernel_row() {
         r.what = "light test";
         r.file = emitter_headers().back();
         r.entry = "try_lights";
-        r.headers = {"sampling/math.h", "sampling/warps.h", "shading/textures.h", "shading/maps.h", "shading/material.h"};
+        r.headers = {"sampling/math.h", "sampling/warps.h"};
+        r.headers.insert(r.headers.end(), material_headers().begin(), material_headers().end());
         r.headers.insert(r.headers.end(), emitter_headers().begin(), emitter_headers().end() - 1);
         r.traits = kPicksLights;
         return r;

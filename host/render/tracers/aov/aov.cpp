@@ -27,7 +27,7 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.what = "tracer of AOVs";
         r.file = "tracers/aov/aov.cl";
         r.entry = "trace_aov";
-        r.headers = {"shading/textures.h", "shading/maps.h", "shading/material.h", "shading/cutouts.h"};
+        r.headers = material_headers();
         r.traits = kNearestOnly | kReadsUvs | kFrame;
         r.define = define_aovs;
         return r;

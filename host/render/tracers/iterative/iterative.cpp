@@ -22,19 +22,16 @@ KernelRow row_of(const std::vector<const char*>& headers, unsigned traits, const
 }
 
 // One pixel a work-item, as only GPUs have it: there rays that do not split need no array.
-const std::vector<const char*> kOnePixel = {"shading/textures.h",
-                                            "shading/maps.h",
-                                            "shading/material.h",
-                                            "shading/cutouts.h",
-                                            "tracers/iterative/ray_queue.h",
-                                            "shading/power.h",
-                                            "shading/shading.h",
-                                            "tracers/ray_step.h",
-                                            "tracers/iterative/iterative_single.h"};
+std::vector<const char*> headers_of_one_pixel() {
+    std::vector<const char*> headers = material_headers();
+    headers.insert(headers.end(), {"tracers/iterative/ray_queue.h", "shading/power.h", "shading/shading.h",
+                                   "tracers/ray_step.h", "tracers/iterative/iterative_single.h"});
+    return headers;
+}
 
 const KernelRow& kernel(const Settings& settings, const Layout& layout) {
     static const KernelRow packets = row_of(headers_by_generations(false), kLimitRegisters | kLayers),
-                           pixels = row_of(kOnePixel, kLimitRegisters | kLayers),
+                           pixels = row_of(headers_of_one_pixel(), kLimitRegisters | kLayers),
                            numbers = row_of(headers_by_generations(false), 0, {"RT_SHOW_GENERATIONS"});
     if (!find_aov(settings.aov).is_color()) return numbers;
     return layout.max_pixels == 1 && layout.lanes == 1 ? pixels : packets;
@@ -43,8 +40,8 @@ const KernelRow& kernel(const Settings& settings, const Layout& layout) {
 }  // namespace
 
 std::vector<const char*> headers_by_generations(bool recorded) {
-    std::vector<const char*> headers = {"shading/textures.h", "shading/maps.h", "shading/material.h", "shading/cutouts.h",
-                                        "tracers/iterative/ray_queue.h"};
+    std::vector<const char*> headers = material_headers();
+    headers.emplace_back("tracers/iterative/ray_queue.h");
     if (recorded) headers.emplace_back("tracers/inspect/recorder.h");
     headers.insert(headers.end(), {"shading/power.h", "shading/shading.h"});
     if (recorded) headers.emplace_back("tracers/inspect/record_hits.h");

@@ -13,8 +13,9 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     r.entry = "trace_path";
     r.headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h", "sampling/math.h", "sampling/warps.h"};
     const auto add = [&](const std::vector<const char*>& more) { r.headers.insert(r.headers.end(), more.begin(), more.end()); };
-    add({"shading/power.h", "shading/textures.h", "shading/maps.h", "shading/material.h", "shading/cutouts.h",
-         "shading/albedo_grazing.h", "shading/albedo_sheen.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
+    add({"shading/power.h"});
+    add(material_headers());
+    add({"shading/albedo_grazing.h", "shading/albedo_sheen.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
          "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h", "shading/matter.h", "shading/matter_maps.h",
          "shading/film.h", "shading/layers.h", "shading/layer_lobes.h", "shading/bsdf.h", "shading/bsdf_of.h"});
     add(emitter_headers());

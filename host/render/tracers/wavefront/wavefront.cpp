@@ -131,15 +131,9 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.what = "tracer wavefront";
         r.file = "tracers/wavefront/wavefront.cl";
         r.entry = "trace_wavefront";
-        r.headers = {"shading/textures.h",
-                     "shading/maps.h",
-                     "shading/material.h",
-                     "shading/cutouts.h",
-                     "shading/power.h",
-                     "shading/shading.h",
-                     "tracers/ray_step.h",
-                     "lanes/work_distribution.h",
-                     "tracers/wavefront/wavefront_rays.h"};
+        r.headers = material_headers();
+        r.headers.insert(r.headers.end(), {"shading/power.h", "shading/shading.h", "tracers/ray_step.h",
+                                           "lanes/work_distribution.h", "tracers/wavefront/wavefront_rays.h"});
         r.traits = kLimitRegisters | kFrame | kCountsRays | kWhitted;
         return r;
     }();

@@ -1,0 +1,53 @@
+// tree.hpp -- what builders that part space write alike. Header only, part of the SDK.
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "rt_plugin.hpp"
+
+namespace clarity::space {
+
+// The number of primitives in all groups. Fails if a structure that names them by 32 bits cannot hold so many.
+inline rt_u32 primitive_count(const rt_host* host, const rt_build_input& in) {
+    uint64_t count = 0;
+    for (rt_u32 g = 0; g < in.group_count; ++g) count += in.groups[g].count;
+    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: instance meshes, or leave some out");
+    return rt_u32(count);
+}
+
+// Writes the leaves: the primitives group by group, each once, in their own order. Cells name them by their positions.
+inline void put_leaves(const rt_build_input& in, const rt_build_output* out, rt_u32 count) {
+    rt_u32* leaf = rt::leaves(out, count);
+    for (rt_u32 g = 0; g < in.group_count; ++g)
+        for (rt_u32 i = 0; i < in.groups[g].count; ++i) *leaf++ = in.prims[in.groups[g].first + i].ref;
+}
+
+// A node of a tree, and the cell that is its part of space. Cell has lo[3] and hi[3].
+template <class Cell>
+struct Visit {
+    rt_u32 node, level;
+    Cell cell;
+};
+
+// Gives the sink the cells of a level, or of the leaves. box: of the root, its lower corner first. is_leaf(node) tells leaves
+// from others; is_shown(visit) whether there is something in a cell; part(visit, stack) appends a node's children.
+template <class Cell, class IsLeaf, class IsShown, class Part>
+void show_level(rt_u32 root, const float* box, rt_u32 level, const rt_volume_sink* sink, const IsLeaf& is_leaf,
+                const IsShown& is_shown, const Part& part) {
+    Cell all;
+    std::copy_n(box, 3, all.lo);
+    std::copy_n(box + 3, 3, all.hi);
+    std::vector<Visit<Cell>> stack{{root, 0, all}};
+    while (!stack.empty()) {
+        const Visit<Cell> at = stack.back();
+        stack.pop_back();
+        const bool leaf = is_leaf(at.node);
+        if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level) {
+            if (is_shown(at)) sink->box(sink->ctx, at.cell.lo, at.cell.hi);
+        } else if (!leaf) {
+            part(at, stack);
+        }
+    }
+}
+
+}  // namespace clarity::space
