@@ -41,6 +41,8 @@ const std::array<MapUse, RT_MAP_USES>& map_uses() {
          RT_SPACE_LINEAR,
          {}},
         {"opacity_map", "Opacity", "r", RT_SPACE_LINEAR, {"opacity"}},
+        {"roughness_map", "Roughness", "r; goes before that of both", RT_SPACE_LINEAR, {"roughness"}},
+        {"metallic_map", "Metal", "r; goes before that of both", RT_SPACE_LINEAR, {"metallic"}},
     }};
     return uses;
 }

@@ -46,8 +46,9 @@ const PlantedFault kFaults[] = {
     {"SpreadIgnoresTheInstance", "shading/surface.h", "area * sqrt(grown) / rt_vfloat(fabs(determinant))", "area",
      "SmallerPictures.AreNotShown*"},
     {"RoughnessIsInRed", "shading/matter_maps.h",
-     "rt_multiply(ctx, RT_MAP(RT_MAP_METALLIC_ROUGHNESS), s, mine, 1, &m->roughness);",
-     "rt_multiply(ctx, RT_MAP(RT_MAP_METALLIC_ROUGHNESS), s, mine, 0, &m->roughness);", "Maps.MultiplyTheSurfaceModel"},
+     "rt_multiply(ctx, rough ? rough : both, s, mine, rough ? 0 : 1, &m->roughness);",
+     "rt_multiply(ctx, rough ? rough : both, s, mine, 0, &m->roughness);", "Maps.MultiplyTheSurfaceModel"},
+    {"MetalOfItsOwnIsInBlue", "shading/matter_maps.h", "metal ? 0 : 2", "2", "Maps.MultiplyTheSurfaceModel"},
 };
 
 class MapFaults : public testing::TestWithParam<PlantedFault> {};

@@ -152,6 +152,13 @@ TEST(Maps, MultiplyTheSurfaceModel) {
     add_map(mapped, 0, RT_MAP_METALLIC_ROUGHNESS, add_texture(mapped, 1, {0xff808000u}, RT_TEXTURE_LINEAR));
     const FloatImage seen = trace_paths(mapped, view, 4, settings).mean;
     expect_same(seen, trace_paths(model(128 / 255.f), view, 4, settings).mean, 1e-3, "half");
+    // Pictures of one number each, in red: they count, and not the picture of both.
+    Scene apart = model(1);
+    add_map(apart, 0, RT_MAP_METALLIC_ROUGHNESS, add_texture(apart, 1, {0xff3355ccu}, RT_TEXTURE_LINEAR));
+    const rt_u32 red = add_texture(apart, 1, {0xff112280u}, RT_TEXTURE_LINEAR);
+    add_map(apart, 0, RT_MAP_ROUGHNESS, red);
+    add_map(apart, 0, RT_MAP_METALLIC, red);
+    expect_same(trace_paths(apart, view, 4, settings).mean, seen, 1e-6, "a picture for each");
     const FloatImage whole = trace_paths(model(1), view, 4, settings).mean;
     EXPECT_GT(std::fabs(whole.pixels[3 * (32 * 64 + 32)] - seen.pixels[3 * (32 * 64 + 32)]), 0.02) << "the factor counts";
 }
