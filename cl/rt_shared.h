@@ -98,5 +98,7 @@ typedef struct rt_packed_prim {
 #define RT_MAP_IRIDESCENCE 15u        /* r */
 #define RT_MAP_IRIDESCENCE_THICKNESS 16u /* g: between the least and the greatest thickness */
 #define RT_MAP_OPACITY 17u               /* r multiplies the opacity */
-#define RT_MAP_USES 18u
+#define RT_MAP_ROUGHNESS 18u             /* r multiplies the roughness. RT_MAP_METALLIC_ROUGHNESS is then for the metal alone */
+#define RT_MAP_METALLIC 19u              /* r multiplies the share of metal; likewise */
+#define RT_MAP_USES 20u
 #endif

@@ -205,7 +205,8 @@ class Scene:
         return thing
 
     def sphere(self, center, radius, material, segments=SEGMENTS):
-        """A smooth ball of quads, as large as the sphere in the mean of its corners and its faces' middles."""
+        """A smooth ball of flat faces with the area of the sphere. In the mean over directions it looks as large as the sphere
+        (Cauchy's formula), so as a lamp it gives as much light."""
         around, down = segments
         theta = np.linspace(0, math.pi, down + 1)[1:-1, None]
         phi = np.linspace(0, 2 * math.pi, around, endpoint=False)[None, :]
@@ -220,8 +221,11 @@ class Scene:
                 faces.append((a + i, a + j, a + around + j, a + around + i))
             last = 1 + (down - 2) * around
             faces.append((last + i, last + j, len(points) - 1))
-        larger = 1 + (math.pi / around) ** 2 / 4 + (math.pi / down) ** 2 / 16
-        self.mesh(np.array(center) + points * radius * larger, faces, material, True)
+        poles = np.linspace(0, math.pi, down + 1)
+        sides, heights = 2 * math.sin(math.pi / around) * np.sin(poles), np.cos(poles[:-1]) - np.cos(poles[1:])
+        slopes = np.hypot(heights, np.diff(np.sin(poles)) * math.cos(math.pi / around))
+        area = around * ((sides[:-1] + sides[1:]) / 2 * slopes).sum()
+        self.mesh(np.array(center) + points * radius * math.sqrt(4 * math.pi / area), faces, material, True)
 
     # ---- materials and lamps
     def shader(self):

@@ -18,8 +18,9 @@ RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vma
 {
     const global rt_material *material = ctx->materials + id;
 #define RT_MAP(use) rt_map_of(ctx, material, use)
-    rt_multiply(ctx, RT_MAP(RT_MAP_METALLIC_ROUGHNESS), s, mine, 1, &m->roughness);
-    rt_multiply(ctx, RT_MAP(RT_MAP_METALLIC_ROUGHNESS), s, mine, 2, &m->metallic);
+    const global rt_map *both = RT_MAP(RT_MAP_METALLIC_ROUGHNESS), *rough = RT_MAP(RT_MAP_ROUGHNESS), *metal = RT_MAP(RT_MAP_METALLIC);
+    rt_multiply(ctx, rough ? rough : both, s, mine, rough ? 0 : 1, &m->roughness);
+    rt_multiply(ctx, metal ? metal : both, s, mine, metal ? 0 : 2, &m->metallic);
     rt_multiply(ctx, RT_MAP(RT_MAP_TRANSMISSION), s, mine, 0, &m->transmission);
     rt_multiply(ctx, RT_MAP(RT_MAP_SPECULAR), s, mine, 3, &m->specular_weight);
     rt_multiply_color(ctx, RT_MAP(RT_MAP_SPECULAR_COLOR), s, mine, &m->specular_color);

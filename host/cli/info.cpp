@@ -133,7 +133,7 @@ Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, con
     json["camera_list"] = Json::array();
     for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera, scene));
     json["material_list"] = Json::array();
-    for (const Material& material : scene.materials) json["material_list"].push_back(material_json(material));
+    for (const Material& material : scene.materials) json["material_list"].push_back(material_json(scene, material));
     json["animations"] = Json::array();
     for (const ClipInfo& clip : animations) json["animations"].push_back(clip_json(clip));
     json["warnings"] = scene.warnings;
@@ -181,7 +181,8 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     count_row("shapes", scene.shapes.size(), kinds);
     const uint64_t clear = materials_with_alpha(scene);
     count_row("materials", scene.materials.size(), clear > 0 ? ", of " + grouped(clear) + " alpha counts" : "");
-    for (size_t i = 0; i < std::min(scene.materials.size(), kShownMaterials); ++i) row("", material_text(scene.materials[i]));
+    for (size_t i = 0; i < std::min(scene.materials.size(), kShownMaterials); ++i)
+        row("", material_text(scene, scene.materials[i]));
     if (scene.materials.size() > kShownMaterials)
         row("", "and " + grouped(scene.materials.size() - kShownMaterials) + " more, which --json lists");
     count_row("textures", scene.textures.size(), ", " + memory_text(scene.texels.size() * sizeof(uint32_t)));

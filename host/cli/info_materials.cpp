@@ -1,9 +1,11 @@
 #include "cli/info_materials.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/numbers.hpp"
 #include "base/printable.hpp"
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 
 namespace clarity {
@@ -20,6 +22,18 @@ void each_value(const MaterialValues& values, const Tell& tell) {
     }
 }
 
+// Calls tell(use, map) for each map.
+template <class Tell>
+void each_map(const Scene& scene, const Material& material, const Tell& tell) {
+    for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
+        if (material.maps[use] != RT_NONE) tell(map_uses()[use], scene.maps[material.maps[use]]);
+}
+
+bool lies_plainly(const rt_map& map) {
+    const float identity[] = {1, 0, 0, 0, 1, 0};
+    return std::equal(identity, identity + 6, map.matrix);
+}
+
 std::string model_of(const MaterialValues& values) {
     const Key& model = material_key("model");
     return value_text(model, value_of(model, &values), " ");
@@ -27,7 +41,7 @@ std::string model_of(const MaterialValues& values) {
 
 }  // namespace
 
-nlohmann::ordered_json material_json(const Material& material) {
+nlohmann::ordered_json material_json(const Scene& scene, const Material& material) {
     nlohmann::ordered_json json = {{"name", material.name}, {"model", model_of(material.values)}};
     each_value(material.values, [&](const Key& key, const std::array<float, 3>& value) {
         if (key.kind == RT_KEY_FLAG)
@@ -40,15 +54,26 @@ nlohmann::ordered_json material_json(const Material& material) {
             json[key.name] = {short_double(value[0]), short_double(value[1]), short_double(value[2])};
     });
     if (material.values.texture != RT_NONE) json["texture"] = material.values.texture;
+    each_map(scene, material, [&](const MapUse& use, const rt_map& map) {
+        json[use.name] = {{"texture", map.texture}, {"name", texture_name(scene, map.texture)}, {"uv", map.set}};
+        if (map.scale != 1) json[use.name]["strength"] = short_double(map.scale);
+        if (!lies_plainly(map))
+            for (const float number : map.matrix) json[use.name]["matrix"].push_back(short_double(number));
+    });
     return json;
 }
 
-std::string material_text(const Material& material) {
+std::string material_text(const Scene& scene, const Material& material) {
     std::string text = (material.name.empty() ? "(no name)" : printable_line(material.name)) + ": " + model_of(material.values);
     each_value(material.values, [&](const Key& key, const std::array<float, 3>& value) {
         text += std::string(", ") + key.name + ' ' + value_text(key, value, " ");
     });
-    if (material.values.texture != RT_NONE) text += ", texture " + std::to_string(material.values.texture);
+    const auto named = [&](rt_u32 texture) { return " " + printable_line(texture_name(scene, texture)); };
+    if (material.values.texture != RT_NONE) text += ", color_map" + named(material.values.texture);
+    each_map(scene, material, [&](const MapUse& use, const rt_map& map) {
+        text += std::string(", ") + use.name + named(map.texture);
+        if (map.set != 0) text += " (uv " + std::to_string(map.set) + ")";
+    });
     return text;
 }
 

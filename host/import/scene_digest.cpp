@@ -24,6 +24,7 @@ std::string scene_digest(const Scene& scene) {
     for (WireNode& node : converted.nodes) node.values.name = nullptr;
     converted.globals.front().sky_file_bytes = 0;
     converted.warnings.clear(), converted.edits.clear(), converted.sources.clear(), converted.names.clear();
+    converted.texture_names.clear();
     Digest digest;
     visit(scene, converted, [&](const auto& array) {
         using Element = typename std::decay_t<decltype(array)>::value_type;

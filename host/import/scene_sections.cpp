@@ -34,6 +34,7 @@ Converted convert(const Scene& s) {
     for (const SceneEdit& edit : s.edits)
         for (const std::string* text : {&edit.key, &edit.value, &edit.where}) c.edits.push_back(name(*text));
     for (const std::string& source : s.sources) c.sources.push_back(name(source));
+    for (const std::string& text : s.texture_names) c.texture_names.push_back(name(text));
     return c;
 }
 
@@ -88,6 +89,7 @@ bool convert_back(const Converted& c, Scene& s) {
         s.edits.push_back(std::move(edit));
     }
     for (const uint32_t bytes : c.sources) s.sources.push_back(name(bytes));
+    for (const uint32_t bytes : c.texture_names) s.texture_names.push_back(name(bytes));
     return good && at == c.names.size();
 }
 

@@ -66,7 +66,7 @@ struct Converted {
     std::vector<WireClip> clips;
     std::vector<WireMorph> morphs;
     std::vector<WireSequence> sequences;
-    std::vector<uint32_t> shape_kinds, warnings, edits, sources;  // length of each text in `names`, in bytes
+    std::vector<uint32_t> shape_kinds, warnings, edits, sources, texture_names;  // length of each text in `names`, in bytes
     std::vector<char> names;
 };
 
@@ -83,7 +83,7 @@ void visit(S& s, C& c, Visitor&& v) {
     v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);
     v(m.weights), v(m.shares), v(m.morph_targets), v(m.morph_vertices), v(m.morph_positions), v(m.morph_normals), v(m.frames);
     v(m.frame_times), v(m.frame_positions), v(m.stored), v(m.stored_positions), v(m.stored_normals), v(m.sequence_numbers),
-        v(c.sequences), v(c.warnings), v(c.edits), v(c.sources), v(c.names);
+        v(c.sequences), v(c.warnings), v(c.edits), v(c.sources), v(c.texture_names), v(c.names);
 }
 
 // The members of a scene that are no plain arrays.

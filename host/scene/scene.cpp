@@ -167,6 +167,11 @@ PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
     return place;
 }
 
+std::string texture_name(const Scene& scene, rt_u32 texture) {
+    const bool has_name = texture < scene.texture_names.size() && !scene.texture_names[texture].empty();
+    return has_name ? scene.texture_names[texture] : "texture " + std::to_string(texture);
+}
+
 uint64_t texel_count(const rt_texture& texture) {
     uint64_t count = 0, width = texture.width, height = texture.height;
     for (rt_u32 level = 0; level <= texture.levels; ++level) {

@@ -161,7 +161,8 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<rt_map> maps;
     std::vector<rt_texture> textures;
-    SharedArray<uint32_t> texels;  // RGBA8, R in the low byte
+    std::vector<std::string> texture_names;  // one for each texture, or none
+    SharedArray<uint32_t> texels;            // RGBA8, R in the low byte
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     Sky sky;
@@ -208,6 +209,8 @@ Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 // Box of a shape's parts in its own space.
 Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
+// "wood.png", or "texture 3" if it has no name.
+std::string texture_name(const Scene& scene, rt_u32 texture);
 // Texels of a picture and of the smaller ones behind it; 0 if it is empty or has more levels than its size allows.
 uint64_t texel_count(const rt_texture& texture);
 MaterialValues default_material();  // in material_keys.cpp

@@ -257,7 +257,8 @@ enum {
     /* Of lights and materials alone: */
     RT_KEY_COLOR, /* r g b, or one number for a grey */
     RT_KEY_WORD,  /* one of `words`: its number, from 0 */
-    RT_KEY_FLAG   /* 0 or 1: `true` or `false`; the name alone means `true` */
+    RT_KEY_FLAG,  /* 0 or 1: `true` or `false`; the name alone means `true` */
+    RT_KEY_TEXTURE /* the name of a texture; def[0]: its RT_SPACE_ where it says none; `words`: keys that it multiplies */
 };
 #define RT_KEY_REQUIRED 1u /* the statement must have this key; otherwise numbers default to def, and lists are empty */
 /* A key of a statement in text scenes, `radius .5`: of a shape, a light or a material. It is data: importers read the values and
@@ -267,7 +268,7 @@ typedef struct rt_key {
     rt_u32 kind, flags;      /* RT_KEY_NUMBER, ..., RT_KEY_REQUIRED */
     double min, max;         /* of each number */
     double def[3];
-    const char *const *words; /* appended: of RT_KEY_WORD, NULL-terminated; else NULL */
+    const char *const *words; /* appended: of RT_KEY_WORD and RT_KEY_TEXTURE, NULL-terminated; else NULL */
 } rt_key;
 /* The value of a key by its name. 24 B; it never grows. */
 typedef struct rt_key_value {
@@ -399,6 +400,7 @@ typedef struct rt_texture_desc {
     rt_u32 wrap_u, wrap_v; /* appended: RT_WRAP_... */
     rt_u32 space;          /* appended: RT_SPACE_... */
     rt_u32 filter;         /* appended: RT_FILTER_... */
+    const char *name;      /* appended: what the file calls it; NULL: the name of its file, if it has one */
 } rt_texture_desc;
 
 typedef struct rt_camera {
@@ -666,6 +668,8 @@ typedef struct rt_scene_sink {
     int32_t (*sky)(void *ctx, const rt_sky_desc *);
     /* Appended. The keys of skies of a kind: RT_SKY_CONSTANT, ...; NULL: there is no such kind. */
     const rt_primitive_kind *(*sky_kind)(void *ctx, rt_u32 kind);
+    /* Appended. The uses of textures by materials, as keys: key n is RT_MAP_ n. */
+    const rt_primitive_kind *(*map_kind)(void *ctx);
 } rt_scene_sink;
 
 #define RT_IMPORTER_TAKES_CONTENT 1u /* it reads rt_host::content if there is some; others get no packed files */

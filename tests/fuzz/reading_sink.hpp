@@ -9,6 +9,7 @@
 
 #include "rt_plugin.h"
 #include "scene/light_kinds.hpp"
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "scene/sky_kinds.hpp"
 
@@ -106,6 +107,7 @@ inline ReadingSink::ReadingSink() {
     sink_.light_kind = [](void*, rt_u32 kind) { return clarity::light_kind_for_plugins(kind); };
     sink_.material_kind = [](void*) { return clarity::material_kind_for_plugins(); };
     sink_.sky_kind = [](void*, rt_u32 kind) { return clarity::sky_kind_for_plugins(kind); };
+    sink_.map_kind = [](void*) { return clarity::map_kind_for_plugins(); };
     sink_.primitive_kind = [](void*, rt_u32) { return static_cast<const rt_primitive_kind*>(nullptr); };
 }
 

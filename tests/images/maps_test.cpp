@@ -108,6 +108,18 @@ TEST(Maps, ANearestTextureHasEdges) {
     expect_color(image, 32, 10, {0, 1, 0}, 1e-4, "right of it");
 }
 
+// The picture is on the lower left quarter. Beyond it is the border, where others show it again.
+TEST(Maps, AClampedTextureEndsInItsBorder) {
+    Scene scene = white_square();
+    rt_map& map = add_map(scene, 0, RT_MAP_COLOR, add_texture(scene, 2, {kRed, kGreen, kBlue, kWhite}, RT_TEXTURE_NEAREST));
+    map.matrix[0] = map.matrix[4] = 2;
+    scene.textures.back().wrap = RT_WRAP_CLAMP + RT_WRAP_ALONG_V * RT_WRAP_CLAMP;
+    const FloatImage image = trace(scene, flat_view(), 64, 64, 1, {{"lanes", "8"}}).image;
+    expect_color(image, 8, 56, {0, 0, 1}, 1e-4, "in the picture");
+    expect_color(image, 36, 56, {1, 1, 1}, 1e-4, "on the right of it");
+    expect_color(image, 8, 4, {1, 0, 0}, 1e-4, "above it");
+}
+
 TEST(Maps, TexelsOfNumbersAreLinear) {
     Scene scene = white_square();
     scene.materials[0].values.texture = add_texture(scene, 1, {0xff808080u}, RT_TEXTURE_LINEAR);
@@ -140,6 +152,13 @@ TEST(Maps, MultiplyTheSurfaceModel) {
     add_map(mapped, 0, RT_MAP_METALLIC_ROUGHNESS, add_texture(mapped, 1, {0xff808000u}, RT_TEXTURE_LINEAR));
     const FloatImage seen = trace_paths(mapped, view, 4, settings).mean;
     expect_same(seen, trace_paths(model(128 / 255.f), view, 4, settings).mean, 1e-3, "half");
+    // Pictures of one number each, in red: they count, and not the picture of both.
+    Scene apart = model(1);
+    add_map(apart, 0, RT_MAP_METALLIC_ROUGHNESS, add_texture(apart, 1, {0xff3355ccu}, RT_TEXTURE_LINEAR));
+    const rt_u32 red = add_texture(apart, 1, {0xff112280u}, RT_TEXTURE_LINEAR);
+    add_map(apart, 0, RT_MAP_ROUGHNESS, red);
+    add_map(apart, 0, RT_MAP_METALLIC, red);
+    expect_same(trace_paths(apart, view, 4, settings).mean, seen, 1e-6, "a picture for each");
     const FloatImage whole = trace_paths(model(1), view, 4, settings).mean;
     EXPECT_GT(std::fabs(whole.pixels[3 * (32 * 64 + 32)] - seen.pixels[3 * (32 * 64 + 32)]), 0.02) << "the factor counts";
 }
@@ -262,18 +281,35 @@ void put_checker(Scene& scene, rt_u32 side) {
     scene.materials[0].values.texture = 0;
 }
 
-// A checker of 256 x 256 texels in 8 x 8 pixels is grey: the mean of linear light.
+// A checker of 256 x 256 texels in 7 x 7 pixels is grey: the mean of linear light. Where 8 pixels are hit, four texels meet,
+// and the picture itself is as grey.
 TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
     Scene scene = white_square();
     put_checker(scene, 256);
     for (const auto& [tracer, lanes] : {std::pair("iterative", "8"), std::pair("wavefront", "1")}) {
-        const FloatImage image = trace(scene, flat_view(), 8, 8, 1, {{"tracer", tracer}, {"lanes", lanes}}).image;
+        const FloatImage image = trace(scene, flat_view(), 7, 7, 1, {{"tracer", tracer}, {"lanes", lanes}}).image;
         for (const float channel : image.pixels) EXPECT_NEAR(channel, 0.5, 0.01) << tracer;
     }
     scene.textures[0].levels = 0;
     const FloatImage sharp = trace(scene, flat_view(), 7, 7, 1).image;  // 8 pixels would each hit where four texels meet
     EXPECT_TRUE(std::any_of(sharp.pixels.begin(), sharp.pixels.end(), [](float c) { return std::fabs(c - 0.5f) > 0.02f; }))
         << "without them the picture depends on which texels rays hit";
+}
+
+// 64 x 64 texels in 32 x 32 pixels are the first of the smaller pictures, in 16 x 16 the second. Here each has a colour of its
+// own.
+TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
+    Scene scene = white_square();
+    Texels texels;
+    for (const auto& [side, color] :
+         {std::pair(64, kRed), {32, kGreen}, {16, kBlue}, {8, kBlack}, {4, kBlack}, {2, kBlack}, {1, kBlack}})
+        texels.insert(texels.end(), size_t(side) * size_t(side), color);
+    scene.texels.own() = texels;
+    scene.textures = {{0, 64, 64, 0, 0, 6, 0}};
+    scene.materials[0].values.texture = 0;
+    expect_color(trace(scene, flat_view(), 64, 64, 1).image, 32, 32, {1, 0, 0}, 0.15, "one texel a pixel");
+    expect_color(trace(scene, flat_view(), 32, 32, 1).image, 16, 16, {0, 1, 0}, 0.15, "two along each side");
+    expect_color(trace(scene, flat_view(), 16, 16, 1).image, 8, 8, {0, 0, 1}, 0.15, "four");
 }
 
 // Seen as large as it is, the picture itself is shown. An instance of the same size, at any scale of its mesh, shows the same.

@@ -1,5 +1,5 @@
-// The tables of lights, skies and materials in docs/scene_format.md are those of the program. CLARITY_WRITE_PAGES=1 writes
-// them.
+// The tables of lights, skies, materials and their textures in docs/scene_format.md are those of the program.
+// CLARITY_WRITE_PAGES=1 writes them.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,6 +8,7 @@
 
 #include "base/numbers.hpp"
 #include "scene/light_kinds.hpp"
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "scene/sky_kinds.hpp"
 
@@ -86,6 +87,28 @@ TEST(KeysPage, HasTheSky) {
 
 TEST(KeysPage, HasTheMaterial) {
     expect_in_page("material", material_table());
+}
+
+TEST(KeysPage, HasTheMaps) {
+    std::string table = "| key | space | multiplies | channels |\n|---|---|---|---|\n";
+    for (const MapUse& use : map_uses()) {
+        std::string keys;
+        for (const char* const* key = use.multiplies.data(); *key; ++key)
+            keys += (keys.empty() ? "`" : ", `") + std::string(*key) + "`";
+        table += "| `" + std::string(use.name) + " NAME` | `" + (use.space == RT_SPACE_SRGB ? "srgb" : "linear") + "` | " +
+                 keys + " | " + use.help + " |\n";
+    }
+    expect_in_page("maps", table);
+}
+
+// A key that a texture multiplies exists, and reaches 1.
+TEST(MapUses, MultiplyKeysOfMaterials) {
+    for (const MapUse& use : map_uses())
+        for (const char* const* name = use.multiplies.data(); *name; ++name) {
+            const Key* key = find_key(material_keys(), *name);
+            ASSERT_TRUE(key) << *name;
+            EXPECT_TRUE(key->min <= 1 && key->max >= 1) << *name;
+        }
 }
 
 }  // namespace

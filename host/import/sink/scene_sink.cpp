@@ -9,6 +9,7 @@
 #include "plugin/abi_struct.hpp"
 #include "scene/camera.hpp"
 #include "scene/light_kinds.hpp"
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "scene/sky_kinds.hpp"
 #include "scene/usable.hpp"
@@ -113,6 +114,7 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     sink_.light_kind = [](void*, rt_u32 kind) { return light_kind_for_plugins(kind); };
     sink_.material_kind = [](void*) { return material_kind_for_plugins(); };
     sink_.sky_kind = [](void*, rt_u32 kind) { return sky_kind_for_plugins(kind); };
+    sink_.map_kind = [](void*) { return map_kind_for_plugins(); };
     offer_motion();
     sink_.edit = [](void* ctx, const char* key, const char* value, const char* where) {
         return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.edit(key, value, where); });
@@ -182,8 +184,17 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
                     ": expected RT_SPACE_ and RT_FILTER_ values");
     const rt_u32 index = d.bytes ? builder_.texture_of_bytes(path_, d) : builder_.texture_of_file(path_, d);
     if (index == RT_NONE) return RT_NONE;
+    name_texture(index, d);
     textures_.push_back(index);
     return static_cast<rt_u32>(textures_.size() - 1);
+}
+
+void SceneSink::name_texture(rt_u32 texture, const rt_texture_desc& d) {
+    std::vector<std::string>& names = builder_.scene().texture_names;
+    names.resize(builder_.scene().textures.size());
+    if (!names[texture].empty()) return;
+    const std::string path = d.path ? d.path : "";
+    names[texture] = clean_name(d.name ? d.name : path.substr(path.find_last_of("/\\") + 1).c_str());
 }
 
 rt_u32 SceneSink::material(const rt_material_desc& d) {

@@ -48,6 +48,8 @@ class SceneSink {
     // Finds the scene material, or a material's texture, of an id. If the plugin never received this id, records an error and
     // returns false.
     bool scene_texture(rt_u32 id, const Material& material, rt_u32& texture);
+    // The first name that a file gives it counts.
+    void name_texture(rt_u32 texture, const rt_texture_desc& d);
     bool take_maps(const rt_material_desc& desc, Material& material, std::string& problem);
     bool scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material);
     void offer_motion();

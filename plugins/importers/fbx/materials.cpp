@@ -1,6 +1,7 @@
 #include "../common/materials.hpp"
 
 #include "scene.hpp"
+#include "surface.hpp"
 
 namespace fbx_import {
 namespace {
@@ -19,6 +20,11 @@ struct Use {
 constexpr Use kUses[] = {{"EmissiveColor", RT_MAP_EMISSION, RT_SPACE_SRGB},
                          {"NormalMap", RT_MAP_NORMAL, RT_SPACE_LINEAR},
                          {"Bump", RT_MAP_NORMAL, RT_SPACE_HEIGHT}};
+
+bool is_color(std::string_view property) {
+    const std::string plain = plain_name(property);
+    return property == "DiffuseColor" || plain == "basecolor" || plain == "color";  // Maya|TEX_color_map of Stingray PBS
+}
 
 void read_phong(const Properties& p, bool has_texture, bool has_emission, AlphaKeys& alpha, rt_material_desc& out) {
     // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
@@ -75,7 +81,14 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const bool has_emission =
         std::any_of(maps.begin(), maps.end(), [](const rt_map_desc& map) { return map.use == RT_MAP_EMISSION; });
     AlphaKeys alpha;
-    read_phong(context_.properties(material), out.texture != RT_NONE, has_emission, alpha, out);
+    MaterialKeys keys;
+    std::vector<std::string> left_out = pictures_left_out(material);
+    const Properties properties = context_.properties(material);
+    const Surface surface(properties);
+    if (surface.is_physical())
+        surface.read(maps, out.texture != RT_NONE, keys, alpha, out, left_out);
+    else
+        read_phong(properties, out.texture != RT_NONE, has_emission, alpha, out);
     // A texture of the transparency replaces its value. Programs connect the picture of the colour again where its alpha
     // counts.
     const uint32_t clear = transparency(material);
@@ -84,22 +97,48 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
         alpha.set(AlphaKeys::blend, 1);
     else if (clear != kNoObject)
         ++transparencies_;
-    alpha.give(out);
+    alpha.give(keys);
+    keys.give(out);
+    if (!left_out.empty()) {
+        std::string list;
+        for (const std::string& what : left_out) list += (list.empty() ? "" : ", ") + what;
+        context_.warn("material '" + name + "': left out " + list);
+    }
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
 }
 
 // They lie as the texture of the colour does. A map of normals counts more than one of heights.
 std::vector<rt_map_desc> Materials::maps_of(uint32_t material) {
     std::vector<rt_map_desc> maps;
+    const auto add = [&](const Link& link, rt_u32 use, rt_u32 space) {
+        const bool is_there = std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });
+        if (is_there || context_.objects[link.from].kind != "Texture") return;
+        rt_map_desc map = rt::map(use, picture(link.from, space));
+        if (space == RT_SPACE_HEIGHT)
+            map.scale = limited(context_.properties(material).number("BumpFactor", 1), -1000, 1000, 1);
+        if (map.texture != RT_NONE) maps.push_back(map);
+    };
+    const std::vector<const Link*> links = context_.objects.below(material);
     for (const Use& use : kUses)
-        for (const Link* link : context_.objects.below(material)) {
-            const bool is_there =
-                std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use.use; });
-            if (is_there || link->property != use.property || context_.objects[link->from].kind != "Texture") continue;
-            const rt_map_desc map = rt::map(use.use, picture(link->from, use.space));
-            if (map.texture != RT_NONE) maps.push_back(map);
-        }
+        for (const Link* link : links)
+            if (link->property == use.property) add(*link, use.use, use.space);
+    for (const Link* link : links)
+        if (const SurfaceMap* map = surface_map(plain_name(link->property))) add(*link, map->use, map->space);
     return maps;
+}
+
+// Properties whose pictures mean nothing here. Those of the transparency are counted elsewhere.
+std::vector<std::string> Materials::pictures_left_out(uint32_t material) const {
+    std::vector<std::string> out;
+    for (const Link* link : context_.objects.below(material)) {
+        const std::string_view name = link->property;
+        const bool is_picture = context_.objects[link->from].kind == "Texture" && !name.empty();
+        const bool is_used =
+            is_color(name) || name == "TransparentColor" || name == "TransparencyFactor" || surface_map(plain_name(name)) ||
+            std::any_of(std::begin(kUses), std::end(kUses), [&](const Use& use) { return name == use.property; });
+        if (is_picture && !is_used && std::find(out.begin(), out.end(), name) == out.end()) out.emplace_back(name);
+    }
+    return out;
 }
 
 // A texture hangs from the material's property, and a layered texture may be in between. In version 6 it hangs from the model,
@@ -108,9 +147,7 @@ uint32_t Materials::texture(uint32_t material, uint32_t model) const {
     const Objects& objects = context_.objects;
     for (const Link* link : objects.below(material)) {
         const Object& object = objects[link->from];
-        const bool is_color = link->property == "DiffuseColor" || link->property.find("base_color") != link->property.npos ||
-                              link->property.find("baseColor") != link->property.npos;
-        if (!is_color) continue;
+        if (!is_color(link->property)) continue;
         if (object.kind == "Texture") return link->from;
         if (object.kind != "LayeredTexture") continue;
         for (const uint32_t layer : objects.below(link->from, "Texture")) return layer;

@@ -26,6 +26,11 @@ class Properties {
         return document_.text(node, first);
     }
     Vec3 vector(std::string_view name, const Vec3& otherwise) const;
+    // Calls body(name) for each property of a list.
+    template <class Body>
+    void each(const Body& body) const {
+        for (const auto& place : places_) body(place.first);
+    }
 
  private:
     struct Place {

@@ -65,6 +65,7 @@ class Materials {
     uint32_t transparency(uint32_t material) const;             // its texture, likewise
     std::string_view file_of(uint32_t texture) const;
     std::vector<rt_map_desc> maps_of(uint32_t material);  // besides that of the colour
+    std::vector<std::string> pictures_left_out(uint32_t material) const;
     rt_u32 picture(uint32_t texture, rt_u32 space);
     const Context& context_;
     std::map<uint32_t, rt_u32> ids_;

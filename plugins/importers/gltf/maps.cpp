@@ -168,6 +168,8 @@ rt_u32 Maps::wrap_mode(const Value& sampler, const char* key) const {
 rt_u32 Maps::add_image(const Value& image, rt_texture_desc out) {
     std::string bytes_or_path;
     std::string_view bytes;
+    const std::string name = image.has("name") ? image["name"].text() : "";
+    if (!name.empty()) out.name = name.c_str();
     if (image.has("bufferView")) {
         bytes = accessors_.view(image["bufferView"]);
     } else if (const Value uri = image["uri"]; decode_data_uri(uri, bytes_or_path)) {

@@ -2,25 +2,21 @@
 
 #include <algorithm>
 
+#include "mtl_surface.hpp"
 #include "text.hpp"
 
 namespace openmesh_import {
 namespace {
 
-// The statements of one material as written. Statements that are missing keep these defaults.
-struct Statements {
-    float diffuse[3] = {0.8f, 0.8f, 0.8f}, specular[3] = {0, 0, 0}, emission[3] = {0, 0, 0}, filter[3] = {1, 1, 1};
-    float exponent = 1, ior = 1, dissolve = 1;
-    bool has_diffuse = false, has_dissolve = false;
-    int illumination = -1;
-    ObjTexture texture, dissolve_map, emission_map, normal_map, bump_map;
+// Statements of maps, lower case; those of kPbr come besides. `norm` is of the extension for physically based rendering.
+constexpr std::pair<std::string_view, ObjTexture MtlStatements::*> kMaps[] = {
+    {"map_kd", &MtlStatements::texture},    {"map_d", &MtlStatements::dissolve_map},  {"map_ke", &MtlStatements::emission_map},
+    {"norm", &MtlStatements::normal_map},   {"map_norm", &MtlStatements::normal_map}, {"map_kn", &MtlStatements::normal_map},
+    {"map_bump", &MtlStatements::bump_map}, {"bump", &MtlStatements::bump_map},       {"map_tf", &MtlStatements::filter_map},
 };
-
-// Statements of maps, lower case. `norm` is of the extension for physically based rendering, which Blender writes.
-constexpr std::pair<std::string_view, ObjTexture Statements::*> kMaps[] = {
-    {"map_kd", &Statements::texture},  {"map_d", &Statements::dissolve_map}, {"map_ke", &Statements::emission_map},
-    {"norm", &Statements::normal_map}, {"map_bump", &Statements::bump_map},  {"bump", &Statements::bump_map},
-};
+// Statements that change nothing here, so that no warning is worth it: `ambient` is the scene's, not a material's, and maps
+// are smooth.
+constexpr std::string_view kWithoutEffect[] = {"ka", "map_ka", "map_aat", "sharpness"};
 
 // Options of maps, from Wavefront's appendix B1, "MTL material format". `least` to `most` values follow; `unless` is the value
 // that changes nothing, so that it is not worth a warning.
@@ -64,6 +60,7 @@ class Reader {
                 close();
                 name_ = std::string(without_quotes(trim(line)));
                 statements_ = {};
+                left_out_.clear();
                 is_open_ = true;
             } else {
                 statement(word, line);
@@ -83,18 +80,17 @@ class Reader {
     const std::string& folder_;
     Library& library_;
     std::string name_;
-    Statements statements_;
+    MtlStatements statements_;
+    std::vector<std::string> left_out_;  // of this material, each once
     bool is_open_ = false;
 };
 
 void Reader::leave_out(std::string_view what, std::string_view option) {
     std::string text = printable(what);
     if (!option.empty()) text += " " + printable(option);
-    std::vector<std::string>& list = library_.left_out;
     constexpr size_t kMost = 20;
-    if (list.size() >= kMost || std::find(list.begin(), list.end(), text) != list.end()) return;
-    if (list.empty()) library_.first_left_out = name_;
-    list.push_back(text);
+    if (left_out_.size() < kMost && std::find(left_out_.begin(), left_out_.end(), text) == left_out_.end())
+        left_out_.push_back(text);
 }
 
 void Reader::color(std::string_view word, std::string_view rest, float out[3]) {
@@ -162,80 +158,40 @@ void Reader::map(std::string_view word, std::string_view rest, ObjTexture& out) 
     }
 }
 
-float largest(const float c[3]) {
-    return std::max({c[0], c[1], c[2]});
-}
-
-// Converts a material. Wavefront's illumination models: 3, 5 and 8 (without ray tracing) mirror; 4, 6, 7 and 9 are glass.
-ObjMaterial finish(const Statements& s) {
-    ObjMaterial m;
-    const auto use = [&](rt_u32 use, rt_u32 space, const ObjTexture& texture) {
-        if (!texture.names.empty()) m.maps.push_back({use, space, texture});
-    };
-    const bool alpha_of_color = s.dissolve_map.names == s.texture.names;
-    use(RT_MAP_COLOR, RT_SPACE_SRGB, s.texture);
-    use(RT_MAP_EMISSION, RT_SPACE_SRGB, s.emission_map);
-    if (!s.normal_map.names.empty())
-        use(RT_MAP_NORMAL, RT_SPACE_LINEAR, s.normal_map);
-    else
-        use(RT_MAP_NORMAL, RT_SPACE_HEIGHT, s.bump_map);
-    if (!alpha_of_color) use(RT_MAP_OPACITY, RT_SPACE_LINEAR, s.dissolve_map);
-    rt_material_desc& out = m.values;
-    out.texture = RT_NONE;
-    const bool mirrors = s.illumination == 3 || s.illumination == 5 || s.illumination == 8;
-    const bool is_glass = s.illumination == 4 || s.illumination == 6 || s.illumination == 7 || s.illumination == 9;
-    for (int k = 0; k < 3; ++k) {
-        out.color[k] = std::min(s.diffuse[k], 1.0f);
-        out.specular[k] = s.illumination == 0 || s.illumination == 1 ? 0 : std::min(s.specular[k], 1.0f);
-        out.emission[k] = s.emission[k];
-    }
-    if (!s.texture.names.empty() && (!s.has_diffuse || largest(out.color) == 0)) std::fill(out.color, out.color + 3, 1.0f);
-    // Programs leave Ke black beside its picture.
-    if (!s.emission_map.names.empty() && largest(out.emission) == 0) std::fill(out.emission, out.emission + 3, 1.0f);
-    out.shininess = std::clamp(s.exponent, 1.0f, 10000.0f);
-    out.ior = 1;
-    // `d` is the share of the surface that is there, unless it is glass. A map_d that names the picture of map_Kd means its
-    // alpha; of another picture the red channel counts.
-    const bool is_cut = !s.dissolve_map.names.empty();
-    if (!is_glass && (s.dissolve < 1 || is_cut)) m.alpha.set(importers::AlphaKeys::blend, s.dissolve);
-    if (is_glass) {
-        out.refract = std::clamp(1 - s.dissolve, 0.0f, 1.0f);
-        out.ior = s.ior > 1 ? std::min(s.ior, 10.0f) : 1.5f;
-        if (!s.has_dissolve || s.dissolve >= 1) {
-            // Glass without an opacity is clear. Its hue is that of the transmission filter; the filter's strength is ignored,
-            // because programs write it in either sense. The diffuse colour keeps its share of the light.
-            out.refract = 1 - largest(out.color);
-            const float strongest = std::max(largest(s.filter), 1e-6f);
-            for (int k = 0; k < 3; ++k) out.color[k] = s.filter[k] / strongest;
-        }
-    }
-    if (mirrors) out.reflect = std::min(largest(s.specular), 1 - out.refract);
-    return m;
-}
-
 void Reader::close() {
     if (!is_open_) return;
-    ObjMaterial material = finish(statements_);
+    ObjMaterial material = to_material(statements_);
     material.folder = folder_;
+    material.left_out = std::move(left_out_);
     library_.materials[name_] = std::move(material);
 }
 
 void Reader::statement(std::string_view word, std::string_view line) {
-    Statements& s = statements_;
+    MtlStatements& s = statements_;
     const std::pair<std::string_view, float*> colors[] = {
         {"kd", s.diffuse}, {"ks", s.specular}, {"ke", s.emission}, {"tf", s.filter}};
     for (const auto& [key, to] : colors) {
         if (!is_word(word, key)) continue;
         color(word, line, to);
         s.has_diffuse = s.has_diffuse || to == s.diffuse;
+        s.has_filter = s.has_filter || to == s.filter;
         return;
     }
     for (const auto& [key, texture] : kMaps)
         if (is_word(word, key)) return map(word, line, s.*texture);
-    ObjTexture ignored;
     float number = 0;
-    if (is_word(word.substr(0, 4), "map_") || is_word(word, "disp") || is_word(word, "decal") || is_word(word, "refl")) {
-        map(word, line, ignored);
+    for (size_t i = 0; i < kPbrCount; ++i) {
+        if (is_word(word, kPbr[i].map_word)) return map(word, line, s.pbr_maps[i]);
+        if (!is_word(word, kPbr[i].word)) continue;
+        if (parse_float(next_word(line), number)) s.pbr[i] = number;
+        return;
+    }
+    const auto is_this = [&](std::string_view known) { return is_word(word, known); };
+    if (std::any_of(std::begin(kWithoutEffect), std::end(kWithoutEffect), is_this)) return;
+    if (is_word(word, "illum")) {
+        const bool is_known = parse_float(next_word(line), number) && number >= 0 && number < 10;
+        s.illumination = is_known ? static_cast<int>(number) : -1;
+        if (!is_known) leave_out(word);  // 10 has shadows on surfaces that are not seen
     } else if (is_word(word, "d")) {
         std::string_view value = next_word(line);
         if (is_word(value, "-halo")) {
@@ -246,16 +202,14 @@ void Reader::statement(std::string_view word, std::string_view line) {
             s.dissolve = number;
             s.has_dissolve = true;
         }
-    } else if (!parse_float(next_word(line), number)) {
-        return;
     } else if (is_word(word, "ns")) {
-        s.exponent = number;
+        parse_float(next_word(line), s.exponent);
     } else if (is_word(word, "ni")) {
-        s.ior = number;
-    } else if (is_word(word, "illum")) {
-        s.illumination = number >= 0 && number <= 10 ? static_cast<int>(number) : -1;
-    } else if (is_word(word, "tr") && !s.has_dissolve) {
-        s.dissolve = 1 - number;
+        parse_float(next_word(line), s.ior);
+    } else if (is_word(word, "tr")) {
+        if (!s.has_dissolve && parse_float(next_word(line), number)) s.dissolve = 1 - number;
+    } else {
+        leave_out(word);
     }
 }
 
@@ -286,8 +240,6 @@ void parse_mtl(std::string_view text, const std::string& folder, Library& librar
     Library own;
     Reader(text, folder, own).read();
     library.materials.insert(own.materials.begin(), own.materials.end());
-    if (library.left_out.empty()) library.first_left_out = own.first_left_out;
-    library.left_out.insert(library.left_out.end(), own.left_out.begin(), own.left_out.end());
 }
 
 }  // namespace openmesh_import

@@ -24,18 +24,15 @@ struct ObjMap {
     ObjTexture texture;
 };
 struct ObjMaterial {
-    rt_material_desc values{};  // without name, texture and alpha
-    importers::AlphaKeys alpha;
+    rt_material_desc values{};  // without name, texture and keys
+    importers::MaterialKeys keys;
     std::vector<ObjMap> maps;
-    std::string folder;  // of its library, relative to that of the OBJ file, with a slash at its end; or empty
+    std::vector<std::string> left_out;  // statements that say more than is obeyed, such as "map_Kd -mm", each once
+    std::string folder;                 // of its library, relative to that of the OBJ file, with a slash at its end; or empty
 };
 
 struct Library {
     std::map<std::string, ObjMaterial, std::less<>> materials;
-    // Statements that say more than is obeyed, such as "map_Kd -mm", each once; and the material of the first.
-    std::vector<std::string> left_out;
-    std::string first_left_out;
-
     // A name may be followed by a comment here or where it is used: "Material #1 # oak" is also found as "Material #1".
     const ObjMaterial* find(std::string_view name) const;
 };

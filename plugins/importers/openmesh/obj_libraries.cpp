@@ -21,22 +21,11 @@ std::string file_name(const std::string& path) {
 
 ObjLibraries::ObjLibraries(const Source& source, const std::vector<std::string>& lines)
     : source_(source), folder_(source.path.substr(0, source.path.find_last_of('/') + 1)), libraries_(lines.size()) {
-    std::vector<std::string> left_out;
-    std::string first;
     for (size_t i = 0; i < lines.size(); ++i) {
-        Library& library = libraries_[i];
         // Programs that write `mtllib` before each object name the same library many times.
         const auto same = std::find(lines.begin(), lines.begin() + static_cast<ptrdiff_t>(i), lines[i]);
-        if (same != lines.begin() + static_cast<ptrdiff_t>(i)) continue;
-        read_line(lines[i], library);
-        if (left_out.empty()) first = library.first_left_out;
-        for (const std::string& what : library.left_out)
-            if (std::find(left_out.begin(), left_out.end(), what) == left_out.end()) left_out.push_back(what);
+        if (same == lines.begin() + static_cast<ptrdiff_t>(i)) read_line(lines[i], libraries_[i]);
     }
-    if (left_out.empty()) return;
-    std::string list;
-    for (const std::string& what : left_out) list += (list.empty() ? "" : ", ") + what;
-    warn(source_, "materials: left out " + list + "; first in material " + quoted(first));
 }
 
 // A line may list several libraries, and names may hold blanks and '#', so the longest name that is a file's counts. A '#' that
@@ -121,8 +110,17 @@ rt_u32 ObjLibraries::id(const std::string& name, const ObjMaterial* material) {
         if (out.texture != RT_NONE) maps.push_back(out);
     }
     importers::give_maps(maps, desc);
-    material->alpha.give(desc);
+    material->keys.give(desc);
+    warn_of_left_out(name, *material);
     return ids_[material] = rt::id(source_.sink.material(source_.sink.ctx, &desc));
+}
+
+// One warning for each material that is used.
+void ObjLibraries::warn_of_left_out(const std::string& name, const ObjMaterial& material) const {
+    if (material.left_out.empty()) return;
+    std::string list;
+    for (const std::string& what : material.left_out) list += (list.empty() ? "" : ", ") + what;
+    warn(source_, "material " + quoted(name) + ": left out " + list);
 }
 
 // The name of the picture that is there: beside the library, beside the OBJ file, or in its folder `textures`. If none is, the

@@ -27,6 +27,7 @@ class ObjLibraries {
  private:
     void read_line(std::string_view line, Library& library);
     bool read_file(std::string name, Library& library);
+    void warn_of_left_out(const std::string& name, const ObjMaterial& material) const;
     std::string picture(const ObjMaterial& material, const std::vector<std::string>& names) const;
     rt_u32 texture(const ObjMaterial& material, const ObjMap& map);
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnostics.hpp"
@@ -29,10 +30,21 @@ struct Light {
     rt_light_desc values{};  // without name
     Looks looks;
 };
+// A picture, and how it lies on surfaces.
+struct Texture {
+    Name name;
+    std::string path;        // as in the file
+    rt_u32 space = RT_NONE;  // RT_SPACE_; RT_NONE: that of its use
+    rt_u32 wrap_u = RT_WRAP_REPEAT, wrap_v = RT_WRAP_REPEAT, filter = RT_FILTER_SMOOTH;
+    rt_u32 set = 0;  // of the surface's coordinates
+    std::array<float, 2> offset{}, scale{1, 1};
+    float degrees = 0, strength = 1;
+};
 struct Material {
     Name name;
     Looks looks;
-    std::string texture;  // path as in the file; empty: no texture
+    std::vector<std::pair<rt_u32, Name>> maps;  // RT_MAP_, and the name of a texture
+    std::string texture;                        // path as in the file; empty: no texture
     rt_u32 wrap_u = RT_WRAP_REPEAT, wrap_v = RT_WRAP_REPEAT;
 };
 struct Sphere {
@@ -104,13 +116,14 @@ struct Item {
 // What the sink takes, whose keys are tables of the host.
 struct Kinds {
     std::vector<const rt_primitive_kind*> shapes, lights, skies;
-    const rt_primitive_kind* material = nullptr;
+    const rt_primitive_kind *material = nullptr, *maps = nullptr;
 };
 
 struct Document {
     Kinds kinds;
     std::vector<Camera> cameras;
     std::vector<Light> lights;
+    std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Sphere> spheres;
     std::vector<Plane> planes;

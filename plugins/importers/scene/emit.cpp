@@ -9,6 +9,8 @@
 
 #include "emit_motion.hpp"
 #include "rt_plugin.hpp"
+#include "shapes.hpp"
+#include "textures.hpp"
 
 namespace scene_format {
 namespace {
@@ -41,6 +43,8 @@ class Emitter {
 
  private:
     rt_u32 material(const Name& use) const { return use.text.empty() ? RT_NONE : material_ids_.at(use.text); }
+    rt_u32 texture(const Texture& texture, rt_u32 space);
+    std::vector<rt_map_desc> maps_of(const Material& material);
     bool triangles(size_t first, size_t count);
     bool shape(const Shape& shape);
     bool load(const Load& load);
@@ -51,6 +55,8 @@ class Emitter {
     const rt_scene_sink& sink_;
     MotionEmitter motion_;
     std::unordered_map<std::string, rt_u32> material_ids_;
+    // By path, wrap modes, space, filter and name.
+    std::map<std::tuple<std::string, rt_u32, rt_u32, rt_u32, rt_u32, std::string>, rt_u32> texture_ids_;
     Position position_;  // of the statement that is emitted; used when the sink refuses it
 };
 
@@ -62,24 +68,51 @@ void Emitter::info() const {
     sink_.info(sink_.ctx, &info);
 }
 
+rt_u32 Emitter::texture(const Texture& texture, rt_u32 space) {
+    const auto [known, is_new] = texture_ids_.insert(
+        {{texture.path, texture.wrap_u, texture.wrap_v, space, texture.filter, texture.name.text}, RT_NONE});
+    if (is_new) {
+        auto desc = sized<rt_texture_desc>();
+        desc.path = texture.path.c_str();
+        desc.wrap_u = texture.wrap_u;
+        desc.wrap_v = texture.wrap_v;
+        desc.space = space;
+        desc.filter = texture.filter;
+        desc.name = name_or_null(texture.name.text);
+        known->second = sink_.texture(sink_.ctx, &desc);  // RT_NONE: the host has already warned
+    }
+    return known->second;
+}
+
+std::vector<rt_map_desc> Emitter::maps_of(const Material& material) {
+    std::vector<rt_map_desc> maps;
+    for (const auto& [use, name] : material.maps) {
+        const std::string& wanted = name.text;
+        const auto named = std::find_if(document_.textures.begin(), document_.textures.end(),
+                                        [&](const Texture& texture) { return texture.name.text == wanted; });
+        const auto usual = static_cast<rt_u32>(key_of(*document_.kinds.maps, use).def[0]);
+        maps.push_back(map_of(*named, use, texture(*named, named->space == RT_NONE ? usual : named->space)));
+    }
+    return maps;
+}
+
 bool Emitter::materials() {
-    std::map<std::tuple<std::string, rt_u32, rt_u32>, rt_u32> texture_ids;
     for (const Material& material : document_.materials) {
         position_ = material.name.position;
         rt_material_desc desc = rt::material(material.name.text.c_str());
         desc.values = material.looks.data();
         desc.value_count = static_cast<rt_u32>(material.looks.size());
         if (!material.texture.empty()) {
-            auto [known, is_new] = texture_ids.insert({{material.texture, material.wrap_u, material.wrap_v}, RT_NONE});
-            if (is_new) {
-                auto texture = sized<rt_texture_desc>();
-                texture.path = material.texture.c_str();
-                texture.wrap_u = material.wrap_u;
-                texture.wrap_v = material.wrap_v;
-                known->second = sink_.texture(sink_.ctx, &texture);  // RT_NONE: the host has already warned
-            }
-            desc.texture = known->second;
+            Texture unnamed;
+            unnamed.path = material.texture;
+            unnamed.wrap_u = material.wrap_u;
+            unnamed.wrap_v = material.wrap_v;
+            desc.texture = texture(unnamed, RT_SPACE_SRGB);
         }
+        const std::vector<rt_map_desc> maps = maps_of(material);
+        desc.maps = maps.data();
+        desc.map_count = static_cast<rt_u32>(maps.size());
+        desc.map_bytes = sizeof(rt_map_desc);
         const rt_u32 id = sink_.material(sink_.ctx, &desc);
         if (id == RT_NONE) return false;
         material_ids_.emplace(material.name.text, id);

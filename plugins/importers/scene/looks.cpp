@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "shapes.hpp"
+#include "textures.hpp"
 
 namespace scene_format {
 namespace {
@@ -150,30 +151,42 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
 
 void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
     const std::vector<const rt_key*> keys = keys_of(*document.kinds.material);
-    expect(s, keys, {{"texture"}, {"wrap"}});
-    const size_t texture = keys.size();
+    const std::vector<const rt_key*> maps = keys_of(*document.kinds.maps);
+    std::vector<Key> more = {{"texture"}, {"wrap"}};
+    for (const rt_key* map : maps) more.push_back({map->name});
+    expect(s, keys, more);
+    const size_t texture = keys.size(), first_map = texture + 2;
     // Register the name before the keys are read, so that an error in a key does not make every use of the name an error.
     Material& material = document.materials.emplace_back();
     material.name = s.name("the material's name");
     Position refract_position = material.name.position, wrap_position;
-    bool has_color = false;
+    const auto two_colors = [&] {
+        s.fail_at_last("`texture` and `color_map` are two textures of the colour; expected one of them");
+    };
     while (!s.done()) {
         const size_t i = s.key();
         if (i == texture) {
             material.texture = s.path("the texture's file");
+            if (s.given(first_map + RT_MAP_COLOR)) two_colors();
+        } else if (i >= first_map) {
+            material.maps.push_back({static_cast<rt_u32>(i - first_map), s.name("the name of a texture")});
+            if (i - first_map == RT_MAP_COLOR && s.given(texture)) two_colors();
         } else if (i > texture) {
-            const std::vector<std::string_view> modes = {"repeat", "clamp", "mirror"};
-            material.wrap_u = material.wrap_v = static_cast<rt_u32>(s.choice("wrap mode", modes));
-            wrap_position = s.last();
-            if (!s.done() && !s.at_key()) material.wrap_v = static_cast<rt_u32>(s.choice("wrap mode along v", modes));
+            wrap_position = s.next();
+            read_wrap(s, material.wrap_u, material.wrap_v);
         } else {
             set_value(material.looks, keys[i]->name, read_look(s, *keys[i]));
             if (is_named(*keys[i], "refract")) refract_position = s.last();
-            has_color |= is_named(*keys[i], "color");
         }
     }
-    // The texture is multiplied by the colour. Without a given colour, white leaves the texture unchanged.
-    if (!material.texture.empty() && !has_color) set_value(material.looks, "color", {1, 1, 1});
+    // A texture multiplies keys. Where they are not given, 1 leaves the texture unchanged.
+    const auto show_unchanged = [&](const rt_key& map) {
+        for (const char* const* name = map.words; name && *name; ++name)
+            for (size_t i = 0; i < keys.size(); ++i)
+                if (is_named(*keys[i], *name) && !s.given(i)) set_value(material.looks, *name, {1, 1, 1});
+    };
+    if (!material.texture.empty()) show_unchanged(*maps[RT_MAP_COLOR]);
+    for (const auto& [use, name] : material.maps) show_unchanged(*maps[use]);
     if (wrap_position.line != 0 && material.texture.empty())
         diagnostics.warning(wrap_position,
                             "`wrap` has no effect, because material " + in_quotes(material.name.text) + " has no `texture`");

@@ -84,6 +84,7 @@ void check_use(const Name& use, const Names& names, const char* kind, Diagnostic
 void check_names(const Document& document, Diagnostics& diagnostics) {
     const Names cameras = defined_names(document.cameras, "camera", diagnostics);
     const Names materials = defined_names(document.materials, "material", diagnostics);
+    const Names textures = defined_names(document.textures, "texture", diagnostics);
     const Names loads = defined_names(document.loads, "name", diagnostics);
     const auto check_materials = [&](const auto& things) {
         for (const auto& thing : things) check_use(thing.material, materials, "material", diagnostics);
@@ -94,6 +95,8 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
     check_materials(document.triangles);
     check_materials(document.shapes);
     check_materials(document.loads);
+    for (const Material& material : document.materials)
+        for (const auto& [use, name] : material.maps) check_use(name, textures, "texture", diagnostics);
     Names movable = loads;
     movable.insert(cameras.begin(), cameras.end());
     for (const Light& light : document.lights)

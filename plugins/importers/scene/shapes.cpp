@@ -40,11 +40,13 @@ std::vector<float> read_values(Statement& s, const rt_key& key) {
 }
 
 Kinds kinds_of(const rt_scene_sink& sink) {
-    if (!RT_HAS(&sink, rt_scene_sink, sky_kind) || !sink.light_kind || !sink.material_kind || !sink.sky_kind)
+    if (!RT_HAS(&sink, rt_scene_sink, map_kind) || !sink.light_kind || !sink.material_kind || !sink.sky_kind || !sink.map_kind)
         throw std::runtime_error(
-            "this importer needs a newer Clarity, which tells it the keys of lights, materials and skies: update the program");
+            "this importer needs a newer Clarity, which tells it the keys of lights, materials, their textures and skies: "
+            "update the program");
     Kinds kinds;
     kinds.material = sink.material_kind(sink.ctx);
+    kinds.maps = sink.map_kind(sink.ctx);
     const auto all = [&](auto kind, std::vector<const rt_primitive_kind*>& list) {
         while (const rt_primitive_kind* next = kind(sink.ctx, static_cast<rt_u32>(list.size()))) list.push_back(next);
     };

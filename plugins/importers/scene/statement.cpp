@@ -62,7 +62,6 @@ size_t Statement::key() {
                                                      " for the second time; the first is in column " +
                                                      std::to_string(key_positions_[i].column)};
         }
-        seen_ |= 1u << i;
         key_positions_[i] = token.position;
         return i;
     }

@@ -35,7 +35,7 @@ class Statement {
     // follows.
     void expect_keys(std::vector<Key> keys);
     size_t key();
-    bool given(size_t key) const { return (seen_ & (1u << key)) != 0; }
+    bool given(size_t key) const { return key_positions_[key].line != 0; }
 
     // `what` names the expected thing in error messages, for example "the material's name".
     Name name(std::string_view what);
@@ -69,8 +69,7 @@ class Statement {
     Position end_;
     size_t at_ = 1;
     std::vector<Key> keys_;
-    uint32_t seen_ = 0;
-    std::vector<Position> key_positions_;
+    std::vector<Position> key_positions_;  // line 0: the key was not given
 };
 
 }  // namespace scene_format

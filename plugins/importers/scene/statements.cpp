@@ -6,6 +6,7 @@
 #include "geometry.hpp"
 #include "looks.hpp"
 #include "sky.hpp"
+#include "textures.hpp"
 
 namespace scene_format {
 namespace {
@@ -279,10 +280,10 @@ void read_edit(Statement& s, Document& document, Diagnostics&) {
 
 const std::vector<StatementRow>& statements() {
     static const std::vector<StatementRow> table = {
-        {"camera", read_camera},     {"light", read_light},   {"background", read_background}, {"ambient", read_ambient},
-        {"material", read_material}, {"sphere", read_sphere}, {"plane", read_plane},           {"polygon", read_polygon},
-        {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},       {"edit", read_edit},
-        {"sky", read_sky},
+        {"camera", read_camera},     {"light", read_light},     {"background", read_background}, {"ambient", read_ambient},
+        {"material", read_material}, {"sphere", read_sphere},   {"plane", read_plane},           {"polygon", read_polygon},
+        {"triangle", read_triangle}, {"load", read_load},       {"animate", read_animate},       {"edit", read_edit},
+        {"sky", read_sky},           {"texture", read_texture},
     };
     return table;
 }

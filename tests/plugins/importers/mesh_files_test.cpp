@@ -2,70 +2,13 @@
 // any order, names that hold keywords, blanks and '#'.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstring>
 
-#include "base/error.hpp"
-#include "import/import.hpp"
-#include "measure.hpp"
+#include "mesh_files.hpp"
 
 namespace clarity::test {
 namespace {
 
-const std::string kMark = "\xEF\xBB\xBF";
-
-// The text with other line ends.
-std::string with_ends(std::string text, const std::string& end) {
-    for (size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + end.size())) text.replace(at, 1, end);
-    return text;
-}
-
-class MeshFiles : public testing::Test {
- protected:
-    Scene import(const std::string& name, const std::string& bytes) {
-        static const PluginRegistry plugins = PluginRegistry::discover();
-        import::ImportOptions options;
-        options.in_process = true;
-        options.log_warnings = false;
-        Progress progress;
-        return import::import_scene(plugins, {folder_.write(name, bytes)}, options, progress);
-    }
-    // A square from (0,0,0) to (1,1,0), in two triangles.
-    void expect_square(const std::string& name, const std::string& bytes) {
-        try {
-            const Scene scene = import(name, bytes);
-            EXPECT_EQ(scene.triangle_count(), 2u) << name << "\n" << bytes;
-            EXPECT_NEAR(scene.surface_area(), 1, 1e-6) << name << "\n" << bytes;
-            EXPECT_EQ(bounds_error(scene.bounds(), {{0, 0, 0}, {1, 1, 0}}), 0) << name;
-        } catch (const Error& error) {
-            ADD_FAILURE() << error.what() << "\n" << bytes;
-        }
-    }
-    // With every line end, with and without a mark.
-    void expect_square_however_written(const std::string& name, const std::string& text) {
-        for (const char* end : {"\n", "\r\n", "\r"}) {
-            expect_square(name, with_ends(text, end));
-            expect_square(name, kMark + with_ends(text, end));
-        }
-    }
-    std::string refusal(const std::string& name, const std::string& bytes) {
-        try {
-            import(name, bytes);
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "";
-    }
-    void expect_refused(const std::string& name, const std::string& bytes, const std::string& why) {
-        EXPECT_NE(refusal(name, bytes).find(why), std::string::npos) << refusal(name, bytes);
-    }
-    Scratch folder_;
-};
-
-bool warns(const Scene& scene, const std::string& of) {
-    return std::any_of(scene.warnings.begin(), scene.warnings.end(),
-                       [&](const std::string& warning) { return warning.find(of) != warning.npos; });
-}
 // The name of the material of each triangle.
 std::vector<std::string> materials(const Scene& scene) {
     std::vector<std::string> names;
@@ -77,7 +20,6 @@ std::string bytes_of(const std::vector<float>& values) {
 }
 
 using Names = std::vector<std::string>;
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 // ---- line ends, marks, files with nothing in them
 
@@ -320,122 +262,6 @@ TEST_F(MeshFiles, ObjFindsItsMaterialsWhereverTheyAreNamed) {
     EXPECT_FLOAT_EQ(scene.materials[scene.triangle_materials[1]].values.color[0], 0.5f);
     EXPECT_TRUE(warns(import("a.obj", kSquare + "mtllib red.mtl\nusemtl rde\n" + face), "'rde' is not defined"));
     EXPECT_TRUE(warns(import("a.obj", kSquare + "mtllib no such.mtl\n" + face), "'no such.mtl' cannot be read"));
-}
-
-// A picture of two texels: PNM.
-std::string picture() {
-    return std::string("P6\n2 1\n255\n") + std::string("\xFF\0\0\0\xFF\0", 6);
-}
-
-TEST_F(MeshFiles, MtlOptionsAreObeyedOrNamed) {
-    folder_.write("four.ppm", picture());
-    folder_.write("4 wood#1 four.ppm", picture());
-    const std::string mesh = "mtllib m.mtl\n" + kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
-    const auto with_map = [&](const std::string& statement) {
-        folder_.write("m.mtl", "newmtl m\nKd 1 1 1\n" + statement + "\n");
-        return import("a.obj", mesh);
-    };
-    const auto corner = [](const Scene& scene) {  // uv of (1, 1) on the picture of the colour
-        const rt_u32 map = scene.materials.back().maps[RT_MAP_COLOR];
-        const rt_map plain{{1, 0, 0, 0, 1, 0}, 0, 0, 1, 0};
-        const float* const m = map == RT_NONE ? plain.matrix : scene.maps[map].matrix;
-        for (size_t v = 0; v < scene.positions.size() / 3; ++v)
-            if (scene.positions[3 * v] == 1 && scene.positions[3 * v + 1] == 1)
-                return std::pair<float, float>(m[0] * scene.uvs[2 * v] + m[2], m[4] * scene.uvs[2 * v + 1] + m[5]);
-        return std::pair<float, float>(-9, -9);
-    };
-    using Uv = std::pair<float, float>;
-    for (const char* silent :
-         {"map_Kd four.ppm", "map_kd \"four.ppm\"", "map_Kd .\\four.ppm \t", "map_Kd 4 wood#1 four.ppm",
-          "map_Kd -s 1 1 1 4 wood#1 four.ppm", "map_Kd -o 0 0 4 wood#1 four.ppm", "map_Kd four.ppm # a comment",
-          "map_Kd -blendu on -blendv on -mm 0 1.0 -bm 1.000 -cc off four.ppm", "map_Kd C:\\textures\\four.ppm"}) {
-        const Scene scene = with_map(silent);
-        EXPECT_EQ(scene.textures.size(), 1u) << silent;
-        EXPECT_EQ(corner(scene), Uv(1, 1)) << silent;
-        EXPECT_TRUE(scene.warnings.empty()) << silent << ": " << scene.warnings[0];
-    }
-    EXPECT_EQ(corner(with_map("map_Kd -s 2 3 1 four.ppm")), Uv(2, 3));
-    EXPECT_EQ(corner(with_map("map_Kd -s -2.000000 four.ppm")), Uv(-2, 1));
-    EXPECT_EQ(corner(with_map("map_Kd -o 0.5 0.25 -s 4 4 4 four.ppm")), Uv(4.5f, 4.25f));
-    for (const char* option : {"-mm 0.5 2", "-imfchan r", "-type cube_top", "-bm 2", "-texres 512", "-t 1 1 1", "-boost 2.5",
-                               "-cc on", "-blendu off"}) {
-        const Scene scene = with_map("map_Kd " + std::string(option) + " four.ppm");
-        const std::string word = std::string(option).substr(0, std::string(option).find(' '));
-        EXPECT_EQ(scene.textures.size(), 1u) << option;
-        EXPECT_TRUE(warns(scene, "map_Kd " + word)) << option;
-    }
-    const Scene halo = with_map("d -halo 0.25");
-    EXPECT_TRUE(warns(halo, "d -halo"));
-    EXPECT_EQ(halo.materials.back().values.alpha, RT_ALPHA_BLEND);
-    EXPECT_FLOAT_EQ(halo.materials.back().values.opacity, 0.25f);
-}
-
-// Without glass (illum 4, 6, 7, 9) `d` is the share that is there. A map_d of the same picture means its alpha.
-TEST_F(MeshFiles, MtlSaysHowMuchIsThere) {
-    folder_.write("four.ppm", picture());
-    const auto read = [&](const std::string& statements) {
-        folder_.write("m.mtl", "newmtl a\n" + statements + "\n");
-        return import("a.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3 4\n");
-    };
-    const auto values = [&](const std::string& statements) { return read(statements).materials.back().values; };
-    EXPECT_EQ(values("d 1").alpha, RT_ALPHA_OPAQUE);
-    EXPECT_EQ(values("Tr 0.75").alpha, RT_ALPHA_BLEND);
-    EXPECT_FLOAT_EQ(values("Tr 0.75").opacity, 0.25f);
-    EXPECT_EQ(values("illum 6\nNi 1.4\nd 0.25").alpha, RT_ALPHA_OPAQUE);
-    EXPECT_FLOAT_EQ(values("illum 6\nNi 1.4\nd 0.25").refract, 0.75f);
-    const Scene cut = read("map_Kd four.ppm\nmap_d four.ppm");
-    EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
-    EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
-    EXPECT_EQ(cut.materials.back().values.opacity, 1);
-    folder_.write("hole.ppm", picture());
-    const Scene other = read("map_Kd four.ppm\nmap_d hole.ppm");
-    EXPECT_TRUE(other.warnings.empty()) << other.warnings.at(0);
-    EXPECT_EQ(other.materials.back().values.alpha, RT_ALPHA_BLEND);
-    EXPECT_NE(other.materials.back().maps[RT_MAP_OPACITY], RT_NONE);
-    EXPECT_EQ(cut.materials.back().maps[RT_MAP_OPACITY], RT_NONE) << "the alpha of the colour's picture";
-}
-
-TEST_F(MeshFiles, MtlHasMapsOfOtherUses) {
-    folder_.write("four.ppm", picture());
-    folder_.write("grey.ppm", std::string("P6\n4 1\n255\n") + std::string("\0\0\0\x80\x80\x80\xFF\xFF\xFF\x80\x80\x80", 12));
-    const auto read = [&](const std::string& statements) {
-        folder_.write("m.mtl", "newmtl a\n" + statements + "\n");
-        return import("a.obj", "mtllib m.mtl\n" + kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n");
-    };
-    const Scene glowing = read("Ke 0 0 0\nmap_Ke -s 2 2 four.ppm");
-    const Material& glows = glowing.materials.back();
-    EXPECT_EQ(glows.values.emission[0], 1);
-    ASSERT_NE(glows.maps[RT_MAP_EMISSION], RT_NONE);
-    EXPECT_EQ(glowing.maps[glows.maps[RT_MAP_EMISSION]].matrix[0], 2);
-    const Scene normal = read("norm four.ppm");
-    EXPECT_EQ(normal.textures[normal.maps[normal.materials.back().maps[RT_MAP_NORMAL]].texture].flags, RT_TEXTURE_LINEAR);
-    EXPECT_EQ(normal.texels[0] & 0xffffffu, 0x0000ffu) << "as the file has it";
-    const Scene bumped = read("map_Bump -bm 0.5 grey.ppm");
-    EXPECT_TRUE(bumped.warnings.empty()) << bumped.warnings.at(0);
-    const rt_map& bump = bumped.maps[bumped.materials.back().maps[RT_MAP_NORMAL]];
-    EXPECT_EQ(bump.scale, 0.5f);
-    // Heights 0, 1/2, 1, 1/2 along u: it rises at the second texel, by 1 over two texels, and falls at the fourth. A fiftieth
-    // of 4 texels is 0.08: the slope is 0.04.
-    const auto x = [&](size_t i) { return 2 * double(bumped.texels[i] & 255u) / 255 - 1; };
-    EXPECT_NEAR(x(0), 0, 0.005);
-    EXPECT_NEAR(x(1), -0.04, 0.005);
-    EXPECT_NEAR(x(3), 0.04, 0.005);
-    EXPECT_EQ(bumped.texels[1] >> 16 & 255u, 255u) << "z";
-    EXPECT_EQ(read("bump four.ppm").texels[0] & 0xffffffu, 0x0000ffu) << "of other colours it is a map of normals already";
-}
-
-TEST_F(MeshFiles, MtlMovesThePictureOfItsOwnFaces) {
-    folder_.write("four.ppm", picture());
-    folder_.write("m.mtl", "newmtl a\nmap_Kd -s 2 2 2 four.ppm\nnewmtl b\nmap_Kd -clamp on four.ppm\n");
-    const Scene scene =
-        import("a.obj", "mtllib m.mtl\n" + kSquare +
-                            "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 1/1 3/3 4/4\n");
-    ASSERT_EQ(scene.triangle_count(), 2u);
-    EXPECT_EQ(scene.triangles[2], scene.triangles[4]) << "the same corner in both";
-    ASSERT_EQ(scene.maps.size(), 1u);
-    EXPECT_EQ(scene.maps[0].matrix[0], 2);
-    EXPECT_EQ(scene.materials[scene.triangle_materials[0]].maps[RT_MAP_COLOR], 0u);
-    EXPECT_NE(scene.materials[scene.triangle_materials[1]].values.texture, RT_NONE);
 }
 
 TEST_F(MeshFiles, ObjKeepsFacesOfAreaZeroAndFacesBeforeVertices) {

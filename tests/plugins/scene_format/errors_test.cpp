@@ -11,8 +11,9 @@ struct Case {
     const char* message;  // the part after "test.scene:"
 };
 
-#define STATEMENTS \
-    " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate, edit, sky)"
+#define STATEMENTS                                                                                                             \
+    " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate, edit, sky, " \
+    "texture)"
 
 // Stands for the kinds of lights.
 #define LIGHTS "@"
@@ -50,6 +51,18 @@ const Case kCases[] = {
      "1:8: the camera looks along its `up` vector; expected another `up` (0 0 -1, say, to look down)"},
     {"camera a fov 180", "1:14: `180` is out of range; expected `fov` (vertical, degrees) between 0.1 and 179"},
     {"camera a\ncamera a", "2:8: camera `a` for the second time; the first is in line 1"},
+    {"texture", "1:8: the line ends here; expected the texture's name"},
+    {"texture a", "1:10: the line ends here; expected the picture's file"},
+    {"texture a a.png space sRGB", "1:23: `sRGB` is no colour space; did you mean `srgb`? (expected: srgb, linear, height)"},
+    {"texture a a.png scale 0", "1:23: expected one or two numbers other than 0 for `scale` (of u and v, or one for both)"},
+    {"texture a a.png scale 1 2 3", "1:23: expected one or two numbers other than 0 for `scale` (of u and v, or one for both)"},
+    {"texture a a.png offset 1", "1:25: the line ends here; expected number 2 of 2 for `offset` (u v)"},
+    {"texture a a.png uv 2", "1:20: `2` is no set of texture coordinates (expected: 0, 1)"},
+    {"texture a a.png\ntexture a b.png", "2:9: texture `a` for the second time; the first is in line 1"},
+    {"texture planks a.png\nmaterial m color_map plank",
+     "2:22: unknown texture `plank`; did you mean `planks`? (defined in this file: `planks`)"},
+    {"texture a a.png\nmaterial m texture b.png color_map a",
+     "2:36: `texture` and `color_map` are two textures of the colour; expected one of them"},
     {"light", "1:6: the line ends here; expected kind of light: " LIGHTS},
     {"light torch", "1:7: `torch` is no kind of light (expected: " LIGHTS ")"},
     {"light pont", "1:7: `pont` is no kind of light; did you mean `point`? (expected: " LIGHTS ")"},

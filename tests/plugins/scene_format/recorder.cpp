@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "scene/light_kinds.hpp"
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "scene/sky_kinds.hpp"
 
@@ -91,12 +92,14 @@ void add_look_calls(rt_scene_sink& sink) {
         Recording& r = recording_of(ctx);
         r.textures.push_back(texture->path);
         r.wraps.push_back({texture->wrap_u, texture->wrap_v});
+        r.looks.push_back(*texture);
         return r.refuse_textures ? RT_NONE : id_of(r.textures.size());
     };
     sink.material = [](void* ctx, const rt_material_desc* material) -> rt_u32 {
         Recording& r = recording_of(ctx);
         std::string problem;
-        r.materials.push_back({material->name, clarity::material_of(*material, problem)});
+        r.materials.push_back({material->name, clarity::material_of(*material, problem), {}});
+        if (material->maps) r.materials.back().maps.assign(material->maps, material->maps + material->map_count);
         if (!problem.empty()) r.warnings.push_back(problem);
         return id_of(recording_of(ctx).materials.size());
     };
@@ -112,6 +115,7 @@ void add_look_calls(rt_scene_sink& sink) {
     sink.light_kind = [](void*, rt_u32 kind) { return clarity::light_kind_for_plugins(kind); };
     sink.material_kind = [](void*) { return clarity::material_kind_for_plugins(); };
     sink.sky_kind = [](void*, rt_u32 kind) { return clarity::sky_kind_for_plugins(kind); };
+    sink.map_kind = [](void*) { return clarity::map_kind_for_plugins(); };
     sink.camera = [](void* ctx, const rt_camera* camera) -> rt_u32 {
         recording_of(ctx).cameras.push_back({camera->name, *camera});
         return id_of(recording_of(ctx).cameras.size());
@@ -215,6 +219,8 @@ std::string Recording::unsound() const {
         if (!all_finite(v.color) || !all_finite(v.emission) || !all_finite(v.specular)) return "material";
         if (!(v.reflect >= 0 && v.refract >= 0 && v.reflect + v.refract <= 1.0001f && v.ior > 0)) return "material shares";
         if (v.texture != RT_NONE && v.texture >= textures.size()) return "texture";
+        for (const rt_map_desc& map : m.maps)
+            if (!all_finite(map.matrix) || (map.texture != RT_NONE && map.texture >= textures.size())) return "map";
     }
     for (const auto& l : lights) {
         if (!all_finite(l.values.position) || !all_finite(l.values.direction) || !all_finite(l.values.color)) return "light";

@@ -11,6 +11,7 @@
 struct RecordedMaterial {
     std::string name;
     rt_material values;  // its texture is an id of the sink
+    std::vector<rt_map_desc> maps;
 };
 struct RecordedMesh {
     std::vector<float> positions;
@@ -56,6 +57,7 @@ struct Recording {
     std::vector<std::string> log, warnings;
     std::vector<std::string> textures;
     std::vector<std::pair<rt_u32, rt_u32>> wraps;  // of the textures
+    std::vector<rt_texture_desc> looks;            // likewise; their pointers are not valid any more
     std::vector<RecordedMaterial> materials;
     std::vector<RecordedMesh> meshes;
     std::vector<rt_u32> instanced_meshes;

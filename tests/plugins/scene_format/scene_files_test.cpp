@@ -133,6 +133,38 @@ class Scenes : public testing::Test {
     fs::path folder_ = fs::temp_directory_path() / ("clarity_scenes_" + std::to_string(getpid()));
 };
 
+TEST_F(Scenes, TexturesByUse) {
+    fs::copy_file(CLARITY_SOURCE_DIR "/scenes/textures/grid.png", folder_ / "grid.png");
+    const std::string text =
+        write("own.scene",
+              "texture wood grid.png scale 2 .5 rotate 30 wrap clamp\n"
+              "texture dents grid.png uv 1 strength .5 filter nearest\n"
+              "material m model gltf color_map wood normal_map dents metallic_roughness_map dents emission_map plain\n"
+              "texture plain grid.png\nsphere material m\n");
+    const Scene scene = import_file(text);
+    EXPECT_TRUE(scene.warnings.empty());
+    // Wood, dents, and plain as a colour; the first and the last differ in how they wrap.
+    EXPECT_EQ(scene.texture_names, (std::vector<std::string>{"wood", "dents", "plain"}));
+    ASSERT_EQ(scene.textures.size(), 3u);
+    EXPECT_EQ(scene.textures[0].first, scene.textures[2].first) << "a picture is there once for each colour space";
+    EXPECT_NE(scene.textures[0].first, scene.textures[1].first);
+    EXPECT_EQ(scene.textures[1].flags, RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST);
+    const MaterialMaps& maps = scene.materials.at(1).maps;
+    ASSERT_EQ(scene.maps.size(), 4u);
+    EXPECT_EQ(scene.maps.at(maps[RT_MAP_COLOR]).texture, 0u);
+    EXPECT_NEAR(scene.maps[maps[RT_MAP_COLOR]].matrix[0], 2 * std::cos(3.14159265 / 6), 1e-6);
+    EXPECT_NEAR(scene.maps[maps[RT_MAP_COLOR]].matrix[1], -0.5 * std::sin(3.14159265 / 6), 1e-6);
+    EXPECT_EQ(scene.maps.at(maps[RT_MAP_NORMAL]).scale, 0.5f);
+    EXPECT_EQ(scene.maps.at(maps[RT_MAP_METALLIC_ROUGHNESS]).set, 1u);
+    EXPECT_EQ(scene.maps.at(maps[RT_MAP_EMISSION]).texture, 2u);
+    EXPECT_EQ(scene.materials[1].values.roughness, 1) << "times the texture";
+    // A file that is not there is a warning that names it, and the material stays without it.
+    const Scene without = import_file(write("gone.scene", "texture t gone.png\nmaterial m normal_map t\nsphere material m\n"));
+    ASSERT_EQ(without.warnings.size(), 1u);
+    EXPECT_NE(without.warnings[0].find("gone.png"), std::string::npos) << without.warnings[0];
+    EXPECT_EQ(without.materials.at(1).maps, no_maps());
+}
+
 TEST_F(Scenes, ErrorIsOneLineThatNamesThePlaceOnce) {
     const std::string file = write("bad.scene", "sphere\nsphere radious 1\n");
     EXPECT_EQ(error_of(file),

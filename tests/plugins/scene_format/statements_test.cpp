@@ -209,12 +209,65 @@ TEST(SceneFormat, ReadsWrapModesOfTextures) {
     EXPECT_NE(none.warnings[0].find("1:17"), std::string::npos) << none.warnings[0];
 }
 
+TEST(SceneFormat, ReadsTexturesByUse) {
+    const Recording r = import_good(
+        "material a model gltf normal_map dents color_map wood metallic_roughness_map dents roughness .5\n"
+        "material b color_map wood emission_map wood opacity .5\n"
+        "texture wood \"my wood.png\" scale 2 -3 rotate 90 offset .25 .5 wrap clamp mirror filter nearest\n"
+        "texture dents dents.png uv 1 strength .5 scale 4\n"
+        "texture bumps bumps.png space height\n"
+        "material c normal_map bumps specular_color_map dents\n"
+        "texture unused gone.png\n");
+    const std::vector<rt_map_desc>& a = r.materials.at(0).maps;
+    ASSERT_EQ(a.size(), 3u);
+    EXPECT_EQ(a[0].use, RT_MAP_NORMAL);
+    EXPECT_EQ(a[0].scale, 0.5f);
+    EXPECT_EQ(a[0].set, 1u);
+    EXPECT_EQ(a[1].use, RT_MAP_COLOR);
+    EXPECT_EQ(a[1].scale, 1);
+    EXPECT_EQ(a[1].set, 0u);
+    // (1, 0) -> (2, 0) -> (0, 2) -> (.25, 2.5), and (0, 1) -> (0, -3) -> (3, 0) -> (3.25, .5)
+    const float wood[6] = {0, 3, 0.25f, 2, 0, 0.5f};
+    for (int k = 0; k < 6; ++k) EXPECT_NEAR(a[1].matrix[k], wood[k], 1e-6) << k;
+    EXPECT_EQ(a[2].use, RT_MAP_METALLIC_ROUGHNESS);
+    EXPECT_EQ(a[2].texture, a[0].texture);  // both are numbers, so it is one texture
+    EXPECT_EQ(a[2].scale, 1);               // only normals and occlusion have a strength
+    const std::vector<rt_map_desc>& c = r.materials.at(2).maps;
+    EXPECT_NE(c[1].texture, a[0].texture);  // a colour is sRGB
+    EXPECT_EQ(r.looks.at(c[1].texture).space, RT_SPACE_SRGB);
+    EXPECT_EQ(r.looks.at(c[0].texture).space, RT_SPACE_HEIGHT);
+    EXPECT_EQ(r.looks.at(a[0].texture).space, RT_SPACE_LINEAR);
+    EXPECT_EQ(r.looks.at(a[1].texture).space, RT_SPACE_SRGB);
+    EXPECT_EQ(r.looks.at(a[1].texture).filter, RT_FILTER_NEAREST);
+    EXPECT_EQ(r.wraps.at(a[1].texture), (std::pair<rt_u32, rt_u32>{RT_WRAP_CLAMP, RT_WRAP_MIRROR}));
+    EXPECT_EQ(r.textures, (std::vector<std::string>{"dents.png", "my wood.png", "bumps.png", "dents.png"}));
+    // What a texture multiplies is 1 where it is not given.
+    expect_near(r.materials[1].values.color, {1, 1, 1});
+    expect_near(r.materials[1].values.emission, {1, 1, 1});
+    expect_near(r.materials[2].values.emission, {0, 0, 0});
+    EXPECT_EQ(r.materials[0].values.roughness, 0.5f);
+    EXPECT_TRUE(r.warnings.empty());
+}
+
+// A statement may have any number of keys: the last ones are told from the first.
+TEST(SceneFormat, AMaterialMayHaveItsFirstKeyAndItsLast) {
+    const Recording r =
+        import_good("material a model lambert texture t.png wrap clamp color .5 opacity_map t\ntexture t t.png\n");
+    EXPECT_EQ(r.materials.at(0).maps.size(), 1u);
+    EXPECT_EQ(r.wraps.at(0).first, RT_WRAP_CLAMP);
+}
+
 TEST(SceneFormat, MissingTextureIsNoError) {
     Recording r;
     r.refuse_textures = true;
     import_text("material m texture gone.png\nsphere material m\n", r);
     EXPECT_EQ(r.status, RT_OK);
     EXPECT_EQ(r.materials.at(0).values.texture, RT_NONE);
+    r = {};
+    r.refuse_textures = true;
+    import_text("texture t gone.png\nmaterial m normal_map t\nsphere material m\n", r);
+    EXPECT_EQ(r.status, RT_OK);
+    EXPECT_EQ(r.materials.at(0).maps.at(0).texture, RT_NONE);
 }
 
 TEST(SceneFormat, SharesAboveOneAreScaledWithAWarning) {

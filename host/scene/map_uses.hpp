@@ -1,0 +1,21 @@
+// map_uses.hpp -- the table of what textures are used for. A new use is a row here, an RT_MAP_ and kernels that read it.
+#pragma once
+#include <array>
+
+#include "rt_plugin.h"
+
+namespace clarity {
+
+struct MapUse {
+    const char* name;   // the key of a material in text scenes
+    const char* label;  // in the panel
+    const char* help;
+    rt_u32 space;                           // RT_SPACE_ of textures that say none
+    std::array<const char*, 3> multiplies;  // keys of materials, NULL-terminated. Where a file names none, they are 1
+};
+
+// By RT_MAP_.
+const std::array<MapUse, RT_MAP_USES>& map_uses();
+const rt_primitive_kind* map_kind_for_plugins();
+
+}  // namespace clarity

@@ -1,0 +1,78 @@
+#include "textures.hpp"
+
+#include <cmath>
+
+#include "rt_plugin.hpp"
+
+namespace scene_format {
+namespace {
+
+constexpr float kMostStrength = 1000;
+
+// One number for both directions, or two.
+std::array<float, 2> read_scale(Statement& s) {
+    const Position start = s.next();
+    const std::vector<float> numbers = s.numbers("`scale` (of u and v, or one for both)", 1, -kMaxNumber, kMaxNumber);
+    const std::array<float, 2> scale = {numbers.front(), numbers.back()};
+    if (numbers.size() > 2 || scale[0] == 0 || scale[1] == 0)
+        throw StatementError{start, "expected one or two numbers other than 0 for `scale` (of u and v, or one for both)"};
+    return scale;
+}
+
+}  // namespace
+
+void read_wrap(Statement& s, rt_u32& along_u, rt_u32& along_v) {
+    const std::vector<std::string_view> modes = {"repeat", "clamp", "mirror"};
+    along_u = along_v = static_cast<rt_u32>(s.choice("wrap mode", modes));
+    if (!s.done() && !s.at_key()) along_v = static_cast<rt_u32>(s.choice("wrap mode along v", modes));
+}
+
+void read_texture(Statement& s, Document& document, Diagnostics&) {
+    enum { kSpace, kWrap, kFilter, kUv, kOffset, kRotate, kScale, kStrength };
+    s.expect_keys({{"space"}, {"wrap"}, {"filter"}, {"uv"}, {"offset"}, {"rotate"}, {"scale"}, {"strength"}});
+    // As of materials: an error in a key is no error of each use of the name.
+    Texture& texture = document.textures.emplace_back();
+    texture.name = s.name("the texture's name");
+    texture.path = s.path("the picture's file");
+    while (!s.done()) {
+        switch (s.key()) {
+            case kSpace:
+                texture.space = static_cast<rt_u32>(s.choice("colour space", {"srgb", "linear", "height"}));
+                break;
+            case kWrap:
+                read_wrap(s, texture.wrap_u, texture.wrap_v);
+                break;
+            case kFilter:
+                texture.filter = static_cast<rt_u32>(s.choice("filter", {"smooth", "nearest"}));
+                break;
+            case kUv:
+                texture.set = static_cast<rt_u32>(s.choice("set of texture coordinates", {"0", "1"}));
+                break;
+            case kOffset:
+                for (size_t i = 0; i < 2; ++i) texture.offset[i] = s.number("`offset` (u v)", i, 2);
+                break;
+            case kRotate:
+                texture.degrees = s.number("`rotate` (degrees)");
+                break;
+            case kScale:
+                texture.scale = read_scale(s);
+                break;
+            case kStrength:
+                texture.strength = s.number_between("`strength`", -kMostStrength, kMostStrength);
+                break;
+        }
+    }
+}
+
+rt_map_desc map_of(const Texture& texture, rt_u32 use, rt_u32 id) {
+    rt_map_desc map = rt::map(use, id);
+    map.set = texture.set;
+    if (use == RT_MAP_NORMAL || use == RT_MAP_CLEARCOAT_NORMAL || use == RT_MAP_OCCLUSION) map.scale = texture.strength;
+    const double angle = texture.degrees * (3.14159265358979323846 / 180), c = std::cos(angle), s = std::sin(angle);
+    const double matrix[6] = {c * texture.scale[0], -s * texture.scale[1], texture.offset[0],
+                              s * texture.scale[0], c * texture.scale[1],  texture.offset[1]};
+    for (int k = 0; k < 6; ++k) map.matrix[k] = static_cast<float>(matrix[k]);
+    return map;
+}
+
+}  // namespace scene_format
