@@ -25,6 +25,33 @@ float brightest(const aiColor3D& c) {
     return std::max({c.r, c.g, c.b});
 }
 
+// What pictures are for. assimp calls the bumps of COLLADA, which are either, normals; the host tells normals from heights.
+struct Use {
+    aiTextureType type;
+    rt_u32 use, space;
+};
+constexpr Use kUses[] = {
+    {aiTextureType_EMISSION_COLOR, RT_MAP_EMISSION, RT_SPACE_SRGB},
+    {aiTextureType_EMISSIVE, RT_MAP_EMISSION, RT_SPACE_SRGB},
+    {aiTextureType_NORMAL_CAMERA, RT_MAP_NORMAL, RT_SPACE_HEIGHT},
+    {aiTextureType_NORMALS, RT_MAP_NORMAL, RT_SPACE_HEIGHT},
+    {aiTextureType_HEIGHT, RT_MAP_NORMAL, RT_SPACE_HEIGHT},
+    {aiTextureType_METALNESS, RT_MAP_METALLIC, RT_SPACE_LINEAR},
+    {aiTextureType_DIFFUSE_ROUGHNESS, RT_MAP_ROUGHNESS, RT_SPACE_LINEAR},
+    {aiTextureType_AMBIENT_OCCLUSION, RT_MAP_OCCLUSION, RT_SPACE_LINEAR},
+};
+// Those that mean nothing here, with names for the warning.
+constexpr std::pair<aiTextureType, const char*> kLeftOut[] = {
+    {aiTextureType_AMBIENT, "ambient"},           {aiTextureType_SPECULAR, "specular"},
+    {aiTextureType_SHININESS, "shininess"},       {aiTextureType_REFLECTION, "reflection"},
+    {aiTextureType_DISPLACEMENT, "displacement"}, {aiTextureType_LIGHTMAP, "light map"},
+};
+
+std::string picture_of(const aiMaterial& m, aiTextureType type) {
+    aiString path;
+    return m.GetTextureCount(type) > 0 && m.GetTexture(type, 0, &path) == aiReturn_SUCCESS ? path.C_Str() : "";
+}
+
 void apply_phong(const aiMaterial& m, rt_material_desc& out) {
     const aiColor3D specular = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
     const float strength = importers::limited(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
@@ -61,23 +88,49 @@ rt_u32 MaterialTable::id(unsigned material) {
     // assimp adds a material where the file has none. The host's default material takes its place.
     if (std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME) return RT_NONE;
     rt_material_desc& out = desc;
-    out.texture = texture(m);
+    std::string color_picture, left_out;
+    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+        if (color_picture.empty()) out.texture = texture(m, type, RT_SPACE_SRGB);
+        if (color_picture.empty()) color_picture = picture_of(m, type);
+    }
+    std::vector<rt_map_desc> maps = maps_of(m);
+    const auto has_map = [&](rt_u32 use) {
+        return std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });
+    };
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
     importers::store_color(base, 1, 1, out.color);
-    const aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
+    // A picture replaces the value.
+    const aiColor3D emission = has_map(RT_MAP_EMISSION) ? aiColor3D(1, 1, 1) : color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
     const float intensity = importers::limited(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
     importers::store_color(emission, intensity, 1000, out.emission);
+    importers::MaterialKeys keys;
     ai_real metallic = 0;
     if (m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS) {
-        importers::apply_metallic(metallic, number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), out);
+        keys.set("model", importers::gltf_model);
+        keys.set("metallic", has_map(RT_MAP_METALLIC) ? 1 : metallic);
+        keys.set("roughness", has_map(RT_MAP_ROUGHNESS) ? 1 : number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1));
     } else {
         apply_phong(m, out);
     }
     importers::AlphaKeys alpha;
-    importers::apply_transparency(number(m, AI_MATKEY_OPACITY, 1), number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0),
-                                  number(m, AI_MATKEY_REFRACTI, 0), alpha, out);
-    alpha.give(out);
+    const std::string cut = picture_of(m, aiTextureType_OPACITY);
+    importers::apply_transparency(cut.empty() ? number(m, AI_MATKEY_OPACITY, 1) : 1,
+                                  number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0), number(m, AI_MATKEY_REFRACTI, 0), alpha, out);
+    // With A_ONE it is the picture's alpha that counts, which only that of the colour has here. RGB_ZERO would be one minus
+    // its brightness; assimp tells it by a transparent colour.
+    aiColor3D transparent;
+    if (!cut.empty() && cut == color_picture && m.Get(AI_MATKEY_COLOR_TRANSPARENT, transparent) != aiReturn_SUCCESS)
+        alpha.set(importers::AlphaKeys::blend, 1);
+    else if (!cut.empty())
+        left_out = "transparency";
+    alpha.give(keys);
+    keys.give(out);
+    importers::give_maps(maps, out);
+    for (const auto& [type, word] : kLeftOut)
+        if (!picture_of(m, type).empty()) left_out += (left_out.empty() ? "" : ", ") + std::string(word);
+    if (!left_out.empty())
+        rt::warn(sink_, "material '" + std::string(name.C_Str()) + "': left out the pictures of " + left_out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
 }
 
@@ -103,17 +156,24 @@ TextureMapping MaterialTable::mapping(unsigned material) const {
     return mapping;
 }
 
-rt_u32 MaterialTable::texture(const aiMaterial& material) {
-    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
-        aiString path;
-        if (material.GetTextureCount(type) == 0 || material.GetTexture(type, 0, &path) != aiReturn_SUCCESS) continue;
-        if (path.length == 0) continue;
-        const auto stated = wraps_.of_picture.find(file_name(path.C_Str()));
-        if (stated != wraps_.of_picture.end()) return add_texture(path.C_Str(), stated->second.first, stated->second.second);
-        return add_texture(path.C_Str(), wrap_mode(material, AI_MATKEY_MAPPINGMODE_U(type, 0)),
-                           wrap_mode(material, AI_MATKEY_MAPPINGMODE_V(type, 0)));
+// They lie as the picture of the colour does.
+std::vector<rt_map_desc> MaterialTable::maps_of(const aiMaterial& material) {
+    std::vector<rt_map_desc> maps;
+    for (const Use& use : kUses) {
+        const bool is_there = std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use.use; });
+        const rt_map_desc map = rt::map(use.use, is_there ? RT_NONE : texture(material, use.type, use.space));
+        if (map.texture != RT_NONE) maps.push_back(map);
     }
-    return RT_NONE;
+    return maps;
+}
+
+rt_u32 MaterialTable::texture(const aiMaterial& material, aiTextureType type, rt_u32 space) {
+    const std::string path = picture_of(material, type);
+    if (path.empty()) return RT_NONE;
+    const auto stated = wraps_.of_picture.find(file_name(path));
+    if (stated != wraps_.of_picture.end()) return add_texture(path, stated->second.first, stated->second.second, space);
+    return add_texture(path, wrap_mode(material, AI_MATKEY_MAPPINGMODE_U(type, 0)),
+                       wrap_mode(material, AI_MATKEY_MAPPINGMODE_V(type, 0)), space);
 }
 
 // aiTextureMapMode.
@@ -128,13 +188,14 @@ rt_u32 MaterialTable::wrap_mode(const aiMaterial& material, const char* key, uns
     return RT_WRAP_CLAMP;
 }
 
-rt_u32 MaterialTable::add_texture(const std::string& reference, rt_u32 wrap_u, rt_u32 wrap_v) {
-    const auto [known, is_new] = textures_.insert({{reference, wrap_u, wrap_v}, RT_NONE});
+rt_u32 MaterialTable::add_texture(const std::string& reference, rt_u32 wrap_u, rt_u32 wrap_v, rt_u32 space) {
+    const auto [known, is_new] = textures_.insert({{reference, wrap_u, wrap_v, space}, RT_NONE});
     if (!is_new) return known->second;
     rt_texture_desc desc{};
     desc.struct_bytes = sizeof desc;
     desc.wrap_u = wrap_u;
     desc.wrap_v = wrap_v;
+    desc.space = space;
     if (const aiTexture* embedded = scene_.GetEmbeddedTexture(reference.c_str()))
         return known->second = embedded_texture(*embedded, desc);
     const std::string path = importers::existing_picture(place_, {reference});

@@ -1,4 +1,4 @@
-// materials.hpp -- converts assimp's materials and textures to Whitted materials of the host.
+// materials.hpp -- converts assimp's materials and textures to those of the host.
 #pragma once
 #include <assimp/scene.h>
 
@@ -28,9 +28,10 @@ class MaterialTable {
     TextureMapping mapping(unsigned material) const;
 
  private:
-    rt_u32 texture(const aiMaterial& material);
+    std::vector<rt_map_desc> maps_of(const aiMaterial& material);  // besides that of the colour
+    rt_u32 texture(const aiMaterial& material, aiTextureType type, rt_u32 space);
     rt_u32 wrap_mode(const aiMaterial& material, const char* key, unsigned type, unsigned index);
-    rt_u32 add_texture(const std::string& reference, rt_u32 wrap_u, rt_u32 wrap_v);
+    rt_u32 add_texture(const std::string& reference, rt_u32 wrap_u, rt_u32 wrap_v, rt_u32 space);
     rt_u32 embedded_texture(const aiTexture& texture, rt_texture_desc& desc);
 
     const aiScene& scene_;
@@ -40,7 +41,7 @@ class MaterialTable {
     std::vector<rt_u32> ids_;
     std::vector<bool> done_;
     bool warned_of_decals_ = false;
-    std::map<std::tuple<std::string, rt_u32, rt_u32>, rt_u32> textures_;  // by reference and wrap modes
+    std::map<std::tuple<std::string, rt_u32, rt_u32, rt_u32>, rt_u32> textures_;  // by reference, wrap modes and space
 };
 
 }  // namespace assimp_import

@@ -19,17 +19,6 @@ void store_color(const Color& color, double factor, double most, float (&out)[3]
     for (unsigned k = 0; k < 3; ++k) out[k] = limited(color[k] * factor, 0, most, 0);
 }
 
-// A smooth metal mirrors, a rough one stays diffuse in its own colour, which out.color already has.
-inline void apply_metallic(double metallic_factor, double roughness_factor, rt_material_desc& out) {
-    const float metallic = limited(metallic_factor, 0, 1, 0), roughness = limited(roughness_factor, 0, 1, 1);
-    const float smooth = 1 - roughness;
-    out.reflect = metallic * smooth;
-    // Blinn's exponent for a GGX roughness (alpha = roughness^2): 2 / alpha^2 - 2.
-    const float alpha2 = std::max(1e-3f, roughness * roughness * roughness * roughness);
-    out.shininess = std::clamp(2 / alpha2 - 2, 1.0f, 1000.0f);
-    for (int k = 0; k < 3; ++k) out.specular[k] = smooth * (0.04f + metallic * (out.color[k] - 0.04f));
-}
-
 // Further values by the keys of the host's table. A description that has them points to them.
 class MaterialKeys {
  public:

@@ -1,0 +1,106 @@
+// collada_materials_test.cpp -- the pictures of COLLADA's materials, and what is transparent.
+#include <gtest/gtest.h>
+
+#include "measure.hpp"
+
+namespace clarity::test {
+namespace {
+
+// A square with coordinates, whose effect has these parameters: <emission>, <diffuse>, ... Pictures: dot and other.
+Scene square(const Scratch& folder, const std::string& parameters) {
+    folder.write("dot.ppm", "P6 1 1 255\nabc");
+    folder.write("other.ppm", "P6 1 1 255\nxyz");
+    std::string samplers;
+    for (const std::string name : {"dot", "other"})
+        samplers += "<newparam sid=\"" + name + "-s\"><surface type=\"2D\"><init_from>" + name +
+                    "</init_from></surface></newparam><newparam sid=\"" + name + "-t\"><sampler2D><source>" + name +
+                    "-s</source></sampler2D></newparam>";
+    const auto source = [](const std::string& id, const std::string& numbers, const std::string& params, int stride) {
+        std::string out = "<source id=\"" + id + "\"><float_array id=\"" + id + "-a\" count=\"" + std::to_string(4 * stride) +
+                          "\">" + numbers + "</float_array><technique_common><accessor source=\"#" + id +
+                          "-a\" count=\"4\" stride=\"" + std::to_string(stride) + "\">";
+        for (const char c : params) out += std::string("<param name=\"") + c + "\" type=\"float\"/>";
+        return out + "</accessor></technique_common></source>";
+    };
+    return import_file(folder.write(
+        "a.dae",
+        "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset/>"
+        "<library_images><image id=\"dot\"><init_from>dot.ppm</init_from></image><image id=\"other\"><init_from>other.ppm"
+        "</init_from></image></library_images><library_effects><effect id=\"e\"><profile_COMMON>" +
+            samplers + "<technique sid=\"t\"><phong>" + parameters +
+            "</phong></technique></profile_COMMON></effect></library_effects><library_materials><material id=\"m\" name=\"m\">"
+            "<instance_effect url=\"#e\"/></material></library_materials><library_geometries><geometry id=\"g\"><mesh>" +
+            source("p", "0 0 0 1 0 0 1 1 0 0 1 0", "XYZ", 3) + source("u", "0 0 1 0 1 1 0 1", "ST", 2) +
+            "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><polylist material=\"s\" count=\"1\">"
+            "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><input semantic=\"TEXCOORD\" source=\"#u\" offset=\"0\" "
+            "set=\"0\"/><vcount>4</vcount><p>0 1 2 3</p></polylist></mesh></geometry></library_geometries>"
+            "<library_visual_scenes><visual_scene id=\"x\"><node id=\"n\"><instance_geometry url=\"#g\"><bind_material>"
+            "<technique_common><instance_material symbol=\"s\" target=\"#m\"><bind_vertex_input semantic=\"UV\" "
+            "input_semantic=\"TEXCOORD\" input_set=\"0\"/></instance_material></technique_common></bind_material>"
+            "</instance_geometry></node></visual_scene></library_visual_scenes>"
+            "<scene><instance_visual_scene url=\"#x\"/></scene></COLLADA>\n"));
+}
+std::string picture(const std::string& name) {
+    return "<texture texture=\"" + name + "-t\" texcoord=\"UV\"/>";
+}
+const std::string kDiffuse = "<diffuse>" + picture("dot") + "</diffuse>";
+
+TEST(ColladaMaterials, HavePicturesOfEmissionAndBumps) {
+    NEEDS_IMPORTER("a.dae");
+    const Scratch folder;
+    const Scene glowing = square(folder, "<emission>" + picture("other") + "</emission>" + kDiffuse);
+    EXPECT_TRUE(glowing.warnings.empty()) << glowing.warnings.at(0);
+    const Material& glows = glowing.materials.back();
+    ASSERT_NE(glows.maps[RT_MAP_EMISSION], RT_NONE);
+    EXPECT_EQ(glowing.textures.size(), 2u);
+    EXPECT_EQ(glowing.textures[glowing.maps[glows.maps[RT_MAP_EMISSION]].texture].flags & RT_TEXTURE_LINEAR, 0u);
+    EXPECT_EQ(glows.values.emission[1], 1);
+    EXPECT_EQ(square(folder, kDiffuse).materials.back().values.emission[1], 0);
+    const Scene bumped = square(
+        folder, kDiffuse + "<extra><technique profile=\"FCOLLADA\"><bump>" + picture("other") + "</bump></technique></extra>");
+    const Material& rough = bumped.materials.back();
+    ASSERT_NE(rough.maps[RT_MAP_NORMAL], RT_NONE);
+    EXPECT_EQ(bumped.textures[bumped.maps[rough.maps[RT_MAP_NORMAL]].texture].flags, RT_TEXTURE_LINEAR);
+}
+
+// COLLADA 1.5.0, "transparent": A_ONE is the alpha of a colour or picture, RGB_ZERO one minus the brightness.
+TEST(ColladaMaterials, AreAsTransparentAsTheySay) {
+    NEEDS_IMPORTER("a.dae");
+    const Scratch folder;
+    const auto clear = [&](const std::string& opaque, const std::string& of, const std::string& transparency) {
+        return square(folder, kDiffuse + "<transparent opaque=\"" + opaque + "\">" + of +
+                                  "</transparent><transparency><float>" + transparency + "</float></transparency>");
+    };
+    const auto values = [&](const std::string& opaque, const std::string& color, const std::string& transparency) {
+        return clear(opaque, "<color>" + color + "</color>", transparency).materials.back().values;
+    };
+    EXPECT_EQ(values("A_ONE", "1 1 1 1", "1").alpha, RT_ALPHA_OPAQUE);
+    EXPECT_EQ(values("A_ONE", "1 1 1 0.5", "0.5").alpha, RT_ALPHA_BLEND);
+    EXPECT_FLOAT_EQ(values("A_ONE", "1 1 1 0.5", "0.5").opacity, 0.25f);
+    EXPECT_EQ(values("RGB_ZERO", "0 0 0 1", "1").alpha, RT_ALPHA_OPAQUE);
+    EXPECT_NEAR(values("RGB_ZERO", "0.5 0.5 0.5 1", "0.5").opacity, 0.75f, 1e-5);
+    const Scene cut = clear("A_ONE", picture("dot"), "1");
+    EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
+    EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
+    EXPECT_EQ(cut.materials.back().values.opacity, 1);
+    const Scene other = clear("A_ONE", picture("other"), "1");
+    ASSERT_EQ(other.warnings.size(), 1u);
+    EXPECT_NE(other.warnings[0].find("material 'm': left out the pictures of transparency"), std::string::npos)
+        << other.warnings[0];
+    const Scene inverted = clear("RGB_ZERO", picture("dot"), "1");
+    ASSERT_EQ(inverted.warnings.size(), 1u);
+    EXPECT_EQ(inverted.materials.back().values.alpha, RT_ALPHA_OPAQUE);
+}
+
+TEST(ColladaMaterials, SayWhichPicturesAreLeftOut) {
+    NEEDS_IMPORTER("a.dae");
+    const Scratch folder;
+    const Scene scene = square(
+        folder, kDiffuse + "<specular>" + picture("other") + "</specular><reflective>" + picture("other") + "</reflective>");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("'m': left out the pictures of specular, reflection"), std::string::npos)
+        << scene.warnings[0];
+}
+
+}  // namespace
+}  // namespace clarity::test
