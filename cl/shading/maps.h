@@ -23,7 +23,7 @@ RT_INLINE rt_texture_point rt_sharp_point(vfloat u, vfloat v)
  * much a map stretches it. spread: rt_surface.spread. */
 RT_INLINE vfloat rt_texture_level(vfloat spread, float size)
 {
-    return rt_rough_log2(rt_max(spread, rt_vfloat(1e-30f))) + rt_vfloat(0.5f * log2(max(size, 1e-30f)));
+    return rt_rough_log2(rt_max(spread * rt_vfloat(sqrt(size)), rt_vfloat(1e-30f)));
 }
 #endif
 

@@ -58,7 +58,7 @@ typedef struct rt_texture_point {
 #endif
 } rt_texture_point;
 
-#ifdef RT_HAS_MIPS
+#ifdef RT_MIX_MIPS
 #define RT_TAPS 8 /* four texels of a picture, and four of the next smaller one */
 #else
 #define RT_TAPS 4
@@ -120,8 +120,8 @@ RT_INLINE void rt_level_size(const rt_ctx *ctx, const rt_texture *texture, vint 
 }
 #endif
 
-/* Loads the texels of texture `index` around a point in each of `lanes`: bilinear, between two pictures if the point's level is, and
- * outside of the picture as its wrap modes say. */
+/* Loads the texels of texture `index` around a point in each of `lanes`: bilinear, of the picture whose level is the nearest, or with
+ * RT_MIX_MIPS of the two that are. Outside of the picture they are as its wrap modes say. */
 RT_INLINE rt_taps rt_load_texels(const rt_ctx *ctx, const rt_texture *texture, vmask lanes, const rt_texture_point *p)
 {
 #ifdef RT_HAS_WRAPS
@@ -132,7 +132,7 @@ RT_INLINE rt_taps rt_load_texels(const rt_ctx *ctx, const rt_texture *texture, v
     const vfloat one = rt_vfloat(1.0f);
     rt_taps taps;
     vint w = rt_vint((int)texture->width), h = rt_vint((int)texture->height), offset = rt_vint(0);
-#ifdef RT_HAS_MIPS
+#ifdef RT_MIX_MIPS
     const vfloat zero = rt_vfloat(0.0f), last = rt_vfloat((float)texture->levels);
     const vfloat level = rt_min(rt_max(p->level, zero), last), lower = floor(level), share = level - lower;
     if (rt_any(lanes & RT_MASK(level > zero))) rt_level_size(ctx, texture, rt_to_int(lower), lanes, &w, &h, &offset);
@@ -144,6 +144,10 @@ RT_INLINE rt_taps rt_load_texels(const rt_ctx *ctx, const rt_texture *texture, v
         for (int k = 4; k < 8; ++k) taps.color[k] = rt_vint(0), taps.weight[k] = zero;
     }
 #else
+#ifdef RT_HAS_MIPS
+    const vint level = min(rt_to_int(rt_max(p->level, rt_vfloat(0.0f)) + rt_vfloat(0.5f)), rt_vint((int)texture->levels));
+    if (rt_any(lanes & RT_MASK(level > rt_vint(0)))) rt_level_size(ctx, texture, level, lanes, &w, &h, &offset);
+#endif
     rt_load_four(ctx, texture, lanes, w, h, offset, s, t, one, taps.color, taps.weight);
 #endif
     return taps;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
@@ -92,9 +93,10 @@ TEST(Info, ListsMaterials) {
                            R"({"name":"steel","model":"gltf","roughness":0.25,"metallic":1.0,"sheen_color":[0.0,0.5,0.0]})"));
     EXPECT_EQ(list[2], nlohmann::json::parse(R"({"name":"glow","model":"whitted","emission":[1.0,2.0,3.0],"reflect":0.5})"));
     const std::string text = run_program({"info", scene}).out;
-    const std::string mapped = scratch.write("mapped.scene", "texture wood \"" CLARITY_SOURCE_DIR
-                                                             "/scenes/textures/grid.png\" uv 1 offset .5 0 strength .5\n"
-                                                             "material m normal_map wood\nsphere material m\n");
+    std::filesystem::copy_file(CLARITY_SOURCE_DIR "/scenes/textures/grid.png", scratch.path("grid.png"));
+    const std::string mapped = scratch.write("mapped.scene",
+                                             "texture wood grid.png uv 1 offset .5 0 strength .5\n"
+                                             "material m normal_map wood\nsphere material m\n");
     EXPECT_EQ(info_of(mapped)["material_list"][1]["normal_map"],
               nlohmann::json::parse(R"({"texture":0,"name":"wood","uv":1,"strength":0.5,"matrix":[1.0,0.0,0.5,0.0,1.0,0.0]})"));
     EXPECT_NE(text.find("steel: gltf, roughness 0.25, metallic 1, sheen_color 0 0.5 0\n"), std::string::npos) << text;

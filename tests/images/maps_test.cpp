@@ -128,7 +128,7 @@ TEST(Maps, TexelsOfNumbersAreLinear) {
 
 TEST(Maps, OcclusionDimsAmbientLightAlone) {
     Scene scene = white_square();
-    add_map(scene, 0, RT_MAP_OCCLUSION, add_texture(scene, 1, {0xff000000u}, RT_TEXTURE_LINEAR)).scale = 0.75f;
+    add_map(scene, 0, RT_MAP_OCCLUSION, add_texture(scene, 1, {0xffffff00u}, RT_TEXTURE_LINEAR)).scale = 0.75f;
     expect_color(trace(scene, flat_view(), 64, 64, 1).image, 30, 30, {.25f, .25f, .25f}, 1e-4, "ambient");
     const PathPicture path = trace_paths(scene, flat_view(), 16, {{"strategy", "bsdf"}});
     EXPECT_NEAR(path.average(), 1, 1e-3) << "paths find what hides the sky themselves";
@@ -307,9 +307,26 @@ TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
     scene.texels.own() = texels;
     scene.textures = {{0, 64, 64, 0, 0, 6, 0}};
     scene.materials[0].values.texture = 0;
-    expect_color(trace(scene, flat_view(), 64, 64, 1).image, 32, 32, {1, 0, 0}, 0.15, "one texel a pixel");
-    expect_color(trace(scene, flat_view(), 32, 32, 1).image, 16, 16, {0, 1, 0}, 0.15, "two along each side");
-    expect_color(trace(scene, flat_view(), 16, 16, 1).image, 8, 8, {0, 0, 1}, 0.15, "four");
+    const auto seen = [&](int side, const char* mips) {
+        return pixel(trace(scene, flat_view(), side, side, 1, {{"mips", mips}}).image, side / 2, side / 2);
+    };
+    const auto expect_seen = [&](int side, const char* mips, const std::array<float, 3>& wanted) {
+        const std::array<float, 3> color = seen(side, mips);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(color[k], wanted[k], 1e-5) << side << " pixels, mips " << mips << ", " << k;
+    };
+    for (const char* mips : {"nearest", "auto"}) {
+        expect_seen(64, mips, {1, 0, 0});
+        expect_seen(32, mips, {0, 1, 0});
+        expect_seen(16, mips, {0, 0, 1});
+    }
+    expect_seen(16, "off", {1, 0, 0});
+    const std::array<float, 3> between = seen(45, "smooth");  // 1.4 texels a pixel
+    EXPECT_NEAR(between[0], 0.5, 0.15);
+    EXPECT_NEAR(between[1], 1 - between[0], 1e-3);
+    // `path` mixes two, too. Its cones are half as wide, because a pixel is the mean of its samples.
+    const auto of_paths = pixel(trace_paths(scene, flat_view(), 4, {{"strategy", "bsdf"}, {"size", "23x23"}}).mean, 11, 11);
+    EXPECT_NEAR(of_paths[1], 0.5, 0.15);
+    EXPECT_NEAR(of_paths[0], 1 - of_paths[1], 0.03);
 }
 
 // Seen as large as it is, the picture itself is shown. An instance of the same size, at any scale of its mesh, shows the same.

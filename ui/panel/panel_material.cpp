@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
@@ -45,6 +46,19 @@ bool value_rows(MaterialValues& values, float size) {
     return changed;
 }
 
+// The textures of a material, by use. They are those of its file.
+void texture_rows(const Scene& scene, const Material& material, const MaterialValues& values) {
+    const auto row = [&](const MapUse& use, rt_u32 texture) {
+        row_label(use.label, std::string("texture: ") + use.help);
+        ImGui::TextUnformatted(texture_name(scene, texture).c_str());
+        const rt_texture& t = scene.textures[texture];
+        tooltip(std::to_string(t.width) + " x " + std::to_string(t.height) + ", `" + use.name + "` in text scenes");
+    };
+    if (values.texture != RT_NONE) row(map_uses()[RT_MAP_COLOR], values.texture);
+    for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
+        if (material.maps[use] != RT_NONE) row(map_uses()[use], scene.maps[material.maps[use]].texture);
+}
+
 }  // namespace
 
 void draw_material_rows(Session& session) {
@@ -61,7 +75,7 @@ void draw_material_rows(Session& session) {
     ImGui::PushID(static_cast<int>(index));
     if (value_rows(values, scene_size(session))) edited_material(session, index) = values;
     ImGui::PopID();
-    if (values.texture != RT_NONE) dim_text("a texture multiplies the colour");
+    texture_rows(scene, scene.materials[index], values);
     const MaterialValues& own = scene.materials[index].values;
     const bool edited = std::memcmp(&material(session, index), &own, sizeof own) != 0;
     ImGui::BeginDisabled(!edited);

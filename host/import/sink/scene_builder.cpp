@@ -330,10 +330,13 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const rt_texture_d
     if (!is_new) return texture_of(picture, d);
     std::string bytes;
     std::vector<uint32_t>& texels = scene_.texels.own();
+    // A stage of its own: a small file may name many large pictures, each of which takes seconds.
+    progress_.stage("reading " + file_name(found.path));
     Problem why = try_read_file(found.path, kMaxPictureFileBytes, bytes);
     if (!why)
         why = completed(decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), texels, picture), d,
                         texels, picture);
+    progress_.stage("importing " + file_name(from));
     return why ? missing(why.text()) : texture_of(picture, d);
 }
 

@@ -24,7 +24,7 @@ void write_numbers(SourceWriter& out) {
     }
 }
 
-void write_features(SourceWriter& out, const SceneFeatures& features, const KernelRow& row) {
+void write_features(SourceWriter& out, const SceneFeatures& features, const Settings& settings, const KernelRow& row) {
     out.define_int("RT_HAS_INSTANCES", features.instances);
     out.define_int("RT_HAS_SPHERES", features.spheres);
     out.define_int("RT_HAS_POLYGONS", features.polygons);
@@ -36,7 +36,10 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     if (features.colors) out.define_int("RT_HAS_COLORS", 1);
     out.define_int("RT_HAS_TEXTURES", features.textures);
     if (features.maps) out.define_int("RT_HAS_MAPS", 1);
-    if (features.mips) out.define_int("RT_HAS_MIPS", 1);
+    if (features.mips && settings.mips != "off") {
+        out.define_int("RT_HAS_MIPS", 1);
+        if (settings.mips == "smooth" || (settings.mips == "auto" && !row.has(kWhitted))) out.define_int("RT_MIX_MIPS", 1);
+    }
     if (features.tangents) out.define_int("RT_HAS_TANGENTS", 1);
     if (features.uvs2) out.define_int("RT_HAS_UVS2", 1);
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
@@ -95,7 +98,7 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
     SourceWriter out;
     write_layout(out, layout);
     write_numbers(out);
-    write_features(out, features, row);
+    write_features(out, features, settings, row);
     if (settings.portable) out.line("#define RT_PORTABLE");
     if (settings.debug) out.line("#define RT_DEBUG");
     if (source.limit_registers) out.line("#define RT_FEWER_REGISTERS");

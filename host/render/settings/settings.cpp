@@ -249,6 +249,13 @@ const std::vector<Setting>& settings_table() {
             .in(kTracing)
             .only_of(kWhittedPicture),
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows).in(kTracing),
+        choice(
+            "mips", "Smaller textures",
+            "distant textures are shown by smaller copies of their pictures, which do not flicker. nearest: by one of them; "
+            "smooth: by two, mixed, which loads twice as many texels; off: by the picture itself, which is noisy where it is "
+            "far away; auto: smooth for `path`, else nearest",
+            {"auto", "off", "nearest", "smooth"}, Effect::recompile, &Settings::mips)
+            .in(kTracing),
         kernel_number("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1,
                       1.0 / 512)
             .in(kTracing)

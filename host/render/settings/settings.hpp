@@ -44,6 +44,7 @@ struct Settings {
     int spp = 1;         // samples per pixel
     double shutter = 0;  // share of a frame's time that the shutter is open; 0: no motion blur
     bool shadows = true;
+    std::string mips = "auto";  // auto|off|nearest|smooth
     // Of the tracer `path`.
     std::string strategy = "mis";   // nee|bsdf|mis
     std::string mis = "power";      // balance|power
