@@ -9,6 +9,7 @@
 
 #include "harness.hpp"
 // need the types of rt_shared.h, so they must follow the headers above:
+#include "grid2_types.h"
 #include "grid_types.h"
 #include "kdtree_types.h"
 #include "octree_types.h"
@@ -162,6 +163,66 @@ TEST(Grid, KeepsHugePrimitivesApart) {
     EXPECT_GT(cells, 100u) << "it does not stretch the grid";
 }
 
+// The number of a grid's cell that holds the point, or of the nearest one.
+size_t cell_at(const grid2_grid& grid, const double* p) {
+    size_t at[3];
+    for (int k = 0; k < 3; ++k) at[k] = size_t(std::clamp((p[k] - grid.box[k]) / grid.size[k], 0.0, grid.cells[k] - 1.0));
+    return grid.first + (at[2] * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
+}
+
+bool is_named_by_grid2(const Built& built, const double* p, rt_u32 ref) {
+    const auto* const grids = built.slot<grid2_grid>();
+    const auto* const cells = built.slot<rt_u32>(1);
+    const rt_u32 number = cells[cell_at(grids[built.roots[0]], p)];
+    if (number == RT_NONE) return false;
+    const grid2_grid& fine = grids[number];
+    for (int k = 0; k < 3; ++k)
+        if (p[k] < fine.box[k] || p[k] > fine.box[k + 3]) return false;
+    const size_t cell = cell_at(fine, p);
+    const rt_u32* const list = built.slot<rt_u32>(2);
+    return std::any_of(list + cells[cell], list + cells[cell + 1], [&](rt_u32 i) { return built.leaves[i] == ref; });
+}
+
+TEST(Grid2, NamesATriangleInEachCellThatItMeets) {
+    for (const float middle : {0.0f, 1000.0f}) {
+        const Input input = shards(2000, 1, middle);
+        const Built built = build(load("grid2"), input);
+        ASSERT_EQ(built.status, RT_OK) << built.why;
+        uint64_t lost = 0;
+        each_point(input, [&](const double* p, rt_u32 ref) { lost += !is_named_by_grid2(built, p, ref); });
+        EXPECT_EQ(lost, 0u) << middle;
+    }
+}
+
+// A ball of many primitives in a large room: a uniform grid has it in one cell. Cells without primitives have no grid.
+TEST(Grid2, GivesSmallThingsSmallCells) {
+    std::vector<rt_prim> prims = scattered(5000, 0.01f, 0, 3);
+    for (const float at : {-100.0f, 100.0f}) prims.push_back(cube(at, at, at, 1, rt_u32(prims.size())));
+    const Built one = build(load("grid"), one_group(prims)), two = build(load("grid2"), one_group(prims));
+    ASSERT_EQ(two.status, RT_OK) << two.why;
+    EXPECT_LT(one.stats.at("leaves"), 20);
+    EXPECT_GT(two.stats.at("leaves"), 2000);
+    const grid2_grid& coarse = two.slot<grid2_grid>()[two.roots[0]];
+    const rt_u32 *const begin = two.slot<rt_u32>(1) + coarse.first, cells = coarse.cells[0] * coarse.cells[1] * coarse.cells[2];
+    EXPECT_NEAR(cells / (0.12 * 5000), 1, 0.2);
+    EXPECT_GT(std::count(begin, begin + cells, RT_NONE), 0.9 * cells);
+}
+
+TEST(Grid2, KeepsHugePrimitivesApart) {
+    std::vector<rt_prim> prims = scattered(100, 10, 0, 3);
+    const float lo[3] = {-INFINITY, -1, -1}, hi[3] = {INFINITY, 1, 1};
+    prims.push_back(box_prim(lo, hi, 100));
+    const Built built = build(load("grid2"), one_group(prims));
+    ASSERT_EQ(built.status, RT_OK) << built.why;
+    const auto* const grids = built.slot<grid2_grid>();
+    const auto* const cells = built.slot<rt_u32>(1);
+    const grid2_grid& coarse = grids[built.roots[0]];
+    EXPECT_LT(coarse.box[3], 100) << "it does not stretch the grid";
+    const grid2_grid& apart = grids[cells[coarse.first + coarse.cells[0] * coarse.cells[1] * coarse.cells[2]]];
+    ASSERT_EQ(cells[apart.first + 2] - cells[apart.first + 1], 1u);
+    EXPECT_EQ(built.leaves[built.slot<rt_u32>(2)[cells[apart.first + 1]]], 100u);
+}
+
 TEST(Kdtree, NamesATriangleInEachLeafThatItMeets) {
     for (const float middle : {0.0f, 1000.0f}) {
         const Input input = shards(9000, 1, middle);  // above 8192 in parallel, by bins, and below 2048 by all bounds
@@ -223,7 +284,7 @@ TEST(Kdtree, TheStackHoldsItsDepth) {
 
 TEST(Cells, TreesDoNotDependOnThreads) {
     const Input input = shards(20000, 1, 0);
-    for (const char* id : {"grid", "kdtree", "octree"}) {
+    for (const char* id : {"grid", "grid2", "kdtree", "octree"}) {
         const Built one = build(load(id), input, {{}, 1, {}}), two = build(load(id), input, {{}, 3, {}});
         EXPECT_TRUE(same_tree(load(id), one, two)) << id;
         EXPECT_EQ(build(load(id), input, {{}, 1, [](float) { return false; }}).status, RT_CANCELLED) << id;
