@@ -25,7 +25,7 @@
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
  *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink; wrap_u and
  *      wrap_v of textures; aperture and focus of cameras; content of rt_host, flags of rt_importer; sky and sky_kind of
- *      rt_scene_sink; colors, uvs2 and tangents of meshes; space and filter of textures; maps of
+ *      rt_scene_sink, faces and turn of skies; colors, uvs2 and tangents of meshes; space and filter of textures; maps of
  *      materials; RT_TRAVERSES_SINGLE_RAYS. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
@@ -628,6 +628,9 @@ typedef struct rt_sky_desc {
     float color[3];   /* of a gradient at the zenith; factor of a picture */
     float horizon[3], ground[3]; /* of a gradient: at the horizon, and below it */
     rt_u32 hidden;    /* not 0: camera rays see the background instead */
+    const rt_texture_desc *faces[6]; /* appended: of a picture, in place of `path`: six square ones as large as each other, of what is seen along +X, -X,
+                                      * +Y, -Y, +Z and -Z. Up in them is +Y, of +Y -Z, of -Y +Z. The light is rgb, which is in sRGB, divided by alpha; or NULL */
+    float turn[4];                   /* appended: by which the six are turned: a unit quaternion x, y, z, w */
 } rt_sky_desc;
 
 /* Calls that return an id copy their arguments. RT_NONE means that they failed and recorded the error: then return RT_FAILED. */

@@ -3,11 +3,14 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/files/read_file.hpp"
 #include "base/memory_text.hpp"
 #include "base/pictures/picture_read.hpp"
 #include "base/problem.hpp"
+#include "import/sink/cube_sky.hpp"
 #include "import/sink/scene_builder.hpp"
 #include "import/sink/texture.hpp"
+#include "plugin/abi_struct.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -24,7 +27,46 @@ size_t make_sound(std::vector<float>& texels) {
     return repaired;
 }
 
+// The unit quaternion of a description; none if it has no length.
+std::array<double, 4> turn_of(const rt_sky_desc& d) {
+    double length = 0;
+    for (const float x : d.turn) length += double(x) * x;
+    if (!are_usable(d.turn) || !(length > 1e-12)) return {0, 0, 0, 1};
+    const double scale = 1 / std::sqrt(length);
+    return {d.turn[0] * scale, d.turn[1] * scale, d.turn[2] * scale, d.turn[3] * scale};
+}
+
 }  // namespace
+
+// Whether there is a sky. Warns if a face is missing.
+bool SceneBuilder::take_faces(const std::string& path, const rt_sky_desc& d, Sky& sky) {
+    sky.file = d.path ? d.path : "a cube";
+    const auto missing = [&](const std::string& why) {
+        warn(path, "sky '" + sky.file + "': " + why + "; the background takes its place");
+        return false;
+    };
+    Cube cube;
+    for (size_t i = 0; i < 6; ++i) {
+        if (!d.faces[i]) return missing("it has less than 6 faces");
+        const rt_texture_desc face = copied<rt_texture_desc>(d.faces[i], d.faces[i]->struct_bytes);
+        std::string content;
+        if (face.path) {
+            const FileAccess::Found found = access_.find_texture(path, face.path);
+            if (found.path.empty()) return missing(std::string("'") + face.path + "': " + found.why);
+            if (const Problem why = try_read_file(found.path, kMaxPictureFileBytes, content)) return missing(why.text());
+        }
+        const uint8_t* const bytes = face.path ? reinterpret_cast<const uint8_t*>(content.data()) : face.bytes;
+        rt_texture picture{};
+        if (const Problem why = decode_texture(bytes, face.path ? content.size() : face.byte_count, cube[i].texels, picture))
+            return missing("face " + std::to_string(i) + ": " + why.text());
+        cube[i].side = picture.width;
+        if (picture.width != picture.height || cube[i].side != cube[0].side)
+            return missing("face " + std::to_string(i) + " has " + std::to_string(picture.width) + " x " +
+                           std::to_string(picture.height) + " texels; faces are squares of one size");
+    }
+    show_cube(cube, turn_of(d), sky);
+    return true;
+}
 
 Problem SceneBuilder::set_sky(const std::string& path, const rt_sky_desc& d) {
     if (scene_.sky.values.kind != RT_NONE) return {};
@@ -43,7 +85,9 @@ Problem SceneBuilder::set_sky(const std::string& path, const rt_sky_desc& d) {
         values.horizon[k] = std::max(d.horizon[k], 0.f);
         values.ground[k] = std::max(d.ground[k], 0.f);
     }
-    if (d.kind == RT_SKY_PICTURE) {
+    if (d.kind == RT_SKY_PICTURE && d.faces[0]) {
+        if (!take_faces(path, d, sky)) return {};
+    } else if (d.kind == RT_SKY_PICTURE) {
         if (!d.path) return "a picture without a path";
         sky.file = d.path;
         const auto missing = [&](const std::string& why) {

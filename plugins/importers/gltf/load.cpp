@@ -27,6 +27,7 @@ void load_document(const Document& document, const rt_host* host, const rt_scene
     }
     meshes.report();
     add_lights(document, tree, host, sink);
+    add_sky(document, accessors, sink);
     add_cameras(document, tree, sink);
     add_animations(document, accessors, tree, meshes, sink);
     rt_scene_info info{};

@@ -166,24 +166,30 @@ rt_u32 Maps::wrap_mode(const Value& sampler, const char* key) const {
 }
 
 rt_u32 Maps::add_image(const Value& image, rt_texture_desc out) {
-    std::string bytes_or_path;
+    const Image found(image, accessors_, folder_);
+    out.name = found.look.name, out.path = found.look.path;
+    out.bytes = found.look.bytes, out.byte_count = found.look.byte_count;
+    return sink_.texture(sink_.ctx, &out);
+}
+
+Image::Image(const Value& image, Accessors& accessors, const std::string& folder) {
+    look.struct_bytes = sizeof look;
+    name_ = image.has("name") ? image["name"].text() : "";
+    if (!name_.empty()) look.name = name_.c_str();
     std::string_view bytes;
-    const std::string name = image.has("name") ? image["name"].text() : "";
-    if (!name.empty()) out.name = name.c_str();
     if (image.has("bufferView")) {
-        bytes = accessors_.view(image["bufferView"]);
-    } else if (const Value uri = image["uri"]; decode_data_uri(uri, bytes_or_path)) {
-        bytes = bytes_or_path;
+        bytes = accessors.view(image["bufferView"]);
+    } else if (const Value uri = image["uri"]; decode_data_uri(uri, content_)) {
+        bytes = content_;
     } else {
         // The host decides what may be read, and looks in the usual places for textures.
-        bytes_or_path = image_path(uri, folder_);
-        out.path = bytes_or_path.c_str();
-        return sink_.texture(sink_.ctx, &out);
+        content_ = image_path(uri, folder);
+        look.path = content_.c_str();
+        return;
     }
     if (bytes.empty()) image.refuse("an empty image", "an encoded one");
-    out.bytes = reinterpret_cast<const uint8_t*>(bytes.data());
-    out.byte_count = bytes.size();
-    return sink_.texture(sink_.ctx, &out);
+    look.bytes = reinterpret_cast<const uint8_t*>(bytes.data());
+    look.byte_count = bytes.size();
 }
 
 }  // namespace gltf_import

@@ -15,6 +15,17 @@ namespace gltf_import {
 using TextureSets = std::vector<uint64_t>;
 inline constexpr size_t kMostSets = 2;
 
+// An element of `images`: where its bytes are. Refuses an empty one. The description points into it.
+class Image {
+ public:
+    Image(const Value& image, Accessors& accessors, const std::string& folder);
+    Image(const Image&) = delete;
+    rt_texture_desc look{};  // without wrap modes, filter and space
+
+ private:
+    std::string name_, content_;
+};
+
 class Maps {
  public:
     Maps(const Document& document, Accessors& accessors, const rt_scene_sink& sink);

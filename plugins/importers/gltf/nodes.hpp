@@ -37,5 +37,7 @@ class NodeTree {
 void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_sink& sink);
 // The lights of KHR_lights_punctual.
 void add_lights(const Document& document, const NodeTree& tree, const rt_host* host, const rt_scene_sink& sink);
+// The light from all around of EXT_lights_image_based.
+void add_sky(const Document& document, Accessors& accessors, const rt_scene_sink& sink);
 
 }  // namespace gltf_import

@@ -76,11 +76,7 @@ void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_
 }
 
 void add_lights(const Document& document, const NodeTree& tree, const rt_host* host, const rt_scene_sink& sink) {
-    constexpr const char *kExtension = "KHR_lights_punctual", *kImageBased = "EXT_lights_image_based";
-    if (document.root().object("extensions").has(kImageBased))
-        rt::warn(sink, std::string(kImageBased) +
-                           ": the file's light from all around is left out; a text scene that loads the file "
-                           "can have a `sky`");
+    constexpr const char* kExtension = "KHR_lights_punctual";
     importers::Lights passed;
     for (const size_t node : tree.shown()) {
         spared(sink, "the light is left out", [&] {
