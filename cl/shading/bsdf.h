@@ -55,6 +55,38 @@ RT_INLINE vmask rt_is_sheet(const rt_bsdf *b)
 /* The lanes with facets. */
 RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(share > rt_vfloat(0.0f)) & RT_MASK(b->facets.alpha > rt_vfloat(0.0f)); }
 
+#if RT_MAY_SCATTER(RT_LOBE_FROSTED)
+/* rt_lost_by_glass() of light from w, of glass that may reflect less or more than by Fresnel's equations, and its mean over the
+ * hemisphere. eta: ior of the other side / ior of the side of w. */
+RT_INLINE vfloat rt_change_lost(const rt_bsdf *b, vfloat eta, vfloat lost, vfloat by_metal)
+{
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    const rt_layered *l = &b->layered;
+    const vfloat weak = lost * rt_select(RT_MASK(eta > rt_vfloat(1.0f)), l->glass_weak, rt_vfloat(1.0f));
+    return rt_select(l->lanes, rt_mix(weak, by_metal, l->glass_mirror), lost);
+#else
+    return lost;
+#endif
+}
+RT_INLINE vfloat rt_lost_by_changed_glass(const rt_bsdf *b, rt_vec w, vfloat eta)
+{
+    const vfloat alpha = rt_max(rt_even_alpha(&b->facets, w, RT_SWING_OF_LOSS), rt_vfloat(RT_LEAST_ALPHA)), mu = rt_min(fabs(w.z), rt_vfloat(1.0f));
+    vfloat by_metal = rt_vfloat(0.0f);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    by_metal = rt_lost_by_metal(mu, alpha);
+#endif
+    return rt_change_lost(b, eta, rt_lost_by_glass(mu, alpha, eta), by_metal);
+}
+RT_INLINE vfloat rt_lost_by_changed_glass_mean(const rt_bsdf *b, vfloat eta)
+{
+    vfloat by_metal = rt_vfloat(0.0f);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    by_metal = rt_lost_by_metal_mean(b->facets.alpha);
+#endif
+    return rt_change_lost(b, eta, rt_lost_by_glass_mean(b->facets.alpha, eta), by_metal);
+}
+#endif
+
 RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, rt_vec wo)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), mu = wo.z;
@@ -85,12 +117,36 @@ RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, rt_vec wo)
 #endif
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     const vmask glass = rt_is_rough(b, b->glass) & b->compensate;
-    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_glass(mu, rt_even_alpha(&b->facets, wo, RT_SWING_OF_LOSS), b->eta), p.again);
+    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_changed_glass(b, wo, b->eta), p.again);
 #endif
     return p;
 }
 
+/* What glass reflects, and the share of draws that are mirrored. cos_in, cos_out: on both sides. */
+typedef struct rt_glass_mirror {
+    rt_vec color;
+    vfloat chance;
+} rt_glass_mirror;
+RT_INLINE rt_glass_mirror rt_glass_mirror_of(const rt_bsdf *b, vfloat cos_in, vfloat *cos_out)
+{
+    const vfloat exact = rt_fresnel_dielectric(cos_in, b->eta, cos_out);
+    rt_glass_mirror m;
+    m.color = rt_vec_of(exact, exact, exact);
+    m.chance = exact;
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS) && RT_MAY_SCATTER(RT_LOBE_GLASS)
+    m.color = rt_glass_fresnel(&b->layered, exact, b->eta, rt_select(RT_MASK(b->eta < rt_vfloat(1.0f)), *cos_out, cos_in));
+    m.chance = rt_select(b->layered.lanes, (m.color.x + m.color.y + m.color.z) * rt_vfloat(1.0f / 3.0f), exact);
+#endif
+    return m;
+}
+
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
+/* One channel of glass with facets. */
+RT_INLINE vfloat rt_frosted_channel(vmask through, vfloat reflected, vfloat mirrored, vfloat passed, vfloat color)
+{
+    return rt_select(through, (rt_vfloat(1.0f) - reflected) * passed * color, reflected * mirrored);
+}
+
 /* Light that meets several facets of a dielectric: the share that goes through, and the mean losses of both sides. The shares of both
  * sides keep light reciprocal: through mean_here = eta^2 through' mean_there, as 1 - mean reflectance of the two sides do. */
 typedef struct rt_glass_again {
@@ -100,11 +156,14 @@ RT_INLINE rt_glass_again rt_glass_again_of(const rt_bsdf *b)
 {
     const vfloat one = rt_vfloat(1.0f), least = rt_vfloat(1e-9f);
     rt_glass_again g;
-    g.mean_here = rt_max(rt_lost_by_glass_mean(b->facets.alpha, b->eta), least);
-    g.mean_there = rt_max(rt_lost_by_glass_mean(b->facets.alpha, one / b->eta), least);
-    /* The mean reflectance of the outside is a fit of Kulla and Conty 2017. */
+    g.mean_here = rt_max(rt_lost_by_changed_glass_mean(b, b->eta), least);
+    g.mean_there = rt_max(rt_lost_by_changed_glass_mean(b, one / b->eta), least);
     const vfloat n = rt_max(b->eta, one / b->eta);
-    const vfloat let_in = one - (n - one) / fma(n, rt_vfloat(1.00071f), rt_vfloat(4.08567f));
+    vfloat mean = rt_glass_mean(n);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    mean = rt_select(b->layered.lanes, b->layered.glass_mean, mean);
+#endif
+    const vfloat let_in = one - mean;
     g.through = rt_select(RT_MASK(b->eta < one), let_in * b->eta * b->eta, let_in) * rt_min(one, g.mean_there / g.mean_here);
     return g;
 }
@@ -122,25 +181,28 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
     const vfloat scale = rt_inverse_length(along);
     const vfloat to_facet = scale * rt_dot(wo, along), from_facet = scale * rt_dot(wi, along);
     vfloat cos_out;
-    const vfloat reflected = rt_fresnel_dielectric(rt_max(to_facet, zero), eta, &cos_out);
+    const rt_glass_mirror mirror = rt_glass_mirror_of(b, rt_max(to_facet, zero), &cos_out);
     const vfloat smith_o = rt_smith(wo, &rough), smith_i = rt_smith(wi, &rough);
     const vfloat facets = rt_facets_along(along, &rough) / wo.z;
     /* D / (4 cos wo) times G, and D |wo.h| |wi.h| / ((wo.h + eta wi.h)^2 cos wo) times G, without and with the eta^2 of a density. */
     const vfloat bent = facets * to_facet * -from_facet * scale * scale;
-    vfloat mirrored = reflected * facets / (two * (smith_o + smith_i)), passed = (one - reflected) * bent * rt_vfloat(4.0f) / ((one + smith_o) * (one + smith_i));
-    vfloat mirrored_density = reflected * facets / (two * (one + smith_o)), passed_density = (one - reflected) * bent * eta * eta * two / (one + smith_o);
     const vmask meets = RT_MASK(to_facet > zero) & (~through | RT_MASK(from_facet < zero));
-    vfloat value = rt_select(meets, rt_select(through, passed, mirrored), zero);
+    const vfloat mirrored = rt_select(meets, facets / (two * (smith_o + smith_i)), zero);
+    const vfloat passed = rt_select(meets, bent * rt_vfloat(4.0f) / ((one + smith_o) * (one + smith_i)), zero);
+    const vfloat mirrored_density = mirror.chance * facets / (two * (one + smith_o)), passed_density = (one - mirror.chance) * bent * eta * eta * two / (one + smith_o);
+    rt_vec value = rt_vec_of(rt_frosted_channel(through, mirror.color.x, mirrored, passed, b->color.x), rt_frosted_channel(through, mirror.color.y, mirrored, passed, b->color.y),
+                             rt_frosted_channel(through, mirror.color.z, mirrored, passed, b->color.z));
     *density = (one - p->again) * rt_select(meets, rt_select(through, passed_density, mirrored_density), zero);
     if (rt_any(b->compensate & rt_is_rough(b, b->glass))) {
         const rt_glass_again g = rt_glass_again_of(b);
         const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * mu_i;
-        const vfloat lost_i = rt_lost_by_glass(mu_i, rt_even_alpha(&rough, wi, RT_SWING_OF_LOSS), rt_select(through, one / eta, eta));
+        const vfloat lost_i = rt_lost_by_changed_glass(b, wi, rt_select(through, one / eta, eta));
         const vfloat share = rt_select(through, g.through / (g.mean_there * eta * eta), (one - g.through) / g.mean_here);
-        value = fma(rt_select(b->compensate, p->again, zero), cosine * lost_i * share, value);
+        const vfloat several = rt_select(b->compensate, p->again, zero) * cosine * lost_i * share;
+        value = rt_add(value, rt_choose(through, rt_scale(several, b->color), rt_vec_of(several, several, several)));
         *density = fma(p->again, cosine * rt_select(through, g.through, one - g.through), *density);
     }
-    return rt_choose(through, rt_scale(value, b->color), rt_vec_of(value, value, value));
+    return value;
 }
 #endif
 
@@ -246,18 +308,30 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
         s.pdf = rt_select(mirror, p.mirror, p.metal);
         if (RT_MAY_SCATTER(RT_LOBE_GLASS) && rt_any(glass & smooth)) {
             vfloat cos_out;
-            const vfloat reflected = rt_fresnel_dielectric(wo.z, b->eta, &cos_out);
+            const rt_glass_mirror m = rt_glass_mirror_of(b, wo.z, &cos_out);
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)
             const vfloat glass_share = b->glass * p.glass_dim / rt_max(p.glass, rt_vfloat(1e-20f));
 #else
             const vfloat glass_share = b->glass / rt_max(p.glass, rt_vfloat(1e-20f));
 #endif
-            const vmask back = rt_takes_lobe(glass & smooth, reflected, &u_lobe), through = glass & smooth & ~back;
+            const vmask back = rt_takes_lobe(glass & smooth, m.chance, &u_lobe), through = glass & smooth & ~back;
             s.transmitted |= through;
-            s.pdf = rt_select(back, p.glass * reflected, rt_select(through, p.glass * (one - reflected), s.pdf));
-            s.weight = rt_choose(back, rt_vec_of(glass_share, glass_share, glass_share), s.weight);
-            s.weight = rt_choose(through, rt_scale(glass_share / (b->eta * b->eta), b->color), s.weight);
+            s.pdf = rt_select(back, p.glass * m.chance, rt_select(through, p.glass * (one - m.chance), s.pdf));
             s.wi = rt_choose(through, rt_vec_of(-wo.x / b->eta, -wo.y / b->eta, -cos_out), s.wi);
+            rt_vec mirrored = rt_splat(1.0f, 1.0f, 1.0f), passed = b->color;
+            vfloat bent_share = glass_share / (b->eta * b->eta);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+            /* Channels differ by what the chance leaves over. */
+            const vmask other = b->layered.lanes;
+            mirrored = rt_choose(other, rt_scale(one / rt_max(m.chance, rt_vfloat(1e-20f)), m.color), mirrored);
+            passed = rt_choose(other, rt_scale(one / rt_max(one - m.chance, rt_vfloat(1e-20f)), rt_mul(passed, rt_rest(m.color))), passed);
+            if (RT_MAY_SCATTER(RT_LOBE_COAT | RT_LOBE_SHEEN)) {
+                const rt_aspect from = rt_aspect_of(&b->layered, s.wi);
+                bent_share = rt_select(other, bent_share * rt_below_through(&p.layered.from, &from) / rt_max(p.glass_dim, rt_vfloat(1e-20f)), bent_share);
+            }
+#endif
+            s.weight = rt_choose(back, rt_scale(glass_share, mirrored), s.weight);
+            s.weight = rt_choose(through, rt_scale(bent_share, passed), s.weight);
         }
     }
 
@@ -294,8 +368,8 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
             rt_vec along = rt_sub(rt_scale(to_facet + to_facet, h), wo);
             if (RT_MAY_SCATTER(RT_LOBE_FROSTED) && rt_any(frosted & facets)) {
                 vfloat cos_out;
-                const vfloat reflected = rt_fresnel_dielectric(to_facet, b->eta, &cos_out);
-                const vmask bent = frosted & facets & ~rt_takes_lobe(frosted & facets, reflected, &u_lobe);
+                const rt_glass_mirror m = rt_glass_mirror_of(b, to_facet, &cos_out);
+                const vmask bent = frosted & facets & ~rt_takes_lobe(frosted & facets, m.chance, &u_lobe);
                 through |= bent;
                 const rt_vec refracted = rt_along(to_facet / b->eta - cos_out, h, rt_scale(-one / b->eta, wo));
                 along = rt_choose(bent, refracted, along);

@@ -87,6 +87,15 @@ RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const
         if (m->emission[0] <= 0.0f && m->emission[1] <= 0.0f && m->emission[2] <= 0.0f) continue;
         if (m->flags & RT_MATERIAL_ONE_SIDED) mine &= RT_MASK(facing > zero);
         sum = rt_choose(mine, rt_sharp_emission(ctx, m, surface, mine), sum);
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+        if (m->model == RT_MODEL_GLTF && ctx->layers[id].clearcoat > 0.0f) {
+            vfloat coat = rt_vfloat(ctx->layers[id].clearcoat), roughness = rt_vfloat(ctx->layers[id].clearcoat_roughness);
+#ifdef RT_HAS_MAPS
+            rt_map_coat(ctx, m, surface, mine, &coat, &roughness);
+#endif
+            sum = rt_choose(mine, rt_scale(rt_through_coat(coat, rt_alpha_of(roughness), facing), sum), sum);
+        }
+#endif
         emits |= mine;
     }
     uint left = rt_bits(emits);

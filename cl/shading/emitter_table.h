@@ -27,6 +27,9 @@ typedef struct rt_lit {
     vfloat radius, cos_inner, cos_outer;
     vfloat area; /* of the polygon that the triangle is a part of; 0: it is none */
     vfloat u1;   /* the random number that is left after a part of a polygon was chosen */
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    vfloat coat, coat_roughness; /* varnish on the surface */
+#endif
 #ifdef RT_HAS_MAPS
     vint map;         /* of a triangle's emission; -1: none */
     vfloat uv[6];     /* its coordinates at p, and what they gain along u and v */
@@ -34,7 +37,7 @@ typedef struct rt_lit {
 } rt_lit;
 
 /* The numbers of a lane, `RT_LANES` apart. */
-enum { RT_LIT_P = 0, RT_LIT_U = 3, RT_LIT_V = 6, RT_LIT_COLOR = 9, RT_LIT_RADIUS = 12, RT_LIT_INNER, RT_LIT_OUTER, RT_LIT_AREA, RT_LIT_U1, RT_LIT_PICK, RT_LIT_UV, RT_LIT_FIELDS = RT_LIT_UV + 6 };
+enum { RT_LIT_P = 0, RT_LIT_U = 3, RT_LIT_V = 6, RT_LIT_COLOR = 9, RT_LIT_RADIUS = 12, RT_LIT_INNER, RT_LIT_OUTER, RT_LIT_AREA, RT_LIT_U1, RT_LIT_PICK, RT_LIT_UV, RT_LIT_COAT = RT_LIT_UV + 6, RT_LIT_COAT_ROUGHNESS, RT_LIT_FIELDS };
 #define RT_LIT(field) out[(field) * (int)RT_LANES]
 #define RT_LIT_3(field, x, y, z) RT_LIT(field) = (x), RT_LIT((field) + 1) = (y), RT_LIT((field) + 2) = (z)
 
@@ -148,6 +151,9 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
 #ifdef RT_HAS_MAPS
     for (int k = 0; k < 6; ++k) RT_LIT(RT_LIT_UV + k) = 0.0f;
 #endif
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    RT_LIT(RT_LIT_COAT) = RT_LIT(RT_LIT_COAT_ROUGHNESS) = 0.0f;
+#endif
     RT_LIT(RT_LIT_PICK) = e->pick;
     RT_LIT(RT_LIT_AREA) = 0.0f;
     RT_LIT(RT_LIT_RADIUS) = 0.0f;
@@ -175,6 +181,12 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
         const global rt_material *material = ctx->materials + number;
         RT_LIT_3(RT_LIT_COLOR, material->emission[0], material->emission[1], material->emission[2]);
         *flags = material->flags & RT_MATERIAL_ONE_SIDED ? 0u : RT_LIGHT_TWO_SIDED;
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+        if (material->model == RT_MODEL_GLTF) {
+            RT_LIT(RT_LIT_COAT) = ctx->layers[number].clearcoat;
+            RT_LIT(RT_LIT_COAT_ROUGHNESS) = ctx->layers[number].clearcoat_roughness;
+        }
+#endif
 #if RT_HAS_SPHERES
         if (RT_REF_KIND(leaf->ref) == RT_REF_SPHERE) {
             kind = RT_LIGHT_SPHERE;
@@ -245,6 +257,10 @@ RT_INLINE rt_lit rt_pick_emitters(const rt_ctx *ctx, vfloat u_pick, vfloat u1)
     lit.cos_outer = RT_LIT_COLUMN(RT_LIT_OUTER);
     lit.area = RT_LIT_COLUMN(RT_LIT_AREA);
     lit.u1 = RT_LIT_COLUMN(RT_LIT_U1);
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    lit.coat = RT_LIT_COLUMN(RT_LIT_COAT);
+    lit.coat_roughness = RT_LIT_COLUMN(RT_LIT_COAT_ROUGHNESS);
+#endif
 #ifdef RT_HAS_MAPS
     lit.map = rt_load(map);
     for (int k = 0; k < 6; ++k) lit.uv[k] = RT_LIT_COLUMN(RT_LIT_UV + k);

@@ -255,6 +255,15 @@ RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_fra
         density = rt_select(sphere, by_cone, density);
         out.valid |= sphere & RT_MASK(distance > zero) & (lit.two_sided | ~from_within | rim);
     }
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+    const vmask coated = (flat | sphere) & RT_MASK(lit.coat > zero);
+    if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE) && rt_any(coated)) {
+        const vfloat way = out.distance * rt_vfloat(1.0f / (1.0f - RT_LIGHT_CLEARANCE));
+        const rt_vec from_middle = rt_sub(rt_along(way, out.towards, at), lit.p);
+        const rt_vec normal = rt_normalize(rt_choose(sphere, from_middle, rt_cross(lit.u, lit.v)));
+        light = rt_choose(coated, rt_scale(rt_through_coat(lit.coat, rt_alpha_of(lit.coat_roughness), rt_dot(normal, out.towards)), light), light);
+    }
+#endif
     if (RT_MAY_SHINE(RT_LIGHTS_BEYOND) && rt_any(far)) {
         rt_vec direction = rt_in_cone(lit.p, u1, u2, rt_versine(sun_sin2));
         if (rt_any(far & ~sun)) direction = rt_choose(sun, direction, rt_draw_sky(ctx, u1, u2));

@@ -77,7 +77,7 @@ RT_CALLED rt_vec rt_layers_eval(const rt_layered *l, const rt_layer_lobes *p, rt
     const vmask above = RT_MASK(wi.z > zero);
     const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * fabs(wi.z);
     const vfloat mirror_dim = rt_below_all(l, o, &i, l->facets.alpha), spread_dim = rt_below_all(l, o, &i, one);
-    rt_vec f = rt_scale(mirror_dim, inside);
+    rt_vec f = rt_scale(RT_MAY_SCATTER(RT_LOBE_GLASS) ? rt_select(above, mirror_dim, rt_below_through(o, &i)) : mirror_dim, inside);
 
     /* What is diffuse below the facets, and light that several facets scatter. */
     const vfloat again = o->lost * i.lost / rt_max(l->lost_mean, rt_vfloat(1e-9f));

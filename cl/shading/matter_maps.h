@@ -13,6 +13,14 @@ RT_INLINE void rt_multiply_color(const rt_ctx *ctx, const global rt_map *map, co
     if (map) *value = rt_choose(mine, rt_mul(*value, rt_sample_map(ctx, map, s, mine)), *value);
 }
 
+#if RT_MAY_SCATTER(RT_LOBE_COAT)
+RT_INLINE void rt_map_coat(const rt_ctx *ctx, const global rt_material *material, const rt_surface *s, vmask mine, vfloat *coat, vfloat *roughness)
+{
+    rt_multiply(ctx, rt_map_of(ctx, material, RT_MAP_CLEARCOAT), s, mine, 0, coat);
+    rt_multiply(ctx, rt_map_of(ctx, material, RT_MAP_CLEARCOAT_ROUGHNESS), s, mine, 1, roughness);
+}
+#endif
+
 /* Multiplies the matter of material `id` in the lanes `mine` by its maps. That of the colour is in it already. */
 RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vmask mine, rt_matter *m)
 {
@@ -24,8 +32,7 @@ RT_INLINE void rt_map_matter(const rt_ctx *ctx, int id, const rt_surface *s, vma
     rt_multiply(ctx, RT_MAP(RT_MAP_SPECULAR), s, mine, 3, &m->specular_weight);
     rt_multiply_color(ctx, RT_MAP(RT_MAP_SPECULAR_COLOR), s, mine, &m->specular_color);
 #if RT_MAY_SCATTER(RT_LOBE_COAT)
-    rt_multiply(ctx, RT_MAP(RT_MAP_CLEARCOAT), s, mine, 0, &m->clearcoat);
-    rt_multiply(ctx, RT_MAP(RT_MAP_CLEARCOAT_ROUGHNESS), s, mine, 1, &m->clearcoat_roughness);
+    rt_map_coat(ctx, material, s, mine, &m->clearcoat, &m->clearcoat_roughness);
 #ifdef RT_HAS_TANGENTS
     /* Without a map of its own the varnish is smooth, whatever is below. */
     const global rt_map *coat = RT_MAP(RT_MAP_CLEARCOAT_NORMAL);

@@ -198,7 +198,8 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     add_apart(emissive.planes, "plane", "planes");
     add_apart(emissive.shapes, "shape", "shapes");
     add_apart(emissive.bent_polygons, "polygon that is not convex", "polygons that are not convex");
-    add_apart(emissive.cut_out, "surface that is cut out", "surfaces that are cut out");
+    add_apart(emissive.cut_out, "surface that is cut out or has textures of varnish",
+              "surfaces that are cut out or have textures of varnish");
     if (!apart.empty()) row("emissive too", apart + ": `path` finds their light only where a ray hits them by chance");
     if (scene.sky.values.kind != RT_NONE) row("sky", sky_text(scene.sky));
     count_row("cameras", scene.cameras.size());

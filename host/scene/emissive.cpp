@@ -13,6 +13,12 @@ bool emits(const rt_material& material) {
     return !is_black(material.emission);
 }
 
+bool is_drawn(const MaterialValues& values, const Material& own) {
+    if (values.alpha != RT_ALPHA_OPAQUE) return false;
+    const bool varnished = values.model == RT_MODEL_GLTF && values.layers.clearcoat > 0;
+    return !varnished || (own.maps[RT_MAP_CLEARCOAT] == RT_NONE && own.maps[RT_MAP_CLEARCOAT_ROUGHNESS] == RT_NONE);
+}
+
 bool is_convex(const float* corners, size_t count) {
     Vec normal{};
     const auto at = [&](size_t i) { return to_vec(corners + 3 * (i % count)); };
@@ -36,7 +42,7 @@ EmissiveCounts count_emissive(const Scene& scene) {
     std::vector<bool> emitting, is_cut_out;
     for (const Material& material : scene.materials) {
         emitting.push_back(emits(material.values));
-        is_cut_out.push_back(material.values.alpha != RT_ALPHA_OPAQUE);
+        is_cut_out.push_back(!is_drawn(material.values, material));
     }
     EmissiveCounts counts;
     const auto count = [&](rt_u32 material, uint64_t number, uint64_t& whole) {

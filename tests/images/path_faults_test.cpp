@@ -30,8 +30,8 @@ const Fault kFaults[] = {
      "*pdf = rt_select(above, rt_vfloat(2.0f) * p.diffuse * cosine, zero);", "depth"},
     {"NormalsOfTheWrongSide", "shading/point.h", "const vfloat side = rt_select(p.leaving, -one, one);",
      "const vfloat side = one;", "depth"},
-    {"EtaSquaredIsMissing", "shading/bsdf.h", "rt_scale(glass_share / (b->eta * b->eta), b->color)",
-     "rt_scale(glass_share, b->color)", "glass"},
+    {"EtaSquaredIsMissing", "shading/bsdf.h", "bent_share = glass_share / (b->eta * b->eta)", "bent_share = glass_share",
+     "glass"},
     {"RoughnessIsSquaredTwice", "shading/bsdf_of.h", "alpha = m->roughness * m->roughness;",
      "alpha = m->roughness * m->roughness * m->roughness * m->roughness;", "facets"},
 };

@@ -14,9 +14,16 @@ Vec times(const Vec& a, const Vec& b) {
     return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
 }
 
-// Any frame with z along n.
+// Any frame with z along n; with x along u and y on the side of v if these are given.
 struct Axes {
     Vec x, y, z;
+    Axes(const Vec& n, const Vec& u, const Vec& v) : Axes(n) {
+        const Vec flat = u - dot(u, n) * n;
+        if (!(length(flat) > 0)) return;
+        x = normalized(flat);
+        y = cross(n, x);
+        if (dot(y, v) < 0) y = -1 * y;
+    }
     explicit Axes(const Vec& n)
         : x(normalized(cross(std::fabs(n[0]) > 0.5 ? Vec{0, 1, 0} : Vec{1, 0, 0}, n))), y(cross(n, x)), z(n) {}
     Vec local(const Vec& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
@@ -47,19 +54,18 @@ class PathTracer {
                 if (!asked) add(event, suns_seen(ray.direction));
                 return light;
             }
-            const rt_material& m = material(hit.material);
+            const MaterialValues& m = material(hit.material);
             const bool entering = dot(hit.geometric, ray.direction) < 0;
             if (!entering)
                 for (size_t c = 0; c < 3; ++c) weight[c] *= std::exp(-double(m.absorption[c]) * hit.t);
-            if (entering || !(m.flags & RT_MATERIAL_ONE_SIDED)) add(event, to_vec(m.emission));
-            if (event == depth_) return light;
-
             const Vec at = ray.at(hit.t), side = entering ? hit.geometric : -1 * hit.geometric;
             Vec normal = entering ? hit.shading : -1 * hit.shading;
             if (dot(normal, ray.direction) >= 0) normal = side;
-            const Axes axes(normal);
+            const Axes axes(normal, hit.along_u, hit.along_v);
             const Vec wo = axes.local(-1 * ray.direction);
             const PathSurface surface(m, color_at(m, at), entering);
+            if (entering || !(m.flags & RT_MATERIAL_ONE_SIDED)) add(event, surface.shows(wo) * to_vec(m.emission));
+            if (event == depth_) return light;
             for (const rt_light& l : view_.lights) add(event + 1, from_light(l, at, side, axes, surface, wo, dice));
             const Bounce bounce = surface.draw(wo, dice);
             if (std::max({bounce.weight[0], bounce.weight[1], bounce.weight[2]}) <= 0) return light;
@@ -72,7 +78,7 @@ class PathTracer {
     }
 
  private:
-    const rt_material& material(unsigned i) const {
+    const MaterialValues& material(unsigned i) const {
         return view_.materials.empty() ? scene_.materials[i].values : view_.materials[i];
     }
     Ray leaving(const Vec& at, const Vec& side, const Vec& direction, double distance = INFINITY) const {

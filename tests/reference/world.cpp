@@ -6,7 +6,8 @@ namespace clarity::reference {
 
 struct World::Triangle {
     Vec normal, middle;
-    Vec n[3];     // normals of the corners, if `smooth`
+    Vec n[3];  // normals of the corners, if `smooth`
+    Vec along_u, along_v;
     bool smooth;  // the corners have normals
     unsigned material;
 };
@@ -48,6 +49,20 @@ void World::add_instance(const Instance& instance) {
             t.middle = t.middle + (1.0 / 3) * to_vec(primitives_.corners(prim) + 3 * k);
         }
         t.smooth = t.smooth && length(t.n[0]) > 0;
+        if (!scene_.uvs.empty()) {
+            const auto from_first = [&](int k) {
+                return to_vec(primitives_.corners(prim) + 3 * k) - to_vec(primitives_.corners(prim));
+            };
+            const auto uv = [&](int k, int axis) {
+                const auto at = [&](int corner_k) { return double(scene_.uvs[2 * scene_.triangles[3 * i + corner_k] + axis]); };
+                return at(k) - at(0);
+            };
+            const double area = uv(1, 0) * uv(2, 1) - uv(2, 0) * uv(1, 1);
+            if (area != 0) {
+                t.along_u = 1 / area * (uv(2, 1) * from_first(1) - uv(1, 1) * from_first(2));
+                t.along_v = 1 / area * (uv(1, 0) * from_first(2) - uv(2, 0) * from_first(1));
+            }
+        }
         t.normal = apply_to_normal(instance.world_from_object, cross(corner[1] - corner[0], corner[2] - corner[0]));
         t.material = instance.material != RT_NONE ? instance.material : scene_.triangle_materials[i];
         if (length(t.normal) > 0) order_.push_back(prim);
@@ -117,6 +132,8 @@ bool World::nearest(const Ray& ray, Hit& hit) const {
         const Triangle& triangle = triangles_[i];
         hit.geometric = hit.shading = normalized(triangle.normal);
         hit.material = triangle.material;
+        hit.along_u = triangle.along_u;
+        hit.along_v = triangle.along_v;
         if (!triangle.smooth) return true;
         double weight[2];
         test::hit_triangle(primitives_.corners(best.prim), ray, 1e-12, weight);

@@ -11,8 +11,9 @@ using test::Ray;
 
 struct Hit {
     double t = INFINITY;
-    Vec geometric{};  // unit normal, on the side that the primitive defines: outside of closed surfaces
-    Vec shading{};    // interpolated if the corners have normals; unit length, on the same side
+    Vec geometric{};           // unit normal, on the side that the primitive defines: outside of closed surfaces
+    Vec shading{};             // interpolated if the corners have normals; unit length, on the same side
+    Vec along_u{}, along_v{};  // how the place changes with the coordinates of textures; 0 if there are none
     unsigned material = 0;
 };
 

@@ -65,9 +65,8 @@ class Collector {
           view_(view),
           out_(out),
           powers_(powers) {
-        // Where a surface is cut out a light would be drawn in vain: rays that hit it find its light.
         for (size_t i = 0; i < scene.materials.size(); ++i) {
-            emits_.push_back(emits(material(i)) && material(i).alpha == RT_ALPHA_OPAQUE);
+            emits_.push_back(emits(material(i)) && is_drawn(material(i), scene.materials[i]));
             emits_evenly_.push_back(emits_.back() && scene.materials[i].maps[RT_MAP_EMISSION] == RT_NONE);
         }
     }
@@ -85,7 +84,7 @@ class Collector {
     }
 
  private:
-    const rt_material& material(size_t i) const { return material_of(scene_, view_, i); }
+    const MaterialValues& material(size_t i) const { return material_of(scene_, view_, i); }
     const rt_packed_prim& leaf(rt_u32 at) const { return leaves_[at]; }
 
     // For each primitive of a kind that emits, by its ref: one of the leaves that hold it. A primitive that was cut is in

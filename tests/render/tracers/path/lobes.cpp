@@ -123,6 +123,94 @@ bool Lobe::passes() const {
     return alpha > 0 && (glass > 0 || sheet);
 }
 
+Lobe colored(Lobe lobe, float r, float g, float b) {
+    lobe.color[0] = r;
+    lobe.color[1] = g;
+    lobe.color[2] = b;
+    return lobe;
+}
+
+Lobe mixture(float mirror, float glass_share, float eta) {
+    Lobe lobe{"mixture"};
+    lobe.diffuse = 1 - mirror - glass_share;
+    lobe.mirror = mirror;
+    lobe.glass = glass_share;
+    lobe.eta = eta;
+    return colored(lobe, 0.9f, 0.5f, 0.2f);
+}
+
+namespace {
+
+std::vector<Lobe> lobes_with_density() {
+    return {lambert(0.8f, 0.5f, 0.2f),
+            metal(0.3f),
+            metal(0.5f),
+            metal(0.5f, false),
+            metal(0.8f),
+            colored(metal(1), 0.9f, 0.6f, 0.3f),
+            glass(0.4f, 1.5f),
+            glass(0.4f, 1 / 1.5f),
+            glass(0.7f, 2.4f, false),
+            glass(0.8f, 1 / 1.2f),
+            colored(glass(1, 1.33f), 0.9f, 0.6f, 0.3f),
+            mixture(0.3f, 0.2f, 1.5f),
+            mixture(0, 0.5f, 1 / 1.5f)};
+}
+
+Lobe tilted(Lobe lobe) {
+    lobe.name += ", tilted";
+    lobe.coat_tilt = 0.4f;
+    return lobe;
+}
+
+}  // namespace
+
+std::vector<Lobe> layers_with_density() {
+    const auto sheet = [](rt_layers& l) { l.transmission = 0.8f; };
+    const auto solid = [](rt_layers& l) { l.transmission = 0.8f, l.metallic = 0.2f, l.flags = RT_LAYERS_SOLID; };
+    const auto coat = [](rt_layers& l) { l.clearcoat = 0.8f, l.clearcoat_roughness = 0.4f; };
+    const auto fibres = [](rt_layers& l) { l.sheen_color[0] = 0.7f, l.sheen_roughness = 0.5f; };
+    const auto grain = [](float strength, float degrees) {
+        return [=](rt_layers& l) { l.anisotropy = strength, l.anisotropy_rotation = degrees; };
+    };
+    const auto all = [=](rt_layers& l) { sheet(l), coat(l), fibres(l), l.metallic = 0.4f, l.specular_weight = 0.7f; };
+    return {layered("core", 0.5f),
+            layered("metal", 0.4f, [](rt_layers& l) { l.metallic = 1; }),
+            colored(layered("half metal", 0.7f, [](rt_layers& l) { l.metallic = 0.5f; }), 0.9f, 0.5f, 0.1f),
+            layered("smooth core", 0),
+            layered("sheet", 0.5f, sheet),
+            layered("smooth sheet", 0, sheet),
+            layered("solid", 0.5f, solid),
+            layered("smooth solid", 0, solid),
+            layered("weak solid", 0.4f, [=](rt_layers& l) { solid(l), l.specular_weight = 0.4f, l.specular_color[0] = 3; }),
+            layered("filmed solid", 0.3f, [=](rt_layers& l) { solid(l), l.iridescence = 0.7f; }),
+            layered("varnished solid", 0, [=](rt_layers& l) { solid(l), coat(l), fibres(l); }),
+            layered("varnish", 0.6f, coat),
+            tilted(layered("varnish", 0.6f, coat)),
+            layered("varnish on smooth metal", 0, [=](rt_layers& l) { coat(l), l.metallic = 1; }),
+            layered("smooth varnish", 0.4f, [](rt_layers& l) { l.clearcoat = 1; }),
+            layered("fibres", 0.6f, fibres),
+            layered("fine fibres", 0.6f, [](rt_layers& l) { l.sheen_color[0] = 1, l.sheen_roughness = 0.2f; }),
+            layered("film", 0.4f, [](rt_layers& l) { l.iridescence = 0.8f; }),
+            colored(layered("film on metal", 0.5f, [](rt_layers& l) { l.iridescence = 1, l.metallic = 1; }), 0.9f, 0.5f, 0.1f),
+            layered("grain", 0.3f, grain(0.6f, 0)),
+            layered("grain, turned", 0.4f, grain(0.9f, 30)),
+            layered("grain on metal", 0.1f, [=](rt_layers& l) { grain(0.5f, 70)(l), l.metallic = 1; }),
+            layered("smooth but for its grain", 0, [=](rt_layers& l) { grain(0.7f, 110)(l), l.metallic = 1; }),
+            layered("grain, solid", 0.4f, [=](rt_layers& l) { grain(0.7f, 30)(l), solid(l); }),
+            layered("grain, sheet", 0.4f, [=](rt_layers& l) { grain(0.7f, 30)(l), sheet(l); }),
+            layered("all", 0.5f, [=](rt_layers& l) { all(l), grain(0.5f, 40)(l); })};
+}
+std::vector<Lobe> all_with_density() {
+    std::vector<Lobe> all = lobes_with_density();
+    for (const Lobe& lobe : layers_with_density()) all.push_back(lobe);
+    return all;
+}
+
+double Lobe::squared_eta() const {
+    return layered && glass == 0 ? 1 : double(eta) * eta;
+}
+
 std::vector<LobeAnswer> ask(const Lobe& lobe, const std::vector<LobeQuery>& queries, unsigned lanes, bool grain) {
     std::vector<float> rows;
     rows.reserve(queries.size() * kReads);

@@ -16,8 +16,9 @@ struct Lobe {
     bool compensate = true;
     bool layered = false;  // RT_MODEL_GLTF by these, and not by the shares
     rt_layers layers{};
-    float coat_tilt = 0;  // slope of the varnish against the surface
-    bool passes() const;  // light through the surface, with a density
+    float coat_tilt = 0;         // slope of the varnish against the surface
+    bool passes() const;         // light through the surface, with a density
+    double squared_eta() const;  // of both sides; sheets have the same medium on both
 };
 Lobe lambert(float r, float g, float b);
 Lobe metal(float roughness, bool compensate = true);
@@ -25,6 +26,12 @@ Lobe metal(float roughness, bool compensate = true);
 Lobe layered(
     const std::string& name, float roughness, const std::function<void(rt_layers&)>& change = [](rt_layers&) {});
 Lobe glass(float roughness, float eta, bool compensate = true);
+
+Lobe colored(Lobe lobe, float r, float g, float b);
+Lobe mixture(float mirror, float glass_share, float eta);
+// Surfaces whose densities differ; those of RT_MODEL_GLTF have a layer at a time, and all together.
+std::vector<Lobe> layers_with_density();
+std::vector<Lobe> all_with_density();
 
 // What is asked of one lane: a direction is drawn for wo by u, and the lobe is evaluated for wi.
 struct LobeQuery {
