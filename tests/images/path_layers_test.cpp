@@ -25,6 +25,7 @@ struct LayersScene {
     const char* name;
     float roughness;
     std::function<void(MaterialValues&)> change;
+    bool grazing = false;  // seen at an angle of 1.4 degrees, where fine fibres send back most
     friend void PrintTo(const LayersScene& scene, std::ostream* out) { *out << scene.name; }
 };
 
@@ -34,7 +35,7 @@ void varnish(MaterialValues& m) {
 }
 void fibres(MaterialValues& m) {
     m.layers.sheen_color[0] = 0.9f, m.layers.sheen_color[1] = 0.6f, m.layers.sheen_color[2] = 0.3f;
-    m.layers.sheen_roughness = 0.15f;
+    m.layers.sheen_roughness = 0.6f;
 }
 void metal(MaterialValues& m) {
     m.layers.metallic = 1;
@@ -64,6 +65,12 @@ const LayersScene kScenes[] = {
     {"SmoothVarnish", 0.5f, [](MaterialValues& m) { m.layers.clearcoat = 1; }},
     {"Glow", 0.5f, [](MaterialValues& m) { varnish(m), m.emission[0] = m.emission[1] = 0.6f; }},
     {"Fibres", 0.7f, fibres},
+    {"FineFibres", 0.7f,
+     [](MaterialValues& m) {
+         fibres(m), m.layers.sheen_roughness = 0.12f, m.layers.specular_weight = 0;
+         for (float& c : m.color) c = 0;
+     },
+     true},
     {"Sheet", 0.35f, sheet},
     {"SmoothSheet", 0, sheet},
     {"Solid", 0.3f, solid},
@@ -97,8 +104,8 @@ Scene scene_of_layers(const LayersScene& of) {
     return scene;
 }
 
-View view_of_layers() {
-    View view = view_from({1, -1.6f, 1.7f}, {1, 0.9f, 0.2f}, 45);
+View view_of_layers(const LayersScene& of) {
+    View view = of.grazing ? view_from({1, -6, 0.17f}, {1, 1, 0}, 0.4) : view_from({1, -1.6f, 1.7f}, {1, 0.9f, 0.2f}, 45);
     view.background = view.ambient = {0, 0, 0};
     rt_light lamp{};
     lamp.kind = RT_LIGHT_RECT;
@@ -117,14 +124,14 @@ struct Means {
 };
 Means reference_means(const LayersScene& of, unsigned samples) {
     const reference::PathPicture picture =
-        reference::trace_paths(scene_of_layers(of), view_of_layers(), {kSize, kSize, 3, samples});
+        reference::trace_paths(scene_of_layers(of), view_of_layers(of), {kSize, kSize, 3, samples});
     Means m{picture.total(), {}};
     for (int c = 0; c < 3; ++c) m.error[size_t(c)] = picture.total_error(c);
     return m;
 }
 Means traced_means(const LayersScene& of, unsigned samples, const char* strategy) {
     const PathPicture picture =
-        trace_paths(scene_of_layers(of), view_of_layers(), samples,
+        trace_paths(scene_of_layers(of), view_of_layers(of), samples,
                     {{"strategy", strategy}, {"sampler", "independent"}, {"depth", "3"}, {"size", "16x16"}, {"seed", "7"}});
     Means m;
     double squares = 0;
@@ -155,6 +162,7 @@ class PathLayers : public testing::TestWithParam<LayersScene> {};
 
 TEST_P(PathLayers, AreThoseOfTheReference) {
     const unsigned samples = quick() ? 400 : 3000;
+    const double bound = quick() && GetParam().grazing ? 0.03 : 0.012;
     const Means wanted = reference_means(GetParam(), samples);
     for (const char* strategy : {"mis", "bsdf"}) {
         const Means found = traced_means(GetParam(), samples, strategy);
@@ -162,7 +170,7 @@ TEST_P(PathLayers, AreThoseOfTheReference) {
             << strategy << ": " << found.value[0] << " " << found.value[1] << " " << found.value[2] << " instead of "
             << wanted.value[0] << " " << wanted.value[1] << " " << wanted.value[2];
         for (size_t c = 0; c < 3; ++c)
-            EXPECT_LT(std::hypot(found.error[c], wanted.error[c]), 0.012 * wanted.value[c])
+            EXPECT_LT(std::hypot(found.error[c], wanted.error[c]), bound * wanted.value[c])
                 << strategy << ": the bound tells nothing";
     }
 }
@@ -188,7 +196,7 @@ const Fault kFaults[] = {
     {"VarnishLetsAllGlowOut", "shading/layers.h", "return one - rt_coat_albedo(coat, alpha, rt_min(fabs(cosine), one));",
      "return one;", "Glow"},
     {"SheenUnnormalised", "shading/sheen.h", "return rt_from_pair(rt_sheen_kept, r.low, r.share) * facing", "return facing",
-     "Fibres"},
+     "FineFibres"},
     {"SheenWithoutShadows", "shading/sheen.h", "one + rt_sheen_smith(wo.z, t) + rt_sheen_smith(wi.z, t)",
      "one + rt_sheen_smith(wo.z, t)", "Fibres"},
     {"SheetOfClearColor", "shading/layer_lobes.h", "rt_scale(l->thin, rt_mul(l->color, rt_rest(gloss))));\n        f =",
