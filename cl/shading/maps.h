@@ -23,7 +23,8 @@ RT_INLINE rt_texture_point rt_sharp_point(vfloat u, vfloat v)
  * much a map stretches it. spread: rt_surface.spread. */
 RT_INLINE vfloat rt_texture_level(vfloat spread, float size)
 {
-    return rt_rough_log2(rt_max(spread * rt_vfloat(sqrt(size)), rt_vfloat(1e-30f)));
+    /* Half the logarithm of the square: with a root PoCL 3.1 crashes while it compiles one lane of the iterative tracer for bvh2. */
+    return rt_vfloat(0.5f) * rt_rough_log2(rt_max(spread * spread * rt_vfloat(size), rt_vfloat(1e-30f)));
 }
 #endif
 
