@@ -130,8 +130,9 @@ typedef struct rt_emitter {
 #define RT_LOBE_THIN 256u   /* transmission by thin sheets */
 #define RT_LOBE_GRAIN 512u  /* anisotropy */
 #define RT_LOBE_FILM 1024u  /* iridescence */
-#define RT_LOBE_UNLIT 2048u /* RT_MODEL_UNLIT */
-#define RT_LOBES_ALL 4095u
+#define RT_LOBE_CHANGED 2048u /* solid glass that reflects otherwise than by Fresnel's equations */
+#define RT_LOBE_UNLIT 4096u   /* RT_MODEL_UNLIT */
+#define RT_LOBES_ALL 8191u
 #ifdef __OPENCL_VERSION__
 #ifndef RT_LIGHTS
 #define RT_LIGHTS RT_LIGHTS_ALL

@@ -60,10 +60,10 @@ RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(sha
  * hemisphere. eta: ior of the other side / ior of the side of w. */
 RT_INLINE vfloat rt_change_lost(const rt_bsdf *b, vfloat eta, vfloat lost, vfloat by_metal)
 {
-#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
     const rt_layered *l = &b->layered;
     const vfloat weak = lost * rt_select(RT_MASK(eta > rt_vfloat(1.0f)), l->glass_weak, rt_vfloat(1.0f));
-    return rt_select(l->lanes, rt_mix(weak, by_metal, l->glass_mirror), lost);
+    return rt_select(l->changed, rt_mix(weak, by_metal, l->glass_mirror), lost);
 #else
     return lost;
 #endif
@@ -72,7 +72,7 @@ RT_INLINE vfloat rt_lost_by_changed_glass(const rt_bsdf *b, rt_vec w, vfloat eta
 {
     const vfloat alpha = rt_max(rt_even_alpha(&b->facets, w, RT_SWING_OF_LOSS), rt_vfloat(RT_LEAST_ALPHA)), mu = rt_min(fabs(w.z), rt_vfloat(1.0f));
     vfloat by_metal = rt_vfloat(0.0f);
-#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
     by_metal = rt_lost_by_metal(mu, alpha);
 #endif
     return rt_change_lost(b, eta, rt_lost_by_glass(mu, alpha, eta), by_metal);
@@ -80,7 +80,7 @@ RT_INLINE vfloat rt_lost_by_changed_glass(const rt_bsdf *b, rt_vec w, vfloat eta
 RT_INLINE vfloat rt_lost_by_changed_glass_mean(const rt_bsdf *b, vfloat eta)
 {
     vfloat by_metal = rt_vfloat(0.0f);
-#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
     by_metal = rt_lost_by_metal_mean(b->facets.alpha);
 #endif
     return rt_change_lost(b, eta, rt_lost_by_glass_mean(b->facets.alpha, eta), by_metal);
@@ -133,9 +133,9 @@ RT_INLINE rt_glass_mirror rt_glass_mirror_of(const rt_bsdf *b, vfloat cos_in, vf
     rt_glass_mirror m;
     m.color = rt_vec_of(exact, exact, exact);
     m.chance = exact;
-#if RT_MAY_SCATTER(RT_LOBE_LAYERS) && RT_MAY_SCATTER(RT_LOBE_GLASS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
     m.color = rt_glass_fresnel(&b->layered, exact, b->eta, rt_select(RT_MASK(b->eta < rt_vfloat(1.0f)), *cos_out, cos_in));
-    m.chance = rt_select(b->layered.lanes, (m.color.x + m.color.y + m.color.z) * rt_vfloat(1.0f / 3.0f), exact);
+    m.chance = rt_select(b->layered.changed, (m.color.x + m.color.y + m.color.z) * rt_vfloat(1.0f / 3.0f), exact);
 #endif
     return m;
 }
@@ -160,8 +160,8 @@ RT_INLINE rt_glass_again rt_glass_again_of(const rt_bsdf *b)
     g.mean_there = rt_max(rt_lost_by_changed_glass_mean(b, one / b->eta), least);
     const vfloat n = rt_max(b->eta, one / b->eta);
     vfloat mean = rt_glass_mean(n);
-#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
-    mean = rt_select(b->layered.lanes, b->layered.glass_mean, mean);
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
+    mean = rt_select(b->layered.changed, b->layered.glass_mean, mean);
 #endif
     const vfloat let_in = one - mean;
     g.through = rt_select(RT_MASK(b->eta < one), let_in * b->eta * b->eta, let_in) * rt_min(one, g.mean_there / g.mean_here);
@@ -320,15 +320,16 @@ RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe
             s.wi = rt_choose(through, rt_vec_of(-wo.x / b->eta, -wo.y / b->eta, -cos_out), s.wi);
             rt_vec mirrored = rt_splat(1.0f, 1.0f, 1.0f), passed = b->color;
             vfloat bent_share = glass_share / (b->eta * b->eta);
-#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
             /* Channels differ by what the chance leaves over. */
-            const vmask other = b->layered.lanes;
-            mirrored = rt_choose(other, rt_scale(one / rt_max(m.chance, rt_vfloat(1e-20f)), m.color), mirrored);
-            passed = rt_choose(other, rt_scale(one / rt_max(one - m.chance, rt_vfloat(1e-20f)), rt_mul(passed, rt_rest(m.color))), passed);
-            if (RT_MAY_SCATTER(RT_LOBE_COAT | RT_LOBE_SHEEN)) {
-                const rt_aspect from = rt_aspect_of(&b->layered, s.wi);
-                bent_share = rt_select(other, bent_share * rt_below_through(&p.layered.from, &from) / rt_max(p.glass_dim, rt_vfloat(1e-20f)), bent_share);
-            }
+            const vmask changed = b->layered.changed;
+            mirrored = rt_choose(changed, rt_scale(one / rt_max(m.chance, rt_vfloat(1e-20f)), m.color), mirrored);
+            passed = rt_choose(changed, rt_scale(one / rt_max(one - m.chance, rt_vfloat(1e-20f)), rt_mul(passed, rt_rest(m.color))), passed);
+#endif
+#if RT_MAY_SCATTER(RT_LOBE_COAT | RT_LOBE_SHEEN)
+            const rt_aspect from = rt_aspect_of(&b->layered, s.wi);
+            const vfloat dimmed = bent_share * rt_below_through(&p.layered.from, &from) / rt_max(p.glass_dim, rt_vfloat(1e-20f));
+            bent_share = rt_select(b->layered.lanes, dimmed, bent_share);
 #endif
             s.weight = rt_choose(back, rt_scale(glass_share, mirrored), s.weight);
             s.weight = rt_choose(through, rt_scale(bent_share, passed), s.weight);

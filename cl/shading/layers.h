@@ -26,7 +26,8 @@ typedef struct rt_layered {
     vfloat lost_mean; /* the mean over the hemisphere of what rt_aspect has for a direction */
     vfloat inside;    /* what is diffuse below gives back 1 with (1 - gloss)(1 - gloss') inside and layers of these means */
     rt_vec metal_again, gloss_again; /* share of the facets' lost light that comes back */
-#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
+    vmask changed; /* the lanes whose glass reflects otherwise than by Fresnel's equations */
     vfloat glass_mean;               /* mean reflectance of solid glass, from its thinner side */
     vfloat glass_weak, glass_mirror; /* see rt_lost_by_changed_glass() */
 #endif
@@ -157,7 +158,7 @@ RT_CALLED rt_aspect rt_aspect_of(const rt_layered *l, rt_vec w)
     return a;
 }
 
-#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
 /* For glass that reflects less or more than by Fresnel's equations. straight: by these, straight on. */
 RT_INLINE void rt_prepare_glass(rt_layered *l, vfloat n, vfloat straight)
 {
@@ -205,7 +206,7 @@ RT_CALLED void rt_prepare_layers(rt_layered *l)
     l->inside = one / (rt_max(one - gloss_mean, least) * fma(rt_vfloat(0.5f * RT_LIKENESS), fma(sum, sum, -squares), one));
 }
 
-#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
 /* What solid glass reflects that reflects `exact` by Fresnel's equations: as KHR_materials_specular and _iridescence change it. eta: ior of
  * the other side / ior of this side. cosine: on the thinner side. */
 RT_INLINE rt_vec rt_glass_fresnel(const rt_layered *l, vfloat exact, vfloat eta, vfloat cosine)
@@ -214,7 +215,7 @@ RT_INLINE rt_vec rt_glass_fresnel(const rt_layered *l, vfloat exact, vfloat eta,
     const vfloat weight = rt_max(exact - straight, rt_vfloat(0.0f)) / rt_max(one - straight, rt_vfloat(1e-6f));
     const rt_vec changed = rt_weighted_fresnel(l, cosine, weight);
     /* Total reflection stays: there is no way into the other side. */
-    return rt_choose(l->lanes & RT_MASK(exact < one), changed, rt_vec_of(exact, exact, exact));
+    return rt_choose(l->changed & RT_MASK(exact < one), changed, rt_vec_of(exact, exact, exact));
 }
 #endif
 
@@ -270,7 +271,12 @@ RT_INLINE rt_layered rt_layered_of(const rt_matter *m, vmask lanes, vfloat aroun
     l.film_nm = m->iridescence_thickness;
 #endif
     rt_prepare_layers(&l);
-#if RT_MAY_SCATTER(RT_LOBE_GLASS)
+#if RT_MAY_SCATTER(RT_LOBE_CHANGED)
+    const rt_vec tint = m->specular_color;
+    l.changed = lanes & (RT_MASK(m->specular_weight != one) | RT_MASK(tint.x != one) | RT_MASK(tint.y != one) | RT_MASK(tint.z != one));
+#if RT_MAY_SCATTER(RT_LOBE_FILM)
+    l.changed |= lanes & RT_MASK(l.film > rt_vfloat(0.0f));
+#endif
     rt_prepare_glass(&l, rt_max(m->ior / around, around / m->ior), mirrored * mirrored);
 #endif
     return l;

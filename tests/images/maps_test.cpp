@@ -287,7 +287,8 @@ TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
     Scene scene = white_square();
     put_checker(scene, 256);
     for (const auto& [tracer, lanes] : {std::pair("iterative", "8"), std::pair("wavefront", "1")}) {
-        const FloatImage image = trace(scene, flat_view(), 7, 7, 1, {{"tracer", tracer}, {"lanes", lanes}}).image;
+        const FloatImage image =
+            trace(scene, flat_view(), 7, 7, 1, {{"tracer", tracer}, {"lanes", lanes}, {"mips", "nearest"}}).image;
         for (const float channel : image.pixels) EXPECT_NEAR(channel, 0.5, 0.01) << tracer;
     }
     scene.textures[0].levels = 0;
@@ -314,13 +315,11 @@ TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
         const std::array<float, 3> color = seen(side, mips);
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(color[k], wanted[k], 1e-5) << side << " pixels, mips " << mips << ", " << k;
     };
-    for (const char* mips : {"nearest", "auto"}) {
-        expect_seen(64, mips, {1, 0, 0});
-        expect_seen(32, mips, {0, 1, 0});
-        expect_seen(16, mips, {0, 0, 1});
-    }
-    expect_seen(16, "off", {1, 0, 0});
-    const std::array<float, 3> between = seen(45, "smooth");  // 1.4 texels a pixel
+    expect_seen(64, "nearest", {1, 0, 0});
+    expect_seen(32, "nearest", {0, 1, 0});
+    expect_seen(16, "nearest", {0, 0, 1});
+    for (const char* mips : {"off", "auto"}) expect_seen(16, mips, {1, 0, 0});  // the tracer is Whitted's
+    const std::array<float, 3> between = seen(45, "smooth");                    // 1.4 texels a pixel
     EXPECT_NEAR(between[0], 0.5, 0.15);
     EXPECT_NEAR(between[1], 1 - between[0], 1e-3);
     // `path` mixes two, too. Its cones are half as wide, because a pixel is the mean of its samples.
@@ -339,7 +338,9 @@ TEST(SmallerPictures, AreNotShownUpClose) {
         return scene;
     };
     for (const float scale : {1.f, 0.01f, 300.f}) {
-        const FloatImage image = trace(checker({scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0}), flat_view(), 64, 64, 1).image;
+        const FloatImage image =
+            trace(checker({scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0}), flat_view(), 64, 64, 1, {{"mips", "nearest"}})
+                .image;
         expect_color(image, 3, 3, {0, 0, 0}, 0.13, "a texel, but for a sixteenth along each axis");
         expect_color(image, 11, 3, {1, 1, 1}, 0.13, "the next one");
     }

@@ -36,10 +36,9 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Sett
     if (features.colors) out.define_int("RT_HAS_COLORS", 1);
     out.define_int("RT_HAS_TEXTURES", features.textures);
     if (features.maps) out.define_int("RT_HAS_MAPS", 1);
-    if (features.mips && settings.mips != "off") {
-        out.define_int("RT_HAS_MIPS", 1);
-        if (settings.mips == "smooth" || (settings.mips == "auto" && !row.has(kWhitted))) out.define_int("RT_MIX_MIPS", 1);
-    }
+    const std::string mips = settings.mips != "auto" ? settings.mips : row.has(kPicksLights) ? "smooth" : "off";
+    if (features.mips && mips != "off") out.define_int("RT_HAS_MIPS", 1);
+    if (features.mips && mips == "smooth") out.define_int("RT_MIX_MIPS", 1);
     if (features.tangents) out.define_int("RT_HAS_TANGENTS", 1);
     if (features.uvs2) out.define_int("RT_HAS_UVS2", 1);
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);

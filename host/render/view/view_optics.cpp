@@ -17,7 +17,7 @@ void add(Optics& optics, const rt_light& light) {
 }
 
 // A map may make any value smaller: a metal of 1 may have parts that are none, and let light through.
-rt_u32 lobes_of_layers(const MaterialValues& m) {
+rt_u32 lobes_of_layers(const MaterialValues& m, const MaterialMaps& maps) {
     const rt_layers& l = m.layers;
     const bool clear = l.transmission > 0, solid = (l.flags & RT_LAYERS_SOLID) != 0;
     rt_u32 lobes = RT_LOBE_LAYERS;
@@ -27,10 +27,14 @@ rt_u32 lobes_of_layers(const MaterialValues& m) {
     if (clear && solid) lobes |= m.roughness > 0 || l.anisotropy > 0 ? RT_LOBE_GLASS | RT_LOBE_FROSTED : RT_LOBE_GLASS;
     if (l.anisotropy > 0) lobes |= RT_LOBE_GRAIN;
     if (l.iridescence > 0) lobes |= RT_LOBE_FILM;
+    const bool is_white = std::all_of(l.specular_color, l.specular_color + 3, [](float c) { return c == 1; });
+    const bool is_plain =
+        l.specular_weight == 1 && is_white && maps[RT_MAP_SPECULAR] == RT_NONE && maps[RT_MAP_SPECULAR_COLOR] == RT_NONE;
+    if (clear && solid && (!is_plain || l.iridescence > 0)) lobes |= RT_LOBE_CHANGED;
     return lobes;
 }
 
-void add(Optics& optics, const MaterialValues& m) {
+void add(Optics& optics, const MaterialValues& m, const MaterialMaps& maps) {
     if (emits(m)) optics.lights |= 1u << RT_EMITTER_SURFACE;
     rt_u32 lobes = 0;
     switch (m.model) {
@@ -46,7 +50,7 @@ void add(Optics& optics, const MaterialValues& m) {
             if (m.roughness > 0) lobes |= RT_LOBE_FROSTED;
             break;
         case RT_MODEL_GLTF:
-            lobes |= lobes_of_layers(m);
+            lobes |= lobes_of_layers(m, maps);
             break;
         case RT_MODEL_UNLIT:
             lobes |= RT_LOBE_UNLIT;
@@ -72,14 +76,14 @@ Optics optics_of(const Scene& scene) {
     Optics optics = optics_of_sky(scene.sky.values, scene.background);
     for (const Light& light : scene.lights) add(optics, light.values);
     if (scene.lights.empty()) optics.lights |= 1u << RT_LIGHT_POINT;  // those that make_view() adds
-    for (const Material& material : scene.materials) add(optics, material.values);
+    for (const Material& material : scene.materials) add(optics, material.values, material.maps);
     return optics;
 }
 
 Optics optics_of(const Scene& scene, const View& view, const Settings& settings) {
     Optics optics = optics_of_sky(sky_of(scene, view), view.background);
     for (const rt_light& light : view.lights) add(optics, light);
-    for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i));
+    for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i), scene.materials[i].maps);
     return seen_by(settings, optics);
 }
 

@@ -91,11 +91,11 @@ TEST(ShapeStatements, OfALoadedFileThatMovesStayAtRest) {
 }
 
 TEST(ShapeStatements, ErrorsNameThePlace) {
-    EXPECT_EQ(
-        error_of("\n cylindre from 0 0 0"),
-        "a.scene:2:2: unknown statement `cylindre`; did you mean `cylinder`? (statements: camera, light, background, "
-        "ambient, material, sphere, plane, polygon, triangle, load, animate, edit, sky, box, cone, cylinder, disc, nurbs, "
-        "torus)");
+    EXPECT_EQ(error_of("\n cylindre from 0 0 0"),
+              "a.scene:2:2: unknown statement `cylindre`; did you mean `cylinder`? (statements: camera, light, background, "
+              "ambient, material, sphere, plane, polygon, triangle, load, animate, edit, sky, texture, box, cone, cylinder, "
+              "disc, nurbs, "
+              "torus)");
     EXPECT_EQ(error_of("cylinder from 0 0 0 to 0 1 0 radus .5"),
               "a.scene:1:30: unknown key `radus`; did you mean `radius`? (keys of cylinder: from, to, radius, caps, material)");
     EXPECT_EQ(error_of("cylinder from 0 0 0 to 0 1 0"),

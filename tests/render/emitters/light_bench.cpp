@@ -161,7 +161,7 @@ LightBench::LightBench(const Scene& scene, const View& view, int lanes) : impl_(
     im.view = view;
     im.device = Workbench::get().shared_device();
     Settings settings = make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}});
-    settings.optics = {RT_LIGHTS_ALL, RT_LOBES_ALL};
+    settings.optics = {RT_LIGHTS_ALL, RT_LOBES_ALL & ~RT_LOBE_COAT};  // varnish above a lamp needs the headers of surfaces
     Progress progress;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
     auto accel = std::make_shared<AccelData>(build_accel(*im.scene, plugin, default_parameters(plugin), progress));

@@ -132,6 +132,10 @@ std::vector<Case> cases() {
          layered([](rt_layers& l) { l.transmission = 0.7f, l.flags = RT_LAYERS_SOLID; }),
          {light(RT_LIGHT_SPHERE)},
          {bit(RT_LIGHT_SPHERE), RT_LOBE_LAYERS | RT_LOBE_GLASS | RT_LOBE_FROSTED}},
+        {"a solid that mirrors less",
+         layered([](rt_layers& l) { l.transmission = 0.7f, l.flags = RT_LAYERS_SOLID, l.specular_weight = 0.5f; }),
+         {light(RT_LIGHT_SPHERE)},
+         {bit(RT_LIGHT_SPHERE), RT_LOBE_LAYERS | RT_LOBE_GLASS | RT_LOBE_FROSTED | RT_LOBE_CHANGED}},
         {"unlit", of_model(RT_MODEL_UNLIT), {light(RT_LIGHT_POINT)}, {bit(RT_LIGHT_POINT), RT_LOBE_UNLIT}},
     };
 }
