@@ -20,6 +20,9 @@ namespace {
 using namespace clarity::space;
 
 constexpr size_t kChunk = 256;  // coarse cells that one task fills
+// In so many cells of a grid a primitive may be on average. Small ones are in 1 to 4. Without the limit, n large ones that lie
+// over each other ask for n cells, each is in n^(2/3) of them, and both levels multiply that.
+constexpr double kMostCells = 16;
 
 enum Param { kCoarse, kFine, kExact };
 constexpr rt_param kParams[] = {
@@ -47,6 +50,35 @@ struct Grids {
 
 constexpr grid2_grid kOneCell{{0, 0, 0, 0, 0, 0}, {1, 1, 1}, {1, 1, 1}, 0, {0, 0, 0}};
 
+// Estimates in how many cells a primitive is on average, by some of them: a plane meets about as many as its largest face has.
+template <class Number>
+double cells_of_each(const grid2_grid& grid, const Prims& prims, rt_u32 count, const Number& number) {
+    const rt_u32 step = std::max(count / 256, 1u);
+    double sum = 0, seen = 0;
+    for (rt_u32 i = 0; i < count; i += step) {
+        const rt_prim& p = prims.prims[number(i)];
+        if (is_huge(p)) continue;
+        double across[3];
+        for (int k = 0; k < 3; ++k) {
+            const double low = grid.box[k], high = grid.box[k + 3];
+            across[k] = (std::min(double{p.hi[k]}, high) - std::max(double{p.lo[k]}, low)) / double{grid.size[k]};
+            across[k] = std::clamp(across[k] + 1, 1.0, double(grid.cells[k]));
+        }
+        sum += across[0] * across[1] * across[2] / *std::min_element(across, across + 3);
+        ++seen;
+    }
+    return seen > 0 ? sum / seen : 0;
+}
+
+// Parts the box into `wanted` cells, or fewer where primitives are large.
+template <class Number>
+void shape(grid2_grid& grid, const Extent& box, double wanted, const Prims& prims, rt_u32 count, const Number& number) {
+    for (;; wanted /= 4) {
+        shape_cells(grid, box.lo, box.hi, wanted);
+        if (cell_count(grid) == 1 || cells_of_each(grid, prims, count, number) <= kMostCells) return;
+    }
+}
+
 // The grids of one group.
 class Builder {
  public:
@@ -58,8 +90,9 @@ class Builder {
         const Prims prims{in.prims + group.first, in.params[kExact] != 0 ? in.geometry->triangles : nullptr};
         Extent extent;
         for (rt_u32 i = 0; i < group.count; ++i) extent.add(prims.prims[i]);
-        if (extent.count > 0) shape_cells(coarse, extent.lo, extent.hi, in.params[kCoarse] * extent.count);
-        const CellLists lists = fill_cells(host, coarse, prims, group.count, [](rt_u32 i) { return i; });
+        const auto all = [](rt_u32 i) { return i; };
+        if (extent.count > 0) shape(coarse, extent, in.params[kCoarse] * extent.count, prims, group.count, all);
+        const CellLists lists = fill_cells(host, coarse, prims, group.count, all);
 
         const size_t cells = cell_count(coarse) + 1;  // with that of huge primitives, the last
         parts.resize((cells + kChunk - 1) / kChunk);
@@ -90,7 +123,7 @@ class Builder {
             extent.hi[k] = std::clamp(extent.hi[k], low, high);
         }
         grid2_grid fine = kOneCell;
-        shape_cells(fine, extent.lo, extent.hi, density * count);
+        shape(fine, extent, density * count, prims, count, [&](rt_u32 i) { return some[i]; });
         return fine;
     }
 };
