@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "accessors.hpp"
 #include "document.hpp"
 #include "rt_plugin.h"
 
