@@ -130,7 +130,7 @@ typedef struct rt_emitter {
 #define RT_LOBE_THIN 256u   /* transmission by thin sheets */
 #define RT_LOBE_GRAIN 512u  /* anisotropy */
 #define RT_LOBE_FILM 1024u  /* iridescence */
-#define RT_LOBE_CHANGED 2048u /* solid glass that reflects otherwise than by Fresnel's equations */
+#define RT_LOBE_CHANGED 2048u /* solid glass that reflects less or more than Fresnel's equations say */
 #define RT_LOBE_UNLIT 4096u   /* RT_MODEL_UNLIT */
 #define RT_LOBES_ALL 8191u
 #ifdef __OPENCL_VERSION__

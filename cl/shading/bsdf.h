@@ -56,34 +56,31 @@ RT_INLINE vmask rt_is_sheet(const rt_bsdf *b)
 RT_INLINE vmask rt_is_rough(const rt_bsdf *b, vfloat share) { return RT_MASK(share > rt_vfloat(0.0f)) & RT_MASK(b->facets.alpha > rt_vfloat(0.0f)); }
 
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
-/* rt_lost_by_glass() of light from w, of glass that may reflect less or more than by Fresnel's equations, and its mean over the
- * hemisphere. eta: ior of the other side / ior of the side of w. */
-RT_INLINE vfloat rt_change_lost(const rt_bsdf *b, vfloat eta, vfloat lost, vfloat by_metal)
-{
 #if RT_MAY_SCATTER(RT_LOBE_CHANGED)
-    const rt_layered *l = &b->layered;
+/* What glass that reflects less or more than by Fresnel's equations loses between facets. lost: by these. by_metal: if all is mirrored. */
+RT_INLINE vfloat rt_change_lost(const rt_layered *l, vfloat eta, vfloat lost, vfloat by_metal)
+{
     const vfloat weak = lost * rt_select(RT_MASK(eta > rt_vfloat(1.0f)), l->glass_weak, rt_vfloat(1.0f));
     return rt_select(l->changed, rt_mix(weak, by_metal, l->glass_mirror), lost);
-#else
-    return lost;
-#endif
 }
-RT_INLINE vfloat rt_lost_by_changed_glass(const rt_bsdf *b, rt_vec w, vfloat eta)
+#endif
+/* What facets of glass lose of light from w, and its mean over the hemisphere. eta: ior of the other side / ior of the side of w. */
+RT_INLINE vfloat rt_lost_by_frosted(const rt_bsdf *b, rt_vec w, vfloat eta)
 {
     const vfloat alpha = rt_max(rt_even_alpha(&b->facets, w, RT_SWING_OF_LOSS), rt_vfloat(RT_LEAST_ALPHA)), mu = rt_min(fabs(w.z), rt_vfloat(1.0f));
-    vfloat by_metal = rt_vfloat(0.0f);
+    vfloat lost = rt_lost_by_glass(mu, alpha, eta);
 #if RT_MAY_SCATTER(RT_LOBE_CHANGED)
-    by_metal = rt_lost_by_metal(mu, alpha);
+    lost = rt_change_lost(&b->layered, eta, lost, rt_lost_by_metal(mu, alpha));
 #endif
-    return rt_change_lost(b, eta, rt_lost_by_glass(mu, alpha, eta), by_metal);
+    return lost;
 }
-RT_INLINE vfloat rt_lost_by_changed_glass_mean(const rt_bsdf *b, vfloat eta)
+RT_INLINE vfloat rt_lost_by_frosted_mean(const rt_bsdf *b, vfloat eta)
 {
-    vfloat by_metal = rt_vfloat(0.0f);
+    vfloat lost = rt_lost_by_glass_mean(b->facets.alpha, eta);
 #if RT_MAY_SCATTER(RT_LOBE_CHANGED)
-    by_metal = rt_lost_by_metal_mean(b->facets.alpha);
+    lost = rt_change_lost(&b->layered, eta, lost, rt_lost_by_metal_mean(b->facets.alpha));
 #endif
-    return rt_change_lost(b, eta, rt_lost_by_glass_mean(b->facets.alpha, eta), by_metal);
+    return lost;
 }
 #endif
 
@@ -117,7 +114,7 @@ RT_INLINE rt_bsdf_lobes rt_bsdf_lobes_of(const rt_bsdf *b, rt_vec wo)
 #endif
 #if RT_MAY_SCATTER(RT_LOBE_FROSTED)
     const vmask glass = rt_is_rough(b, b->glass) & b->compensate;
-    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_changed_glass(b, wo, b->eta), p.again);
+    if (rt_any(glass)) p.again = rt_select(glass, rt_lost_by_frosted(b, wo, b->eta), p.again);
 #endif
     return p;
 }
@@ -156,8 +153,8 @@ RT_INLINE rt_glass_again rt_glass_again_of(const rt_bsdf *b)
 {
     const vfloat one = rt_vfloat(1.0f), least = rt_vfloat(1e-9f);
     rt_glass_again g;
-    g.mean_here = rt_max(rt_lost_by_changed_glass_mean(b, b->eta), least);
-    g.mean_there = rt_max(rt_lost_by_changed_glass_mean(b, one / b->eta), least);
+    g.mean_here = rt_max(rt_lost_by_frosted_mean(b, b->eta), least);
+    g.mean_there = rt_max(rt_lost_by_frosted_mean(b, one / b->eta), least);
     const vfloat n = rt_max(b->eta, one / b->eta);
     vfloat mean = rt_glass_mean(n);
 #if RT_MAY_SCATTER(RT_LOBE_CHANGED)
@@ -196,7 +193,7 @@ RT_INLINE rt_vec rt_frosted_eval(const rt_bsdf *b, const rt_bsdf_lobes *p, rt_ve
     if (rt_any(b->compensate & rt_is_rough(b, b->glass))) {
         const rt_glass_again g = rt_glass_again_of(b);
         const vfloat cosine = rt_vfloat(RT_INVERSE_PI) * mu_i;
-        const vfloat lost_i = rt_lost_by_changed_glass(b, wi, rt_select(through, one / eta, eta));
+        const vfloat lost_i = rt_lost_by_frosted(b, wi, rt_select(through, one / eta, eta));
         const vfloat share = rt_select(through, g.through / (g.mean_there * eta * eta), (one - g.through) / g.mean_here);
         const vfloat several = rt_select(b->compensate, p->again, zero) * cosine * lost_i * share;
         value = rt_add(value, rt_choose(through, rt_scale(several, b->color), rt_vec_of(several, several, several)));

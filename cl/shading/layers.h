@@ -27,9 +27,9 @@ typedef struct rt_layered {
     vfloat inside;    /* what is diffuse below gives back 1 with (1 - gloss)(1 - gloss') inside and layers of these means */
     rt_vec metal_again, gloss_again; /* share of the facets' lost light that comes back */
 #if RT_MAY_SCATTER(RT_LOBE_CHANGED)
-    vmask changed; /* the lanes whose glass reflects otherwise than by Fresnel's equations */
+    vmask changed; /* the lanes with glass that reflects less or more than Fresnel's equations say */
     vfloat glass_mean;               /* mean reflectance of solid glass, from its thinner side */
-    vfloat glass_weak, glass_mirror; /* see rt_lost_by_changed_glass() */
+    vfloat glass_weak, glass_mirror; /* see rt_change_lost() */
 #endif
 #if RT_MAY_SCATTER(RT_LOBE_COAT)
     vfloat coat, coat_alpha, coat_mean;

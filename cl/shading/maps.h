@@ -143,7 +143,7 @@ RT_INLINE rt_vec rt_mapped_normal(const rt_ctx *ctx, const global rt_map *map, c
                      fma(two, color.z, -one));
 }
 
-/* Applies maps of normals: turns the shading normals of the lanes whose materials have one. Returns those lanes. */
+/* Applies maps of normals. In lanes with such a map it turns the shading normal. Returns these lanes. */
 RT_INLINE vmask rt_map_normals(const rt_ctx *ctx, rt_surface *s, uint bits)
 {
     vmask mapped = rt_vint(0);

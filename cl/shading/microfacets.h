@@ -21,7 +21,7 @@ typedef struct rt_facets {
     vfloat alpha; /* 0: smooth. Along a grain and across it alphas differ; even facets of this one lose as much light on average */
 #if RT_MAY_SCATTER(RT_LOBE_GRAIN)
     vfloat along, across;
-    vfloat grain_x, grain_y; /* unit: the grain, in the surface's frame; (1, 0) of even facets, whose alphas are the same */
+    vfloat grain_x, grain_y; /* the grain, a unit vector in the surface's frame. Even facets, with the same alpha both ways, have (1, 0) */
     vfloat uneven;           /* (along^2 - across^2) / (along^2 + across^2) */
 #endif
 } rt_facets;
@@ -69,7 +69,7 @@ RT_INLINE rt_facets rt_choose_facets(vmask mask, rt_facets a, rt_facets b)
     f.uneven = rt_select(mask, a.uneven, b.uneven);
     return f;
 }
-/* A direction in the frame whose x is the grain, and back. */
+/* Turn a direction into the frame with x along the grain, and back. */
 RT_INLINE rt_vec rt_to_grain(const rt_facets *f, rt_vec w)
 {
     return rt_vec_of(fma(f->grain_x, w.x, f->grain_y * w.y), fma(f->grain_x, w.y, -f->grain_y * w.x), w.z);

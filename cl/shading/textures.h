@@ -120,8 +120,8 @@ RT_INLINE void rt_level_size(const rt_ctx *ctx, const rt_texture *texture, vint 
 }
 #endif
 
-/* Loads the texels of texture `index` around a point in each of `lanes`: bilinear, of the picture whose level is the nearest, or with
- * RT_MIX_MIPS of the two that are. Outside of the picture they are as its wrap modes say. */
+/* Loads the texels around a point in each of `lanes`, with their bilinear weights. They are those of the picture of the nearest level, or
+ * with RT_MIX_MIPS of the two nearest. Outside of the picture its wrap modes count. */
 RT_INLINE rt_taps rt_load_texels(const rt_ctx *ctx, const rt_texture *texture, vmask lanes, const rt_texture_point *p)
 {
 #ifdef RT_HAS_WRAPS

@@ -22,13 +22,6 @@ void each_value(const MaterialValues& values, const Tell& tell) {
     }
 }
 
-// Calls tell(use, map) for each map.
-template <class Tell>
-void each_map(const Scene& scene, const Material& material, const Tell& tell) {
-    for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
-        if (material.maps[use] != RT_NONE) tell(map_uses()[use], scene.maps[material.maps[use]]);
-}
-
 bool lies_plainly(const rt_map& map) {
     const float identity[] = {1, 0, 0, 0, 1, 0};
     return std::equal(identity, identity + 6, map.matrix);

@@ -41,8 +41,12 @@ const std::array<MapUse, RT_MAP_USES>& map_uses() {
          RT_SPACE_LINEAR,
          {}},
         {"opacity_map", "Opacity", "r", RT_SPACE_LINEAR, {"opacity"}},
-        {"roughness_map", "Roughness", "r; goes before that of both", RT_SPACE_LINEAR, {"roughness"}},
-        {"metallic_map", "Metal", "r; goes before that of both", RT_SPACE_LINEAR, {"metallic"}},
+        {"roughness_map",
+         "Roughness",
+         "r; `metallic_roughness_map` does not count for it then",
+         RT_SPACE_LINEAR,
+         {"roughness"}},
+        {"metallic_map", "Metal", "r; `metallic_roughness_map` does not count for it then", RT_SPACE_LINEAR, {"metallic"}},
     }};
     return uses;
 }

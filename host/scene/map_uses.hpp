@@ -3,6 +3,7 @@
 #include <array>
 
 #include "rt_plugin.h"
+#include "scene/scene.hpp"
 
 namespace clarity {
 
@@ -17,5 +18,12 @@ struct MapUse {
 // By RT_MAP_.
 const std::array<MapUse, RT_MAP_USES>& map_uses();
 const rt_primitive_kind* map_kind_for_plugins();
+
+// Calls tell(use, map) for each map of a material.
+template <class Tell>
+void each_map(const Scene& scene, const Material& material, const Tell& tell) {
+    for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
+        if (material.maps[use] != RT_NONE) tell(map_uses()[use], scene.maps[material.maps[use]]);
+}
 
 }  // namespace clarity

@@ -55,8 +55,7 @@ void texture_rows(const Scene& scene, const Material& material, const MaterialVa
         tooltip(std::to_string(t.width) + " x " + std::to_string(t.height) + ", `" + use.name + "` in text scenes");
     };
     if (values.texture != RT_NONE) row(map_uses()[RT_MAP_COLOR], values.texture);
-    for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
-        if (material.maps[use] != RT_NONE) row(map_uses()[use], scene.maps[material.maps[use]].texture);
+    each_map(scene, material, [&](const MapUse& use, const rt_map& map) { row(use, map.texture); });
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::string stack_in(const rt_plugin& tracer) {
 }
 
 // Leaf tests and nodes of the sets that make traversals go through most of a tree. The rays end before their nearest hits, so
-// they find nothing. With hits, a structure whose cells do not overlap would end in the first cell, and would not push at all.
+// they find nothing. Otherwise a structure with cells that do not overlap would find a hit in the first cell, and never push.
 struct Effort {
     uint64_t tests[2] = {0, 0};  // nearest, any
     uint32_t most[2] = {0, 0};   // of one ray; those of nearest hits are whole for that

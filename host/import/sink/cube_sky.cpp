@@ -6,34 +6,26 @@
 #include "base/angle.hpp"
 #include "base/parallel_for.hpp"
 #include "base/pictures/srgb.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity::import {
 namespace {
 
-using Direction = std::array<double, 3>;
 using Radiance = std::array<float, 3>;
 
-// Columns of pictures go to the right of who looks from the inside: forward x up. Source: the table of cube maps in OpenGL 4.6,
-// section 8.13, mirrored as glTF's EXT_lights_image_based says.
+// A view from within the cube. Columns of pictures go to its right, which is forward x up. Source: the table of cube maps in
+// OpenGL 4.6, section 8.13, mirrored as glTF's EXT_lights_image_based says.
 struct Side {
-    Direction forward, up, right;
+    Vec forward, up, right;
 };
 constexpr Side kSides[6] = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},   {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
                             {{0, 1, 0}, {0, 0, -1}, {-1, 0, 0}}, {{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}},
                             {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}},  {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}};
 
-double dot(const Direction& a, const Direction& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Direction cross(const Direction& a, const Direction& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 // The direction of the cube that is turned to d: d + 2 w (v x d) + 2 v x (v x d) by the conjugate.
-Direction turned_back(const std::array<double, 4>& turn, const Direction& d) {
-    const Direction v = {-turn[0], -turn[1], -turn[2]}, once = cross(v, d), twice = cross(v, once);
-    return {d[0] + 2 * (turn[3] * once[0] + twice[0]), d[1] + 2 * (turn[3] * once[1] + twice[1]),
-            d[2] + 2 * (turn[3] * once[2] + twice[2])};
+Vec turned_back(const std::array<double, 4>& turn, const Vec& d) {
+    const Vec v = {-turn[0], -turn[1], -turn[2]}, once = cross(v, d), twice = cross(v, once);
+    return d + 2 * (turn[3] * once + twice);
 }
 
 // Faces as linear radiance.
@@ -52,8 +44,8 @@ Faces decoded(const Cube& cube) {
     return faces;
 }
 
-// Bilinear within a face, whose border goes on outside.
-Radiance seen(const Faces& faces, rt_u32 side, const Direction& d) {
+// Bilinear within a face. Near an edge the outermost texels are shown, not those of the next face.
+Radiance seen(const Faces& faces, rt_u32 side, const Vec& d) {
     size_t best = 0;
     for (size_t f = 1; f < 6; ++f)
         if (dot(d, kSides[f].forward) > dot(d, kSides[best].forward)) best = f;
@@ -87,7 +79,7 @@ void show_cube(const Cube& cube, const std::array<double, 4>& turn, Sky& sky) {
             for (int sample = 0; sample < 4; ++sample) {
                 const double phi = ((column + (sample % 2 ? 0.75 : 0.25)) / width - 0.5) * 2 * kPi,
                              theta = (row + (sample / 2 ? 0.75 : 0.25)) / height * kPi, ring = std::sin(theta);
-                const Direction d = {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)};
+                const Vec d = {ring * std::cos(phi), std::cos(theta), ring * std::sin(phi)};
                 const Radiance part = seen(faces, side, turned_back(turn, d));
                 for (size_t k = 0; k < 3; ++k) out[k] += part[k] / 4;
             }

@@ -88,8 +88,8 @@ class Collector {
     const rt_packed_prim& leaf(rt_u32 at) const { return leaves_[at]; }
 
     // For each primitive of a kind that emits, by its ref: one of the leaves that hold it. A primitive that was cut is in
-    // several leaves. all: counts primitives, too, whose own material does not emit, because an instance may have one that
-    // does. Light of a map is drawn from triangles only.
+    // several leaves. all: primitives count whatever their own material is, because an instance may have one that
+    // emits. Light of a map is drawn from triangles only.
     std::vector<rt_u32> leaves_of(rt_u32 kind, size_t count, bool all) const {
         const std::vector<bool>& emits = kind == RT_REF_TRIANGLE ? emits_ : emits_evenly_;
         std::vector<rt_u32> found(count, RT_NONE);

@@ -51,6 +51,25 @@ inline const std::vector<const char*>& material_headers() {
     return headers;
 }
 
+// Headers below cl/ of the surface models of `path`, in their order, after those above and sampling/.
+inline const std::vector<const char*>& surface_headers() {
+    static const std::vector<const char*> headers = {"shading/albedo_grazing.h",
+                                                     "shading/albedo_sheen.h",
+                                                     "shading/lost_metal.h",
+                                                     "shading/lost_glass_outside.h",
+                                                     "shading/lost_glass_inside.h",
+                                                     "shading/microfacets.h",
+                                                     "shading/sheen.h",
+                                                     "shading/matter.h",
+                                                     "shading/matter_maps.h",
+                                                     "shading/film.h",
+                                                     "shading/layers.h",
+                                                     "shading/layer_lobes.h",
+                                                     "shading/bsdf.h",
+                                                     "shading/bsdf_of.h"};
+    return headers;
+}
+
 // Planes of the film of colours that a kernel traces into.
 inline unsigned film_planes(const KernelRow& row) {
     return row.has(kSumsSamples) ? 2 : 1;

@@ -65,19 +65,28 @@ void cell_box(const Head& head, size_t cell, float lo[3], float hi[3]) {
     }
 }
 
+// The cells that a primitive's box meets, along each axis.
+struct CellRange {
+    int lo[3], hi[3];
+};
+template <class Head>
+CellRange cells_of_box(const Head& head, const rt_prim& p) {
+    CellRange range;
+    for (int k = 0; k < 3; ++k) {
+        const double most = head.cells[k] - 1.0, slack = cell_slack(head, k);
+        range.lo[k] = int(std::clamp((p.lo[k] - slack - head.box[k]) / head.size[k], 0.0, most));
+        range.hi[k] = int(std::clamp((p.hi[k] + slack - head.box[k]) / head.size[k], 0.0, most));
+    }
+    return range;
+}
+
 // Calls body with the number of each cell that primitive i meets. Huge ones are in a cell of their own behind all others.
 template <class Head, class Body>
 void each_cell(const Head& head, const Prims& of, rt_u32 i, const Body& body) {
     const rt_prim& p = of.prims[i];
     if (is_huge(p)) return body(cell_count(head));
-    int lo[3], hi[3];
-    double half[3], center[3];
-    for (int k = 0; k < 3; ++k) {
-        const double most = head.cells[k] - 1.0, slack = cell_slack(head, k);
-        lo[k] = int(std::clamp((p.lo[k] - slack - head.box[k]) / head.size[k], 0.0, most));
-        hi[k] = int(std::clamp((p.hi[k] + slack - head.box[k]) / head.size[k], 0.0, most));
-        half[k] = 0.5 * head.size[k] + slack;
-    }
+    const CellRange range = cells_of_box(head, p);
+    const int *const lo = range.lo, *const hi = range.hi;
     const auto each = [&](const auto& meets) {
         for (int z = lo[2]; z <= hi[2]; ++z)
             for (int y = lo[1]; y <= hi[1]; ++y)
@@ -87,8 +96,11 @@ void each_cell(const Head& head, const Prims& of, rt_u32 i, const Body& body) {
     const bool flat = (hi[0] > lo[0]) + (hi[1] > lo[1]) + (hi[2] > lo[2]) < 2;  // then its plane hardly misses a cell
     if (flat || !of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE) return each([](int, int, int) { return true; });
     const TrianglePlane plane(of.triangles[RT_REF_INDEX(p.ref)]);
+    double half[3];
+    for (int k = 0; k < 3; ++k) half[k] = 0.5 * head.size[k] + cell_slack(head, k);
     each([&](int x, int y, int z) {
         const int at[3] = {x, y, z};
+        double center[3];
         for (int k = 0; k < 3; ++k) center[k] = head.box[k] + (at[k] + 0.5) * double{head.size[k]};
         return plane.meets(center, half);
     });

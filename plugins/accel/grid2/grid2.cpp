@@ -58,12 +58,9 @@ double cells_of_each(const grid2_grid& grid, const Prims& prims, rt_u32 count, c
     for (rt_u32 i = 0; i < count; i += step) {
         const rt_prim& p = prims.prims[number(i)];
         if (is_huge(p)) continue;
+        const CellRange range = cells_of_box(grid, p);
         double across[3];
-        for (int k = 0; k < 3; ++k) {
-            const double low = grid.box[k], high = grid.box[k + 3];
-            across[k] = (std::min(double{p.hi[k]}, high) - std::max(double{p.lo[k]}, low)) / double{grid.size[k]};
-            across[k] = std::clamp(across[k] + 1, 1.0, double(grid.cells[k]));
-        }
+        for (int k = 0; k < 3; ++k) across[k] = range.hi[k] - range.lo[k] + 1;
         sum += across[0] * across[1] * across[2] / *std::min_element(across, across + 3);
         ++seen;
     }

@@ -94,22 +94,20 @@ rt_u32 MaterialTable::id(unsigned material) {
         if (color_picture.empty()) color_picture = picture_of(m, type);
     }
     std::vector<rt_map_desc> maps = maps_of(m);
-    const auto has_map = [&](rt_u32 use) {
-        return std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });
-    };
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
     importers::store_color(base, 1, 1, out.color);
     // A picture replaces the value.
-    const aiColor3D emission = has_map(RT_MAP_EMISSION) ? aiColor3D(1, 1, 1) : color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
+    const aiColor3D emission =
+        importers::has_map(maps, RT_MAP_EMISSION) ? aiColor3D(1, 1, 1) : color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
     const float intensity = importers::limited(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
     importers::store_color(emission, intensity, 1000, out.emission);
     importers::MaterialKeys keys;
     ai_real metallic = 0;
     if (m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS) {
         keys.set("model", importers::gltf_model);
-        keys.set("metallic", has_map(RT_MAP_METALLIC) ? 1 : metallic);
-        keys.set("roughness", has_map(RT_MAP_ROUGHNESS) ? 1 : number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1));
+        keys.set("metallic", importers::has_map(maps, RT_MAP_METALLIC) ? 1 : metallic);
+        keys.set("roughness", importers::has_map(maps, RT_MAP_ROUGHNESS) ? 1 : number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1));
     } else {
         apply_phong(m, out);
     }
@@ -160,8 +158,8 @@ TextureMapping MaterialTable::mapping(unsigned material) const {
 std::vector<rt_map_desc> MaterialTable::maps_of(const aiMaterial& material) {
     std::vector<rt_map_desc> maps;
     for (const Use& use : kUses) {
-        const bool is_there = std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use.use; });
-        const rt_map_desc map = rt::map(use.use, is_there ? RT_NONE : texture(material, use.type, use.space));
+        if (importers::has_map(maps, use.use)) continue;
+        const rt_map_desc map = rt::map(use.use, texture(material, use.type, use.space));
         if (map.texture != RT_NONE) maps.push_back(map);
     }
     return maps;

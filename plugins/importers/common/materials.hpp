@@ -37,6 +37,9 @@ class MaterialKeys {
  private:
     std::vector<rt_key_value> values_;
 };
+inline bool has_map(const std::vector<rt_map_desc>& maps, rt_u32 use) {
+    return std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });
+}
 // The description points to the maps, which must outlive it.
 inline void give_maps(const std::vector<rt_map_desc>& maps, rt_material_desc& out) {
     out.maps = maps.data();

@@ -78,8 +78,6 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     out.texture = found == kNoObject ? RT_NONE : picture(found, RT_SPACE_SRGB);
     const std::vector<rt_map_desc> maps = maps_of(material);
     give_maps(maps, out);
-    const bool has_emission =
-        std::any_of(maps.begin(), maps.end(), [](const rt_map_desc& map) { return map.use == RT_MAP_EMISSION; });
     AlphaKeys alpha;
     MaterialKeys keys;
     std::vector<std::string> left_out = pictures_left_out(material);
@@ -88,7 +86,7 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     if (surface.is_physical())
         surface.read(maps, out.texture != RT_NONE, keys, alpha, out, left_out);
     else
-        read_phong(properties, out.texture != RT_NONE, has_emission, alpha, out);
+        read_phong(properties, out.texture != RT_NONE, has_map(maps, RT_MAP_EMISSION), alpha, out);
     // A texture of the transparency replaces its value. Programs connect the picture of the colour again where its alpha
     // counts.
     const uint32_t clear = transparency(material);
@@ -111,8 +109,7 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
 std::vector<rt_map_desc> Materials::maps_of(uint32_t material) {
     std::vector<rt_map_desc> maps;
     const auto add = [&](const Link& link, rt_u32 use, rt_u32 space) {
-        const bool is_there = std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });
-        if (is_there || context_.objects[link.from].kind != "Texture") return;
+        if (has_map(maps, use) || context_.objects[link.from].kind != "Texture") return;
         rt_map_desc map = rt::map(use, picture(link.from, space));
         if (space == RT_SPACE_HEIGHT)
             map.scale = limited(context_.properties(material).number("BumpFactor", 1), -1000, 1000, 1);

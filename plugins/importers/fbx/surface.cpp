@@ -80,10 +80,6 @@ constexpr const char* kLeftOut[] = {
     "subsurface",      "scattering",          "transmissiondispersion", "dispersion",    "coatanisotropy",
     "coataffectcolor", "coataffectroughness", "diffuseroughness",       "diffroughness", "transmissionextraroughness"};
 
-bool has_map(const std::vector<rt_map_desc>& maps, rt_u32 use) {
-    return std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });
-}
-
 double largest(const Vec3& v) {
     return std::max({v[0], v[1], v[2]});
 }

@@ -15,8 +15,8 @@ std::vector<uint32_t> attributes_of(const Context& context, uint32_t model, std:
 
 // FBX has no units of light, but those who write files have. Intensity / 100 times the colour means:
 // - of Blender, watts; of directional lights W/m^2 (export_fbx_bin.py; Blender's manual, "Light Objects"). A point of W watts
-// has an
-//   intensity of W / (4 pi) W/sr, for distances in metres.
+// has
+//   an intensity of W / (4 pi) W/sr, for distances in metres.
 // - without decay, the brightness of a white surface that faces the light (Maya's help, "Decay Rate").
 // - with decay, the same at a distance of one unit: an intensity of pi times the colour. Each decay is taken for the square.
 // - of an area light, the radiance of a square of 2 x 2 units of its node (Maya's help, "Area Light").

@@ -4,6 +4,7 @@
 // terrain lies as the picture does. A cell between four samples becomes two triangles, cut along the diagonal whose ends differ
 // less, which keeps ridges. Normals are those of the surface through the neighbours (central differences).
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -91,9 +92,6 @@ int32_t load(const rt_host* host, const char* path, const double* params, const 
         const Picture picture = read_picture(file.bytes());
         if (!picture.left_out.empty()) rt::warn(*sink, picture.left_out);
         rt::progress(host, 0.4f);
-        if (picture.width < 2 || picture.height < 2)
-            throw std::runtime_error("has " + std::to_string(picture.width) + " x " + std::to_string(picture.height) +
-                                     " samples, expected 2 x 2 or more: a terrain has an area");
         Terrain(picture, params).mesh(mesh, corners);
     }
     rt::progress(host, 0.7f);

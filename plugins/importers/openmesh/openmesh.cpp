@@ -9,6 +9,7 @@
 #include "../common/file_kind.hpp"
 #include "../common/mapped_file.hpp"
 #include "../common/texture_path.hpp"
+#include "ply_header.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
 #include "text.hpp"
@@ -133,8 +134,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
 
 int32_t probe(const uint8_t* head, uint64_t bytes) {
     const std::string_view text = importers::without_mark({reinterpret_cast<const char*>(head), bytes});
-    if (text.substr(0, 4) == "ply\n" || text.substr(0, 4) == "ply\r")
-        return 95;  // the importer of point clouds is surer of its own
+    if (ply::is_ply(text)) return 95;  // the importer of point clouds is surer of its own
     if (text.size() > 3 && text.substr(0, 2) == "OM" && std::string_view("TQP").find(text[2]) != text.npos) return 80;
     if (text.substr(0, 3) == "OFF" || text.substr(0, 4) == "COFF" || text.substr(0, 4) == "NOFF") return 90;
     return 0;

@@ -180,6 +180,11 @@ const Element* Header::find(Kind kind) const {
     return found == elements.end() ? nullptr : &*found;
 }
 
+bool is_ply(std::string_view text) {
+    const std::string_view word = importers::without_mark(text).substr(0, 4);
+    return word == "ply\n" || word == "ply\r";
+}
+
 Header parse_header(std::string_view bytes, bool needs_faces) {
     Header header;
     Lines lines(bytes);

@@ -43,6 +43,9 @@ struct Header {
     const Element* find(Kind kind) const;
 };
 
+// Whether a text begins as PLY files do.
+bool is_ply(std::string_view text);
+
 // Parses the header. Throws std::runtime_error with the reason, also if the file is too short for what the header declares, or
 // if something that is needed is not there, such as faces unless only points are read.
 Header parse_header(std::string_view bytes, bool needs_faces = true);

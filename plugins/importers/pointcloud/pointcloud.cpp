@@ -9,6 +9,7 @@
 
 #include "../common/file_kind.hpp"
 #include "../common/mapped_file.hpp"
+#include "../openmesh/ply_header.hpp"
 #include "../openmesh/text.hpp"
 #include "points.hpp"
 #include "rt_plugin.hpp"
@@ -29,11 +30,6 @@ constexpr rt_param kParams[] = {
 constexpr double kRadiusPerSpacing = 0.7072;
 // Of the progress; the rest is the host's copy.
 constexpr float kReadShare = 0.7f;
-
-bool is_ply(std::string_view bytes) {
-    const std::string_view text = importers::without_mark(bytes).substr(0, 4);
-    return text == "ply\n" || text == "ply\r";
-}
 
 // The materials of the points; one for all if they have no colours.
 std::vector<rt_u32> materials_of(const Source& source, const FlatMesh& mesh) {
@@ -75,13 +71,13 @@ void emit(const rt_host* host, const Source& source, const FlatMesh& mesh, doubl
 int32_t load(const rt_host* host, const char* path, const double* params, const rt_scene_sink* sink) {
     const importers::MappedFile file(host, path);
     if (file.bytes().empty()) throw std::runtime_error("the file is empty");
-    const bool ply = is_ply(file.bytes());
+    const bool of_ply = ply::is_ply(file.bytes());
     const char* kind = importers::kind_of(file.bytes());
-    if (kind && !ply) throw std::runtime_error(std::string("byte 0: found ") + kind + ", expected points as text");
+    if (kind && !of_ply) throw std::runtime_error(std::string("byte 0: found ") + kind + ", expected points as text");
     const auto report = [&](float fraction) { rt::progress(host, kReadShare * std::clamp(fraction, 0.0f, 1.0f)); };
     const Source source{path, file.bytes(), report, *sink};
     FlatMesh mesh;
-    if (ply)
+    if (of_ply)
         read_ply_points(source, mesh);
     else
         read_xyz(source, mesh);
@@ -103,7 +99,7 @@ int32_t load(const rt_host* host, const char* path, const double* params, const 
 int32_t probe(const uint8_t* head, uint64_t bytes) {
     const std::string_view text(reinterpret_cast<const char*>(head), bytes);
     const std::string_view header = text.substr(0, text.find("end_header"));
-    if (!is_ply(text) || header.size() == text.size()) return 0;
+    if (!ply::is_ply(text) || header.size() == text.size()) return 0;
     const auto has = [&](const char* element) { return header.find(element) != header.npos; };
     return has("element vertex ") && !has("element face ") && !has("element tristrips ") ? 100 : 0;
 }

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "../common/materials.hpp"
 #include "emit_motion.hpp"
 #include "rt_plugin.hpp"
 #include "shapes.hpp"
@@ -110,9 +111,7 @@ bool Emitter::materials() {
             desc.texture = texture(unnamed, RT_SPACE_SRGB);
         }
         const std::vector<rt_map_desc> maps = maps_of(material);
-        desc.maps = maps.data();
-        desc.map_count = static_cast<rt_u32>(maps.size());
-        desc.map_bytes = sizeof(rt_map_desc);
+        importers::give_maps(maps, desc);
         const rt_u32 id = sink_.material(sink_.ctx, &desc);
         if (id == RT_NONE) return false;
         material_ids_.emplace(material.name.text, id);

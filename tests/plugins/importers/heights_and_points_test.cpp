@@ -3,41 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <zlib.h>
-#include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
-#include "import/import.hpp"
-#include "measure.hpp"
+#include "mesh_files.hpp"
 
 namespace clarity::test {
 namespace {
 
-class HeightsAndPoints : public testing::Test {
- protected:
-    Scene import(const std::string& name, const std::string& bytes, const std::vector<std::string>& importers = {}) {
-        static const PluginRegistry plugins = PluginRegistry::discover();
-        import::ImportOptions options;
-        options.in_process = true;
-        options.log_warnings = false;
-        options.importers = importers;
-        Progress progress;
-        return import::import_scene(plugins, {folder_.write(name, bytes)}, options, progress);
-    }
-    void expect_refused(const std::string& name, const std::string& bytes, const std::string& why) {
-        try {
-            import(name, bytes);
-            ADD_FAILURE() << name << " was read";
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-        }
-    }
-    static bool warns(const Scene& scene, const std::string& of) {
-        return std::any_of(scene.warnings.begin(), scene.warnings.end(),
-                           [&](const std::string& warning) { return warning.find(of) != warning.npos; });
-    }
-    Scratch folder_;
-};
+using HeightsAndPoints = MeshFiles;
 
 void put_big_endian(std::string& to, uint32_t value, int bytes) {
     for (int k = bytes; k-- > 0;) to += static_cast<char>(value >> 8 * k);

@@ -20,11 +20,13 @@ inline std::string with_ends(std::string text, const std::string& end) {
 
 class MeshFiles : public testing::Test {
  protected:
-    Scene import(const std::string& name, const std::string& bytes) {
+    // importers: their parameters, "ID,key=value".
+    Scene import(const std::string& name, const std::string& bytes, const std::vector<std::string>& importers = {}) {
         static const PluginRegistry plugins = PluginRegistry::discover();
         import::ImportOptions options;
         options.in_process = true;
         options.log_warnings = false;
+        options.importers = importers;
         Progress progress;
         return import::import_scene(plugins, {folder_.write(name, bytes)}, options, progress);
     }

@@ -15,9 +15,7 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     const auto add = [&](const std::vector<const char*>& more) { r.headers.insert(r.headers.end(), more.begin(), more.end()); };
     add({"shading/power.h"});
     add(material_headers());
-    add({"shading/albedo_grazing.h", "shading/albedo_sheen.h", "shading/lost_metal.h", "shading/lost_glass_outside.h",
-         "shading/lost_glass_inside.h", "shading/microfacets.h", "shading/sheen.h", "shading/matter.h", "shading/matter_maps.h",
-         "shading/film.h", "shading/layers.h", "shading/layer_lobes.h", "shading/bsdf.h", "shading/bsdf_of.h"});
+    add(surface_headers());
     add(emitter_headers());
     add({"tracers/path/sum.h", "tracers/path/camera_rays.h", "tracers/path/state.h", "tracers/path/scatter.h"});
     r.defines = defines;

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/angle.hpp"
+#include "render/kernels/kernel_row.hpp"
 #include "render/tracers/path/lane_kernel.hpp"
 
 namespace clarity::test {
@@ -51,30 +52,19 @@ const char* const kBody = R"(
 LaneKernel& kernel(unsigned lanes, bool grain) {
     static std::map<std::pair<unsigned, bool>, std::unique_ptr<LaneKernel>> compiled;
     std::unique_ptr<LaneKernel>& found = compiled[{lanes, grain}];
-    if (!found)
-        found = std::make_unique<LaneKernel>(
-            std::vector<std::string>{
-                "rt_shared.h",
-                grain ? "\n" : "#define RT_LIGHTS RT_LIGHTS_ALL\n#define RT_LOBES (RT_LOBES_ALL & ~RT_LOBE_GRAIN)\n",
-                "rt_types.h",
-                "lanes/lanes.h",
-                "lanes/vec.h",
-                "sampling/math.h",
-                "sampling/warps.h",
-                "shading/power.h",
-                "shading/albedo_grazing.h",
-                "shading/albedo_sheen.h",
-                "shading/lost_metal.h",
-                "shading/lost_glass_outside.h",
-                "shading/lost_glass_inside.h",
-                "shading/microfacets.h",
-                "shading/sheen.h",
-                "shading/matter.h",
-                "shading/film.h",
-                "shading/layers.h",
-                "shading/layer_lobes.h",
-                "shading/bsdf.h"},
-            kReads, kWrites, kBody, lanes);
+    if (!found) {
+        std::vector<std::string> parts = {
+            "rt_shared.h",
+            grain ? "\n" : "#define RT_LIGHTS RT_LIGHTS_ALL\n#define RT_LOBES (RT_LOBES_ALL & ~RT_LOBE_GRAIN)\n",
+            "rt_types.h",
+            "lanes/lanes.h",
+            "lanes/vec.h",
+            "sampling/math.h",
+            "sampling/warps.h",
+            "shading/power.h"};
+        parts.insert(parts.end(), surface_headers().begin(), surface_headers().end() - 1);  // all but bsdf_of.h
+        found = std::make_unique<LaneKernel>(parts, kReads, kWrites, kBody, lanes);
+    }
     return *found;
 }
 

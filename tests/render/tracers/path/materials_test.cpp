@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/kernels/kernel_row.hpp"
 #include "render/tracers/path/lane_kernel.hpp"
 #include "scene/scene.hpp"
 
@@ -18,37 +19,28 @@ static_assert(sizeof(rt_material) == 4 * kWords);
 // The first rows are materials; the next one is a texture and its texels, and the next one the layers of the last material. The
 // others ask for a material, at texture coordinates.
 LaneKernel& loader() {
+    static const std::vector<std::string> parts = [] {
+        std::vector<std::string> all = {"#define RT_HAS_TEXTURES 1\n",
+                                        "rt_shared.h",
+                                        "rt_types.h",
+                                        "lanes/lanes.h",
+                                        "lanes/vec.h",
+                                        "typedef struct rt_ctx { const global rt_material *materials; const global rt_layers "
+                                        "*layers; const global rt_texture "
+                                        "*textures; const global uint "
+                                        "*texels; } rt_ctx;\n"
+                                        "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
+                                        "sampling/math.h",
+                                        "sampling/warps.h",
+                                        "shading/power.h",
+                                        "shading/textures.h",
+                                        "shading/maps.h",
+                                        "shading/material.h"};
+        all.insert(all.end(), surface_headers().begin(), surface_headers().end());
+        return all;
+    }();
     static LaneKernel compiled(
-        {"#define RT_HAS_TEXTURES 1\n",
-         "rt_shared.h",
-         "rt_types.h",
-         "lanes/lanes.h",
-         "lanes/vec.h",
-         "typedef struct rt_ctx { const global rt_material *materials; const global rt_layers *layers; const global rt_texture "
-         "*textures; const global uint "
-         "*texels; } rt_ctx;\n"
-         "typedef struct rt_surface { vint material; vfloat tex_u, tex_v; } rt_surface;\n",
-         "sampling/math.h",
-         "sampling/warps.h",
-         "shading/power.h",
-         "shading/textures.h",
-         "shading/maps.h",
-         "shading/material.h",
-         "shading/albedo_grazing.h",
-         "shading/albedo_sheen.h",
-         "shading/lost_metal.h",
-         "shading/lost_glass_outside.h",
-         "shading/lost_glass_inside.h",
-         "shading/microfacets.h",
-         "shading/sheen.h",
-         "shading/matter.h",
-         "shading/matter_maps.h",
-         "shading/film.h",
-         "shading/layers.h",
-         "shading/layer_lobes.h",
-         "shading/bsdf.h",
-         "shading/bsdf_of.h"},
-        kWords, 22,
+        parts, kWords, 22,
         "rt_ctx ctx; ctx.materials = (const global rt_material *)given; ctx.layers = (const global rt_layers *)(given + 10 * "
         "READS) - 8; "
         "ctx.textures = (const global rt_texture *)(given + 9 * READS);"
