@@ -201,7 +201,7 @@ const Fault kFaults[] = {
      "one + rt_sheen_smith(wo.z, t)", "Fibres"},
     {"SheetOfClearColor", "shading/layer_lobes.h", "rt_scale(l->thin, rt_mul(l->color, rt_rest(gloss))));\n        f =",
      "rt_scale(l->thin, rt_rest(gloss)));\n        f =", "Sheet"},
-    {"GlassHeedsNoWeight", "shading/layers.h", "rt_choose(l->lanes & RT_MASK(exact < one), changed,",
+    {"GlassHeedsNoWeight", "shading/layers.h", "rt_choose(l->changed & RT_MASK(exact < one), changed,",
      "rt_choose(rt_vint(0), changed,", "SmoothSolid"},
     {"FilmOfTwiceItsThickness", "shading/film.h", "rt_vfloat(2.0f * 2.0f * RT_PI * 1e-9f)",
      "rt_vfloat(4.0f * 2.0f * RT_PI * 1e-9f)", "Film"},
