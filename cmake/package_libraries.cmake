@@ -5,10 +5,11 @@ set(base "^(ld-linux.*|libc|libm|libdl|libpthread|librt|libresolv|libutil|libgcc
 file(GLOB program "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/bin/clarity")
 file(GLOB plugins "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/lib*/clarity/plugins/*/*.so"
   "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/lib*/*/clarity/plugins/*/*.so")
+file(GLOB api "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/lib*/libclarity.so.?" "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/lib*/*/libclarity.so.?")
 if(NOT program OR NOT plugins)
   message(FATAL_ERROR "the package has no program or no plugins in ${CPACK_TEMPORARY_INSTALL_DIRECTORY}: build the target `program` first")
 endif()
-file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program} MODULES ${plugins} RESOLVED_DEPENDENCIES_VAR found
+file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program} LIBRARIES ${api} MODULES ${plugins} RESOLVED_DEPENDENCIES_VAR found
   UNRESOLVED_DEPENDENCIES_VAR missing PRE_EXCLUDE_REGEXES ${base})
 if(missing)
   message(FATAL_ERROR "libraries that the program or a plugin needs are not on this machine: ${missing}")

@@ -24,6 +24,7 @@ struct CloseFile {
 struct LogState {
     std::mutex mutex;
     LogLevel least = LogLevel::info;
+    bool to_stderr = true;
     std::unique_ptr<std::FILE, CloseFile> file;
     std::string file_path;
     // Shared, so that a listener may log or replace itself while it is being called.
@@ -108,7 +109,7 @@ void log(LogLevel level, const std::string& text) {
     {
         const std::lock_guard<std::mutex> lock(s.mutex);
         listener = s.listener;
-        if (level >= s.least) {
+        if (level >= s.least && s.to_stderr) {
             const std::string line = stderr_line(level, text);
             std::fwrite(line.data(), 1, line.size(), stderr);
         }
@@ -118,7 +119,7 @@ void log(LogLevel level, const std::string& text) {
             if (!written || std::fflush(s.file.get()) != 0) {
                 const std::string why = s.file_path + ": cannot write the log: " + std::strerror(errno) + "; it ends here";
                 const std::string last = stderr_line(LogLevel::warning, why);
-                std::fwrite(last.data(), 1, last.size(), stderr);
+                if (s.to_stderr) std::fwrite(last.data(), 1, last.size(), stderr);
                 s.file.reset();
             }
         }
@@ -129,6 +130,11 @@ void log(LogLevel level, const std::string& text) {
 void set_log_level(LogLevel least) {
     const std::lock_guard<std::mutex> lock(state().mutex);
     state().least = least;
+}
+
+void set_log_to_stderr(bool on) {
+    const std::lock_guard<std::mutex> lock(state().mutex);
+    state().to_stderr = on;
 }
 
 void set_log_file(const std::string& path) {

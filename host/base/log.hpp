@@ -12,6 +12,8 @@ enum class LogLevel { debug, info, warning, error };
 void log(LogLevel level, const std::string& text);
 // Sets the lowest level that is written. -q: warning, default: info, -v: debug.
 void set_log_level(LogLevel least);
+// For libraries: false keeps the log off stderr, so that only the file and the listener get it.
+void set_log_to_stderr(bool on);
 // Also appends the log to this file. Throws Error if the file cannot be opened.
 void set_log_file(const std::string& path);
 // The listener is called with every line of every level, from any thread. It replaces the previous one. For the window and

@@ -14,131 +14,19 @@
 #include "base/plural.hpp"
 #include "base/printable.hpp"
 #include "cli/commands.hpp"
-#include "cli/info_materials.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "import/sequence_reader.hpp"
 #include "render/edit/edit.hpp"
 #include "scene/emissive.hpp"
-#include "scene/light_kinds.hpp"
+#include "scene/material_text.hpp"
 #include "scene/motion/pose.hpp"
+#include "scene/scene_json.hpp"
 
 namespace clarity {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr size_t kShownMaterials = 30;  // in lines; JSON has all
-
-Json vector_json(const std::array<float, 3>& v) {
-    return {short_double(v[0]), short_double(v[1]), short_double(v[2])};
-}
-
-// A point of the scene in the coordinates of its files.
-Json point_json(const std::array<float, 3>& p, const Scene& scene) {
-    if (scene.origin == std::array<double, 3>{}) return vector_json(p);
-    return {p[0] + scene.origin[0], p[1] + scene.origin[1], p[2] + scene.origin[2]};
-}
-
-uint64_t face_count(const Scene& scene) {
-    uint64_t count = 0;
-    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].polygon_count;
-    return count;
-}
-
-// How many shapes of each kind there are.
-std::map<std::string, uint64_t> shape_counts(const Scene& scene) {
-    std::map<std::string, uint64_t> counts;
-    for (const Shape& shape : scene.shapes) ++counts[scene.shape_kinds[shape.kind].id];
-    return counts;
-}
-
-// How many lights there are of each kind, by its name.
-std::map<std::string, uint64_t> light_counts(const Scene& scene) {
-    std::map<std::string, uint64_t> counts;
-    for (const Light& light : scene.lights) ++counts[light_kind_of(light.values).name];
-    return counts;
-}
-
-std::string sky_text(const Sky& sky) {
-    switch (sky.values.kind) {
-        case RT_SKY_CONSTANT:
-            return "constant";
-        case RT_SKY_GRADIENT:
-            return "gradient";
-        case RT_SKY_PICTURE:
-            return sky.file + ", " + std::to_string(sky.values.width) + " x " + std::to_string(sky.values.height);
-    }
-    return "background";
-}
-
-Json camera_json(const Camera& camera, const Scene& scene) {
-    Json json = {{"name", camera.name},
-                 {"eye", point_json(camera.eye, scene)},
-                 {"target", point_json(camera.target, scene)},
-                 {"up", vector_json(camera.up)},
-                 {"fov_deg", short_double(camera.fov_y_rad * 57.29578f)}};
-    if (camera.aperture > 0) json["aperture"] = short_double(camera.aperture), json["focus"] = short_double(camera.focus);
-    return json;
-}
-
-Json clip_json(const ClipInfo& clip) {
-    return {{"name", clip.name},    {"begin_s", clip.begin_s},
-            {"end_s", clip.end_s},  {"fps", clip.fps > 0 ? Json(clip.fps) : Json()},
-            {"nodes", clip.nodes},  {"skins", clip.skins},
-            {"morphs", clip.morphs}};
-}
-
-uint64_t materials_with_alpha(const Scene& scene) {
-    return static_cast<uint64_t>(std::count_if(scene.materials.begin(), scene.materials.end(),
-                                               [](const Material& m) { return m.values.alpha != RT_ALPHA_OPAQUE; }));
-}
-
-Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, const std::vector<std::string>& files) {
-    Json json;
-    json["files"] = files;
-    json["meshes"] = scene.meshes.size();
-    json["instances"] = scene.instances.size();
-    json["triangles"] = scene.placed_triangle_count();
-    json["unique_triangles"] = scene.triangle_count();
-    json["vertices"] = scene.vertex_count();
-    json["vertex_colors"] = !scene.colors.empty();
-    json["faces"] = face_count(scene);
-    json["polygons"] = scene.polygons.size();
-    json["spheres"] = scene.spheres.size();
-    json["planes"] = scene.planes.size();
-    json["shapes"] = Json::object();
-    for (const auto& [id, count] : shape_counts(scene)) json["shapes"][id] = count;
-    json["materials"] = scene.materials.size();
-    json["materials_with_alpha"] = materials_with_alpha(scene);
-    json["textures"] = scene.textures.size();
-    json["texture_bytes"] = scene.texels.size() * sizeof(uint32_t);
-    json["lights"] = scene.lights.size();
-    json["light_kinds"] = Json::object();
-    for (const auto& [kind, count] : light_counts(scene)) json["light_kinds"][kind] = count;
-    const EmissiveCounts emissive = count_emissive(scene);
-    json["emissive"] = {
-        {"triangles", emissive.triangles},           {"spheres", emissive.spheres}, {"polygons", emissive.polygons},
-        {"by_rays_alone", emissive.by_rays_alone()}, {"planes", emissive.planes},   {"shapes", emissive.shapes},
-        {"bent_polygons", emissive.bent_polygons},   {"cut_out", emissive.cut_out}};
-    json["sky"] = sky_text(scene.sky);
-    json["cameras"] = scene.cameras.size();
-    const Bounds bounds = scene.bounds();
-    json["bounds"] =
-        bounds.empty ? Json() : Json{{"min", point_json(bounds.min, scene)}, {"max", point_json(bounds.max, scene)}};
-    if (scene.origin != std::array<double, 3>{}) json["origin"] = scene.origin;
-    json["surface_area"] = scene.surface_area();
-    json["up_axis"] = std::string(1, "xyz"[scene.up_axis % 3]);
-    json["unit_scale"] = scene.unit_scale > 0 ? Json(scene.unit_scale) : Json();
-    json["camera_list"] = Json::array();
-    for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera, scene));
-    json["material_list"] = Json::array();
-    for (const Material& material : scene.materials) json["material_list"].push_back(material_json(scene, material));
-    json["animations"] = Json::array();
-    for (const ClipInfo& clip : animations) json["animations"].push_back(clip_json(clip));
-    json["warnings"] = scene.warnings;
-    return json;
-}
 
 // 871414 -> "871 414", the same in every locale.
 std::string grouped(uint64_t number) {
@@ -248,8 +136,9 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, const P
     scene = at_pose(std::move(scene), pose, import::SequenceReader(plugins, import, progress));
     progress.clear();
     if (json)  // names in files may not be UTF-8, but JSON must be
-        std::printf("%s\n",
-                    scene_json(scene, animations, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+        std::printf(
+            "%s\n",
+            scene_json(scene, animations, options.files).dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     else
         print_scene(scene, animations, options.files);
     return static_cast<int>(Exit::done);

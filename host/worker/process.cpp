@@ -17,6 +17,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/files/library_files.hpp"
 #include "worker/channel.hpp"
 
 extern char** environ;
@@ -66,7 +67,8 @@ void FileDescriptor::reset() {
 
 std::string worker_program() {
     const char* named = std::getenv("CLARITY_WORKER");
-    return named && *named ? named : kThisProgram;
+    if (named && *named) return named;
+    return is_library() ? program_file().string() : kThisProgram;
 }
 
 WorkerProcess::WorkerProcess(std::vector<std::string> words, const MemoryFile& arguments, Exit code) try {

@@ -29,9 +29,9 @@ class FileDescriptor {
     int fd_;
 };
 
-// What worker_program() returns for this program.
+// What worker_program() returns in the program itself.
 inline constexpr const char* kThisProgram = "/proc/self/exe";
-// The program that runs as worker: the one that CLARITY_WORKER names, or this program.
+// The program that runs as worker: the one that CLARITY_WORKER names, or program_file().
 std::string worker_program();
 
 // A worker process. The destructor kills it if it still runs, and waits for its end.

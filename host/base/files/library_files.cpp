@@ -15,9 +15,28 @@ std::map<std::string, std::string>& copies() {
     return all;
 }
 
+std::filesystem::path& named_program() {
+    static auto& file = *new std::filesystem::path;
+    return file;
+}
+
 }  // namespace
 
+void set_program_file(const std::filesystem::path& file) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    named_program() = file;
+}
+
+bool is_library() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return !named_program().empty();
+}
+
 std::filesystem::path program_file() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (!named_program().empty()) return named_program();
+    }
     std::error_code error;
     const std::filesystem::path file = std::filesystem::read_symlink("/proc/self/exe", error);
     return error ? std::filesystem::path() : file;
@@ -30,8 +49,7 @@ std::string loaded_file_of(const void* address) {
 
 std::string library_of(const void* address) {
     const std::string file = loaded_file_of(address);
-    std::error_code error;
-    return file.empty() || std::filesystem::equivalent(file, program_file(), error) ? std::string() : file;
+    return file == loaded_file_of(reinterpret_cast<const void*>(&library_of)) ? std::string() : file;
 }
 
 void note_private_copy(const std::string& copy, const std::string& original) {

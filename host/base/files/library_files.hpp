@@ -8,14 +8,19 @@
 
 namespace clarity {
 
-// This program's own file; empty if /proc is not mounted.
+// The file of the program `clarity`: this process's own, empty if /proc is not mounted. In a library, whose process is another
+// program, it is what set_program_file() was given.
 std::filesystem::path program_file();
+// For a library. Workers are started from this file, and plugins are found beside it.
+void set_program_file(const std::filesystem::path& file);
+// Whether set_program_file() was called.
+bool is_library();
 
 // Path of the library or program that this constant or function is in, as it was loaded. Empty if no file has it, as for memory
 // of the heap.
 std::string loaded_file_of(const void* address);
 
-// The same, but empty for what is part of this program.
+// The same, but empty for what is part of this program, or of the library that this function is in.
 std::string library_of(const void* address);
 
 // Notes that `copy` was loaded in the place of `original`.

@@ -75,7 +75,7 @@ std::unique_ptr<ProcessFolder> ProcessFolder::make(const fs::path& parent, const
     return nullptr;
 }
 
-ProcessFolder::ProcessFolder(fs::path path, int lock) : path_(std::move(path)), lock_(lock) {
+ProcessFolder::ProcessFolder(fs::path path, int lock) : path_(std::move(path)), lock_(lock), process_(getpid()) {
     for (auto& folder : folders_of_process) {
         const char* none = nullptr;
         if (folder.compare_exchange_strong(none, path_.c_str())) return;
@@ -83,6 +83,7 @@ ProcessFolder::ProcessFolder(fs::path path, int lock) : path_(std::move(path)), 
 }
 
 ProcessFolder::~ProcessFolder() {
+    if (getpid() != process_) return;
     for (auto& folder : folders_of_process) {
         const char* own = path_.c_str();
         folder.compare_exchange_strong(own, nullptr);

@@ -21,7 +21,8 @@ class ProcessFolder {
  private:
     ProcessFolder(std::filesystem::path path, int lock);
     const std::filesystem::path path_;
-    const int lock_;  // descriptor
+    const int lock_;     // descriptor
+    const int process_;  // that made it: one that was forked from it leaves it alone
 };
 
 // For a process that is about to end by _exit(), also in a signal handler: starts a process that removes all its folders after

@@ -10,34 +10,12 @@
 
 #include "base/numbers.hpp"
 #include "import/sink/scene_builder.hpp"
+#include "import/sink/world_origin.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/motion/matrix.hpp"
 
 namespace clarity::import {
 namespace {
-
-// How many times as far from 0 as it is large a world, or a mesh, has to be: less than 2^-15 of its size is lost up to there.
-constexpr double kFar = 256;
-// The same where files have digits that floats do not hold.
-constexpr double kFarWithDigits = 16;
-
-struct Box {
-    Vec lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-    void add(const Vec& p) {
-        for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], p[k]), hi[k] = std::max(hi[k], p[k]);
-    }
-    void add(const Bounds& b, const Matrix& m) {
-        for (int i = 0; i < 8 && !b.empty; ++i)
-            add(point(m, {(i & 1 ? b.max : b.min)[0], (i & 2 ? b.max : b.min)[1], (i & 4 ? b.max : b.min)[2]}));
-    }
-    double size() const { return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
-    double farthest() const {
-        double most = 0;
-        for (int k = 0; k < 3; ++k) most = std::max({most, std::fabs(lo[k]), std::fabs(hi[k])});
-        return most;
-    }
-    bool is_far(double times) const { return size() > 0 && farthest() > times * size(); }
-};
 
 Matrix placed(const Instance& instance) {
     Matrix m = to_matrix(instance.world_from_object);
@@ -57,9 +35,28 @@ std::string step_text(double coordinate) {
 
 }  // namespace
 
+void WorldBox::add(const Bounds& b, const Matrix& m) {
+    for (int i = 0; i < 8 && !b.empty; ++i)
+        add(point(m, {(i & 1 ? b.max : b.min)[0], (i & 2 ? b.max : b.min)[1], (i & 4 ? b.max : b.min)[2]}));
+}
+
+double WorldBox::farthest() const {
+    double most = 0;
+    for (int k = 0; k < 3; ++k) most = std::max({most, std::fabs(lo[k]), std::fabs(hi[k])});
+    return most;
+}
+
+Vec origin_of(const WorldBox& box) {
+    // A multiple of a power of two that is as large as the world: differences of floats from it are exact.
+    const double grid = std::ldexp(1.0, std::ilogb(box.size()));
+    Vec origin;
+    for (int k = 0; k < 3; ++k) origin[k] = std::round((box.lo[k] + box.hi[k]) / 2 / grid) * grid;
+    return origin;
+}
+
 void SceneBuilder::subtract_origin() {
     std::vector<Bounds> of_mesh(scene_.meshes.size());
-    Box box, mesh_box;
+    WorldBox box, mesh_box;
     bool has_digits = false, is_rounded = false;
     for (const Instance& instance : world_.instances) {
         Bounds& bounds = of_mesh[instance.mesh];
@@ -68,7 +65,7 @@ void SceneBuilder::subtract_origin() {
         for (rt_u32 v = 0; v < unread; ++v) bounds.add(&scene_.positions[3 * (size_t(mesh.first_vertex) + v)]);
         box.add(bounds, placed(instance));
         has_digits |= instance.rounded_off != std::array<double, 3>{};
-        Box own;
+        WorldBox own;
         own.add(bounds, kIdentityMatrix);
         if (own.is_far(kFar)) is_rounded = true, mesh_box = own;
     }
@@ -83,7 +80,7 @@ void SceneBuilder::subtract_origin() {
                                   ": finer details are lost; write doubles or text, or subtract an origin before");
     if (!box.is_far(has_digits ? kFarWithDigits : kFar)) {
         for (const Instance& instance : world_.instances) {
-            Box own;
+            WorldBox own;
             own.add(of_mesh[instance.mesh], placed(instance));
             if (!own.is_far(kFar) || instance.rounded_off == std::array<double, 3>{}) continue;
             scene_.warnings.push_back("'" + instance.name + "' lies " + exact_text(static_cast<float>(own.farthest())) +
@@ -93,10 +90,7 @@ void SceneBuilder::subtract_origin() {
         }
         return;
     }
-    // A multiple of a power of two that is as large as the world: differences of floats from it are exact.
-    const double grid = std::ldexp(1.0, std::ilogb(box.size()));
-    Vec origin;
-    for (int k = 0; k < 3; ++k) origin[k] = std::round((box.lo[k] + box.hi[k]) / 2 / grid) * grid;
+    const Vec origin = origin_of(box);
     scene_.origin = origin;
     for (Instance& instance : world_.instances) {
         const Matrix m = placed(instance);

@@ -58,7 +58,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         }
         const KernelRow& row = *kernels_[autotuner_.variant()];
         Progress never_cancelled;
-        const auto program = tried_program(programs_, prepared, row, never_cancelled);
+        const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
         tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
         cl::CommandQueue& queue = device_->queue();
         view_.write(queue, *prepared.scene, *prepared.on_device,

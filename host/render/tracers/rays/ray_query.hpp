@@ -1,5 +1,6 @@
 // ray_query.hpp -- what a query of the caller's own rays asks for, and how it ran.
 #pragma once
+#include "base/progress.hpp"
 
 namespace clarity {
 
@@ -12,6 +13,7 @@ struct RayQuery {
     bool brief = false;
     // Full stacks of a debug program are counted and not logged: the caller expects them.
     bool quiet = false;
+    Progress* progress = nullptr;  // a cancel ends the compilation of the kernels; null: nobody cancels
 };
 
 // How the last RayQueries::trace() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.

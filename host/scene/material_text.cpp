@@ -1,4 +1,4 @@
-#include "cli/info_materials.hpp"
+#include "scene/material_text.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-// info_materials.hpp -- what `clarity info` tells of materials.
+// material_text.hpp -- materials as JSON and as text, without values that are defaults.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>

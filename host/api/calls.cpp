@@ -1,0 +1,141 @@
+// calls.cpp -- the functions of clarity.h.
+#include <limits>
+
+#include "api/clarity.h"
+#include "api/handles.hpp"
+#include "api/library.hpp"
+#include "api/mesh_scene.hpp"
+#include "api/watched.hpp"
+#include "import/import.hpp"
+#include "scene/motion/pose.hpp"
+#include "scene/scene_json.hpp"
+
+namespace clarity::api {
+namespace {
+
+Watched watched(const clarity_watch* watch) {
+    return Watched(watch ? copy_of(watch, "clarity_watch") : clarity_watch{});
+}
+
+clarity_scene* new_scene(Scene scene, const std::vector<std::string>& files) {
+    auto made = std::make_unique<clarity_scene>();
+    made->imported = std::make_shared<const Scene>(std::move(scene));
+    made->placed =
+        made->imported->edits.empty() ? made->imported : std::make_shared<const Scene>(with_scene_edits(*made->imported));
+    const auto json = scene_json(*made->placed, clips(*made->placed), files);
+    made->info = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);  // names in files may not be UTF-8
+    return made.release();
+}
+
+}  // namespace
+}  // namespace clarity::api
+
+using namespace clarity;
+using namespace clarity::api;
+
+#define CLARITY_EXPORT __attribute__((visibility("default")))
+
+CLARITY_EXPORT const char* clarity_version(void) {
+    return CLARITY_VERSION;
+}
+
+CLARITY_EXPORT const char* clarity_header_digest(void) {
+    return CLARITY_HEADER_DIGEST;
+}
+
+CLARITY_EXPORT const char* clarity_error_text(void) {
+    return error_text().c_str();
+}
+
+CLARITY_EXPORT const char* clarity_error_details(void) {
+    return error_details().c_str();
+}
+
+CLARITY_EXPORT int32_t clarity_set_program(const char* path) {
+    return run_call([&] { set_program(&not_null(path, "path")); });
+}
+
+CLARITY_EXPORT int32_t clarity_set_log(void (*log)(void*, int32_t, const char*), void* user) {
+    return run_call([&] { set_log(log, user); });
+}
+
+CLARITY_EXPORT int32_t clarity_scene_load(const char* const* files, uint64_t count, const clarity_watch* watch,
+                                          clarity_scene** scene) {
+    return run_call([&] {
+        clarity_scene*& result = not_null(scene, "scene");
+        std::vector<std::string> names;
+        for (uint64_t i = 0; i < count; ++i) names.emplace_back(&not_null((&not_null(files, "files"))[i], "files[i]"));
+        Watched progress = watched(watch);
+        import::ImportOptions options;
+        options.log_warnings = false;  // they are in the scene's info
+        result = new_scene(import::import_scene(plugins(), names, options, progress), names);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_scene_from_mesh(const clarity_mesh* mesh, const clarity_watch* watch, clarity_scene** scene) {
+    return run_call([&] {
+        clarity_scene*& result = not_null(scene, "scene");
+        Watched progress = watched(watch);
+        progress.stage("checking the mesh");
+        if (progress.cancelled()) throw Cancelled();
+        result = new_scene(scene_of_mesh(plugins(), copy_of(mesh, "clarity_mesh")), {});
+    });
+}
+
+CLARITY_EXPORT void clarity_scene_free(clarity_scene* scene) {
+    if (!is_forked()) delete scene;
+}
+
+CLARITY_EXPORT int32_t clarity_scene_info(const clarity_scene* scene, const char** json) {
+    return run_call([&] { not_null(json, "json") = not_null(scene, "scene").info.c_str(); });
+}
+
+CLARITY_EXPORT int32_t clarity_scene_bounds(const clarity_scene* scene, double lo[3], double hi[3]) {
+    return run_call([&] {
+        const Scene& placed = *not_null(scene, "scene").placed;
+        double* const ends[] = {&not_null(lo, "lo"), &not_null(hi, "hi")};
+        const Bounds bounds = placed.bounds();
+        constexpr double kFar = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 3; ++k) {
+            ends[0][k] = bounds.empty ? kFar : placed.origin[k] + bounds.min[k];
+            ends[1][k] = bounds.empty ? -kFar : placed.origin[k] + bounds.max[k];
+        }
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_tracer_new(const clarity_scene* scene, const clarity_options* options,
+                                          const clarity_watch* watch, clarity_tracer** tracer) {
+    return run_call([&] {
+        clarity_tracer*& result = not_null(tracer, "tracer");
+        const clarity_options chosen = options ? copy_of(options, "clarity_options") : clarity_options{};
+        Watched progress = watched(watch);
+        result = new clarity_tracer(not_null(scene, "scene"), chosen, progress);
+    });
+}
+
+CLARITY_EXPORT void clarity_tracer_free(clarity_tracer* tracer) {
+    if (!is_forked()) delete tracer;
+}
+
+CLARITY_EXPORT int32_t clarity_closest(clarity_tracer* tracer, const clarity_rays* rays, const clarity_hits* hits,
+                                       const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").closest(copy_of(rays, "clarity_rays"), copy_of(hits, "clarity_hits"), progress);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_any(clarity_tracer* tracer, const clarity_rays* rays, uint8_t* occluded,
+                                   const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").any(copy_of(rays, "clarity_rays"), occluded, progress);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_render(clarity_tracer* tracer, clarity_picture* picture, const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").render(copy_of(picture, "clarity_picture"), *picture, progress);
+    });
+}

@@ -1,0 +1,141 @@
+/* clarity.h -- Clarity as a library: scenes, ray queries and pictures from C, and through it from other languages. C99.
+ *
+ * - A function returns CLARITY_OK or another code below. After another code clarity_error_text() tells what was tried, why it failed
+ *   and what to do, and results are as they were before the call. Nothing is printed and nothing ends the process.
+ * - Texts are UTF-8. Devices, structures and settings are the texts of the command line: "gpu", "bvh4,max_leaf=4", "spp=16".
+ * - A struct begins with its size in bytes, which the caller sets: sizeof of the caller's header. Later versions append fields, and 0 in
+ *   a field means what it meant before the field was there. So set the other fields to 0 first.
+ * - Threads: each handle works for one thread at a time, and a second one waits. Different handles work at the same time.
+ * - The library starts the program `clarity` for work that may crash, such as imports. It looks for it in its own folder, in ../bin and
+ *   in ../../bin; clarity_set_program() or the variable CLARITY_WORKER name another one. Before drivers of OpenCL are loaded, it sets the
+ *   variable POCL_CACHE_DIR of this process.
+ * - After fork() the child gets CLARITY_FORKED from each call if the parent has used the library: drivers do not survive a fork. Start
+ *   another program instead (in Python: multiprocessing with "spawn"). */
+#ifndef CLARITY_H
+#define CLARITY_H
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Codes: those up to 5 are also the program's exit codes. */
+enum {
+    CLARITY_OK = 0,
+    CLARITY_FAILED = 1,
+    CLARITY_USAGE = 2, /* a mistake of the caller: an unknown setting, a null pointer */
+    CLARITY_NO_DEVICE = 3,
+    CLARITY_IMPORT_FAILED = 4,
+    CLARITY_KERNEL_BUILD_FAILED = 5,
+    CLARITY_FORKED = 6,
+    CLARITY_CANCELLED = 130
+};
+enum { CLARITY_FLOAT32 = 0, CLARITY_FLOAT64 = 1 };                                             /* types of numbers in arrays */
+enum { CLARITY_LOG_DEBUG = 0, CLARITY_LOG_INFO = 1, CLARITY_LOG_WARNING = 2, CLARITY_LOG_ERROR = 3 };
+
+typedef struct clarity_scene clarity_scene;   /* what files or arrays describe */
+typedef struct clarity_tracer clarity_tracer; /* a scene in a structure on a device; keeps the scene alive */
+
+/* Of long calls; NULL: nobody watches. */
+typedef struct clarity_watch {
+    uint32_t struct_bytes;
+    uint32_t unused;
+    /* Told what is done, "building bvh4", and how much of it, 0 to 1, or a negative number: not known. Returns 0 to cancel the call.
+     * Called from any thread, one call at a time; it must not call the library. May be NULL. */
+    int32_t (*progress)(void *user, const char *stage, float fraction);
+    void *user;
+    /* The call is cancelled once another number than 0 is here, which another thread or a signal handler may write. May be NULL. */
+    const volatile int32_t *cancel;
+} clarity_watch;
+
+/* Triangles. The scene reads the arrays until it and all tracers of it are freed: they must not change or go before. Positions of
+ * type CLARITY_FLOAT64 are copied during the call: they lie far from 0 where they need it, without a loss of digits. */
+typedef struct clarity_mesh {
+    uint32_t struct_bytes;
+    int32_t type; /* of positions */
+    uint64_t vertex_count;
+    uint64_t triangle_count;
+    const void *positions;     /* x, y, z of each vertex */
+    const uint32_t *triangles; /* three vertices each */
+} clarity_mesh;
+
+typedef struct clarity_options {
+    uint32_t struct_bytes;
+    uint32_t unused;
+    const char *device;          /* as --device; NULL or "": CLARITY_DEVICE, or else the best one */
+    const char *accel;           /* as --accel; NULL or "": the best one for the device */
+    const char *const *settings; /* "key=value" as --set, with NULL behind the last; or NULL */
+} clarity_options;
+
+/* Rays in arrays of any steps. A step is in bytes: from one ray to the next, and from x to y to z. A step of 0 gives all rays the same. */
+typedef struct clarity_rays {
+    uint32_t struct_bytes;
+    int32_t type; /* of all four arrays */
+    uint64_t count;
+    const void *origins; /* in the coordinates of the files, also far from 0 */
+    const void *directions;
+    const void *t_min; /* NULL: 0 */
+    const void *t_max; /* NULL: infinity */
+    int64_t origin_steps[2];
+    int64_t direction_steps[2];
+    int64_t t_min_step;
+    int64_t t_max_step;
+} clarity_rays;
+
+/* Where hits go: arrays of `count` elements without gaps. NULL: not wanted. */
+typedef struct clarity_hits {
+    uint32_t struct_bytes;
+    uint32_t unused;
+    float *t;          /* in lengths of the direction; infinity: nothing is hit */
+    int32_t *prim;     /* number of the primitive, counted through all instances; -1: nothing is hit */
+    int32_t *instance; /* -1: none, or not known */
+    float *uv;         /* two a ray: weights of the triangle's second and third corner */
+} clarity_hits;
+
+/* A picture. Rows follow each other without gaps, the top row first. */
+typedef struct clarity_picture {
+    uint32_t struct_bytes;
+    uint32_t channels;           /* written by the call: 3 for colours and vectors, else 1 */
+    const char *const *settings; /* as in clarity_options: "size=640x480", "spp=16", "aov=t"; also words for lights and materials */
+    const char *camera;          /* as --camera; may be NULL */
+    const char *light;           /* as --light; may be NULL */
+    uint64_t room;               /* floats at `pixels` */
+    float *pixels;               /* NULL: only the members that the call writes are wanted */
+    uint32_t width;              /* written by the call */
+    uint32_t height;
+} clarity_picture;
+
+/* Of the library; the second is SHA-256 of this file, for bindings that are made from it. */
+const char *clarity_version(void);
+const char *clarity_header_digest(void);
+
+/* Of the last call on this thread that failed; valid until the next call on it. Details are texts of several lines, such as a
+ * compiler's log; "" if there are none. */
+const char *clarity_error_text(void);
+const char *clarity_error_details(void);
+
+/* The program `clarity`; before all other calls but the above. */
+int32_t clarity_set_program(const char *path);
+/* Gets the lines of the log, from any thread, those of CLARITY_LOG_DEBUG too. NULL: nobody does. */
+int32_t clarity_set_log(void (*log)(void *user, int32_t level, const char *text), void *user);
+
+int32_t clarity_scene_load(const char *const *files, uint64_t count, const clarity_watch *watch, clarity_scene **scene);
+int32_t clarity_scene_from_mesh(const clarity_mesh *mesh, const clarity_watch *watch, clarity_scene **scene);
+void clarity_scene_free(clarity_scene *scene);
+/* What `clarity info --json` prints, warnings included. Valid until the scene is freed. */
+int32_t clarity_scene_info(const clarity_scene *scene, const char **json);
+/* The box of everything finite, in the coordinates of the files. Without such things lo is infinity and hi is -infinity. */
+int32_t clarity_scene_bounds(const clarity_scene *scene, double lo[3], double hi[3]);
+
+int32_t clarity_tracer_new(const clarity_scene *scene, const clarity_options *options, const clarity_watch *watch, clarity_tracer **tracer);
+void clarity_tracer_free(clarity_tracer *tracer);
+int32_t clarity_closest(clarity_tracer *tracer, const clarity_rays *rays, const clarity_hits *hits, const clarity_watch *watch);
+/* 1 for rays that hit anything between t_min and t_max, else 0. */
+int32_t clarity_any(clarity_tracer *tracer, const clarity_rays *rays, uint8_t *occluded, const clarity_watch *watch);
+/* Renders as `clarity render` does; the pixels are those of its .pfm, the top row first. Settings of the tracer hold, too. */
+int32_t clarity_render(clarity_tracer *tracer, clarity_picture *picture, const clarity_watch *watch);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

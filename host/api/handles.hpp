@@ -1,0 +1,60 @@
+// handles.hpp -- what the handles of the library hold.
+#pragma once
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/clarity.h"
+#include "api/library.hpp"
+#include "device/device.hpp"
+#include "render/edit/edit.hpp"
+#include "render/frame/frame_renderer.hpp"
+#include "render/frame/preparer.hpp"
+#include "render/tracers/rays/ray_queries.hpp"
+
+struct clarity_scene {
+    std::shared_ptr<const clarity::Scene> imported;  // with the edits of its files
+    std::shared_ptr<const clarity::Scene> placed;    // with these edits in force: what is traced
+    std::string info;                                // JSON
+};
+
+namespace clarity::api {
+
+// Settings by their texts, and edits of a view.
+struct Words {
+    Settings settings;
+    std::vector<Word> edits;
+};
+// Adds "key=value" to what is there. Throws Error(usage).
+void read_words(const char* const* texts, Words& words);
+
+}  // namespace clarity::api
+
+// A scene in a structure on a device. Its members are called one at a time.
+struct clarity_tracer {
+ public:
+    clarity_tracer(const clarity_scene& scene, const clarity_options& options, clarity::Progress& progress);
+    void closest(const clarity_rays& rays, const clarity_hits& hits, clarity::Progress& progress);
+    void any(const clarity_rays& rays, uint8_t* occluded, clarity::Progress& progress);
+    // Writes the members of `picture` that are the call's.
+    void render(const clarity_picture& asked, clarity_picture& picture, clarity::Progress& progress);
+
+ private:
+    template <class Take>
+    void trace(const clarity_rays& rays, bool any_hit, clarity::Progress& progress, const Take& take);
+    clarity::View view_of(const clarity_picture& asked, const clarity::api::Words& words) const;
+    void trace_samples(const clarity::Prepared& prepared, const clarity::Settings& settings, const clarity::View& view,
+                       clarity::Progress& progress);
+
+    std::mutex mutex_;
+    std::shared_ptr<const clarity::Scene> imported_, placed_;
+    clarity::Settings settings_;
+    std::shared_ptr<clarity::Device> device_;
+    clarity::Preparer preparer_;
+    std::shared_ptr<const clarity::Prepared> prepared_;  // for ray queries
+    clarity::RayQueries queries_;
+    size_t batch_;  // rays that are traced in one go
+    std::optional<clarity::FrameRenderer> frames_;
+};

@@ -1,0 +1,137 @@
+#include "api/library.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <new>
+
+#include "base/files/library_files.hpp"
+#include "base/log.hpp"
+
+namespace clarity::api {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the process in which the library was used first; 0: not yet.
+std::atomic<pid_t> first_process{0};
+
+struct Failure {
+    std::string text, details;
+};
+Failure& failure() {
+    static thread_local Failure last;
+    return last;
+}
+
+// Never destroyed, because threads that outlive the process's end may still ask.
+struct State {
+    std::mutex mutex;
+    std::string program;  // that the caller has named
+    std::unique_ptr<const PluginRegistry> plugins;
+};
+State& state() {
+    static State* const only = new State;
+    return *only;
+}
+
+bool may_run(const fs::path& file) {
+    std::error_code error;
+    return fs::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0;
+}
+
+fs::path find_program(const std::string& named) {
+    if (!named.empty()) return fs::absolute(named);
+    std::error_code error;
+    const fs::path library = fs::canonical(loaded_file_of(reinterpret_cast<const void*>(&find_program)), error);
+    const fs::path folder = library.parent_path();
+    for (const char* there : {"clarity", "../bin/clarity", "../../bin/clarity"})
+        if (!error && may_run(folder / there)) return (folder / there).lexically_normal();
+    if (const char* worker = std::getenv("CLARITY_WORKER"); worker && *worker) return fs::absolute(worker);
+    throw Error(Exit::failed, library.string() +
+                                  ": the program `clarity`, which does what may crash, is not beside this library: " +
+                                  "call clarity_set_program(), or set CLARITY_WORKER to its path");
+}
+
+// The first call keeps the log off stderr: a library prints nothing.
+bool begin() {
+    pid_t none = 0;
+    const pid_t self = getpid();
+    if (first_process.compare_exchange_strong(none, self)) {
+        set_log_to_stderr(false);
+        return true;
+    }
+    return none == self;
+}
+
+int32_t failed(int32_t code, const std::string& text, const std::string& details = {}) noexcept {
+    try {
+        failure() = {text, details};
+    } catch (...) {  // without memory there is no text
+    }
+    return code;
+}
+
+}  // namespace
+
+bool is_forked() {
+    const pid_t first = first_process;
+    return first != 0 && first != getpid();
+}
+
+int32_t run_call(const std::function<void()>& call) noexcept {
+    try {
+        failure() = {};
+        if (!begin())
+            return failed(CLARITY_FORKED,
+                          "this process was forked from one that had used the library, and OpenCL drivers do not "
+                          "survive that: start another program instead, or fork before the first call");
+        call();
+        return CLARITY_OK;
+    } catch (const Error& e) {
+        return failed(static_cast<int32_t>(e.code()), e.what(), e.details());
+    } catch (const std::bad_alloc&) {
+        return failed(CLARITY_FAILED, "out of memory: take a smaller scene or picture, or fewer rays");
+    } catch (const std::exception& e) {
+        return failed(CLARITY_FAILED, std::string("unexpected failure: ") + e.what());
+    } catch (...) {
+        return failed(CLARITY_FAILED, "unexpected failure");
+    }
+}
+
+const std::string& error_text() {
+    return failure().text;
+}
+const std::string& error_details() {
+    return failure().details;
+}
+
+const PluginRegistry& plugins() {
+    State& s = state();
+    const std::lock_guard<std::mutex> lock(s.mutex);
+    if (!s.plugins) {
+        set_program_file(find_program(s.program));
+        s.plugins = std::make_unique<const PluginRegistry>(PluginRegistry::discover());
+    }
+    return *s.plugins;
+}
+
+void set_program(const std::string& path) {
+    if (!may_run(path)) throw Error(Exit::usage, path + ": is no program that can be started; name the program `clarity`");
+    State& s = state();
+    const std::lock_guard<std::mutex> lock(s.mutex);
+    if (s.plugins) throw Error(Exit::usage, "clarity_set_program(): the library is in use already; call it first");
+    s.program = path;
+}
+
+void set_log(void (*log)(void*, int32_t, const char*), void* user) {
+    if (!log) return set_log_listener({});
+    set_log_listener(
+        [log, user](LogLevel level, const std::string& text) { log(user, static_cast<int32_t>(level), text.c_str()); });
+}
+
+}  // namespace clarity::api

@@ -1,0 +1,49 @@
+// library.hpp -- what all calls of the library share: its plugins, the program for workers, and how exceptions become codes.
+#pragma once
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <string>
+
+#include "api/clarity.h"
+#include "base/error.hpp"
+#include "plugin/registry.hpp"
+
+namespace clarity::api {
+
+// Runs a call. Exceptions become its code, and their text is kept for clarity_error_text() on this thread.
+int32_t run_call(const std::function<void()>& call) noexcept;
+// Whether the process was forked after the first call, so that nothing may be touched.
+bool is_forked();
+const std::string& error_text();
+const std::string& error_details();
+
+// The plugins, found in the first call that needs them. Throws Error if the program for workers is not found.
+const PluginRegistry& plugins();
+void set_program(const std::string& path);
+void set_log(void (*log)(void*, int32_t, const char*), void* user);
+
+// A copy of a struct of the caller, which may be shorter or longer than ours. name: for messages.
+template <class T>
+T copy_of(const T* given, const char* name) {
+    if (!given) throw Error(Exit::usage, std::string("the pointer to ") + name + " is null");
+    if (given->struct_bytes < sizeof(T))  // of the first release
+        throw Error(Exit::usage, std::string(name) + "::struct_bytes is " + std::to_string(given->struct_bytes) +
+                                     ", expected " + std::to_string(sizeof(T)) + " or more: set it to sizeof(" + name + ")");
+    T copy{};
+    std::memcpy(&copy, given, sizeof(T));
+    return copy;
+}
+
+// name: of an argument.
+template <class T>
+T& not_null(T* pointer, const char* name) {
+    if (!pointer) throw Error(Exit::usage, std::string("the pointer `") + name + "` is null");
+    return *pointer;
+}
+
+inline std::string text_of(const char* text) {
+    return text ? text : "";
+}
+
+}  // namespace clarity::api

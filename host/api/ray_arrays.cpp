@@ -1,0 +1,78 @@
+#include "api/ray_arrays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/parallel_for.hpp"
+
+namespace clarity::api {
+namespace {
+
+constexpr size_t kChunk = 16384;
+
+template <class Work>
+void for_each_in_chunks(size_t count, const Work& work) {
+    parallel_for(static_cast<uint32_t>((count + kChunk - 1) / kChunk), [&](uint32_t chunk) {
+        for (size_t i = chunk * kChunk, end = std::min(count, (chunk + 1) * kChunk); i < end; ++i) work(i);
+    });
+}
+
+// Arrays need not be aligned.
+template <class Number>
+double number_at(const void* array, int64_t offset) {
+    Number number;
+    std::memcpy(&number, static_cast<const char*>(array) + offset, sizeof number);
+    return number;
+}
+
+template <class Number>
+rt_ray ray_at(const clarity_rays& rays, int64_t i, const std::array<double, 3>& origin) {
+    rt_ray ray{};
+    for (int k = 0; k < 3; ++k) {
+        const double at = number_at<Number>(rays.origins, i * rays.origin_steps[0] + k * rays.origin_steps[1]);
+        ray.origin[k] = static_cast<float>(at - origin[k]);
+        ray.direction[k] =
+            static_cast<float>(number_at<Number>(rays.directions, i * rays.direction_steps[0] + k * rays.direction_steps[1]));
+    }
+    ray.t_min = rays.t_min ? static_cast<float>(number_at<Number>(rays.t_min, i * rays.t_min_step)) : 0;
+    ray.t_max = rays.t_max ? static_cast<float>(number_at<Number>(rays.t_max, i * rays.t_max_step)) : INFINITY;
+    return ray;
+}
+
+}  // namespace
+
+void check_rays(const clarity_rays& rays) {
+    if (rays.type != CLARITY_FLOAT32 && rays.type != CLARITY_FLOAT64)
+        throw Error(Exit::usage, "the rays have the unknown type " + std::to_string(rays.type) +
+                                     ": CLARITY_FLOAT32 and CLARITY_FLOAT64 are known");
+    if (rays.count > 0 && (!rays.origins || !rays.directions))
+        throw Error(Exit::usage, "the rays have no origins or no directions: the pointer is null");
+}
+
+std::vector<rt_ray> read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin) {
+    std::vector<rt_ray> read(count);
+    for_each_in_chunks(count, [&](size_t i) {
+        const auto at = static_cast<int64_t>(first + i);
+        read[i] = rays.type == CLARITY_FLOAT64 ? ray_at<double>(rays, at, origin) : ray_at<float>(rays, at, origin);
+    });
+    return read;
+}
+
+void write_hits(const std::vector<rt_hit>& hits, const clarity_hits& to, size_t first) {
+    for_each_in_chunks(hits.size(), [&](size_t i) {
+        const rt_hit& hit = hits[i];
+        if (to.t) to.t[first + i] = hit.t;
+        if (to.prim) to.prim[first + i] = hit.prim;
+        if (to.instance) to.instance[first + i] = hit.instance;
+        if (to.uv) to.uv[2 * (first + i)] = hit.u, to.uv[2 * (first + i) + 1] = hit.v;
+    });
+}
+
+void write_occlusion(const std::vector<rt_hit>& hits, uint8_t* to, size_t first) {
+    for_each_in_chunks(hits.size(), [&](size_t i) { to[first + i] = hits[i].t == 0; });
+}
+
+}  // namespace clarity::api

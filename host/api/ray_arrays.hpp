@@ -1,0 +1,20 @@
+// ray_arrays.hpp -- between arrays of the caller and rays of queries.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "api/clarity.h"
+#include "rt_types.h"
+
+namespace clarity::api {
+
+// Throws Error(usage) for what cannot be read.
+void check_rays(const clarity_rays& rays);
+// The rays [first, first + count). origin: of the scene, subtracted in double precision.
+std::vector<rt_ray> read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin);
+// Writes hits to the elements from `first` on.
+void write_hits(const std::vector<rt_hit>& hits, const clarity_hits& to, size_t first);
+void write_occlusion(const std::vector<rt_hit>& hits, uint8_t* to, size_t first);
+
+}  // namespace clarity::api

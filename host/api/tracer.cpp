@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <cmath>
+
+#include "api/handles.hpp"
+#include "api/ray_arrays.hpp"
+#include "base/elapsed.hpp"
+#include "base/log.hpp"
+#include "render/settings/accel_choice.hpp"
+#include "render/settings/aov.hpp"
+#include "render/tracers/rays/query_scene.hpp"
+#include "render/view/view_optics.hpp"
+
+namespace clarity::api {
+
+void read_words(const char* const* texts, Words& words) {
+    for (; texts && *texts; ++texts) {
+        const std::string pair = *texts;
+        const size_t equals = pair.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw Error(Exit::usage, "setting `" + pair + "`: expected key=value, as in shadows=false");
+        const std::string key = pair.substr(0, equals), value = pair.substr(equals + 1);
+        if (is_edit(key))
+            words.edits.push_back({key, value});
+        else
+            set_setting(words.settings, key, value);
+    }
+}
+
+namespace {
+
+// Rays are traced in batches, so that a cancel is heard and memory stays small: batches that take about kBatchMs, of a size
+// that all numbers of lanes divide.
+constexpr size_t kFirstBatch = size_t{1} << 14, kMostBatch = size_t{1} << 22;
+constexpr double kBatchMs = 50;
+
+Settings settings_of(const clarity_options& options) {
+    Words words;
+    read_words(options.settings, words);
+    if (!words.edits.empty())
+        throw Error(Exit::usage, "setting `" + words.edits.front().key +
+                                     "`: a tracer has no camera, lights or materials; give it " + "to clarity_render()");
+    if (const std::string accel = text_of(options.accel); !accel.empty()) choose_accel(plugins(), accel, words.settings);
+    return words.settings;
+}
+
+// The list of devices is made by one thread at a time: making it loads drivers, and sets a variable of the environment.
+std::shared_ptr<Device> open_device(const std::string& choice) {
+    static std::mutex& mutex = *new std::mutex;
+    const std::lock_guard<std::mutex> lock(mutex);
+    return std::make_shared<Device>(choose_device(choice));
+}
+
+}  // namespace
+}  // namespace clarity::api
+
+using namespace clarity;
+using namespace clarity::api;
+
+clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options& options, Progress& progress)
+    : imported_(scene.imported),
+      placed_(scene.placed),
+      settings_(settings_of(options)),
+      device_(open_device(text_of(options.device))),
+      preparer_(plugins(), device_),
+      queries_(device_),
+      batch_(kFirstBatch) {
+    const auto accel = preparer_.build(placed_, settings_, progress);
+    prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
+}
+
+// take: gets hits and the number of the first one's ray.
+template <class Take>
+void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& progress, const Take& take) {
+    check_rays(rays);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    progress.stage("tracing rays");
+    RayQuery query;
+    query.any_hit = any_hit;
+    query.progress = &progress;
+    std::vector<rt_hit> hits;
+    for (size_t first = 0; first < rays.count; first += hits.size()) {
+        if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
+        const auto begin = std::chrono::steady_clock::now();
+        const size_t count = std::min(batch_, size_t(rays.count) - first);
+        const RayBlocks blocks(read_rays(rays, first, count, placed_->origin), prepared_->layout.lanes);
+        queries_.trace(*prepared_, blocks, query, &hits);
+        take(hits, first);
+        const double ms = ms_since(begin);
+        if (ms > 2 * kBatchMs) batch_ = std::max(batch_ / 2, kFirstBatch / 16);
+        if (ms < kBatchMs / 2 && count == batch_) batch_ = std::min(batch_ * 2, kMostBatch);
+    }
+}
+
+void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {
+    trace(rays, false, progress, [&](const std::vector<rt_hit>& some, size_t first) { write_hits(some, hits, first); });
+}
+
+void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& progress) {
+    if (rays.count > 0) not_null(occluded, "occluded");
+    trace(rays, true, progress, [&](const std::vector<rt_hit>& some, size_t first) { write_occlusion(some, occluded, first); });
+}
+
+View clarity_tracer::view_of(const clarity_picture& asked, const Words& words) const {
+    if (instance_edits(*imported_, words.edits) != instance_edits(*imported_, {}))
+        throw Error(Exit::usage,
+                    "settings `hide` and `instance.N...`: the structure is built, so instances stay where they are");
+    EditedView edited;
+    const float aspect = float(words.settings.whole_width()) / float(words.settings.whole_height());
+    edited.view = make_view(*imported_, aspect, text_of(asked.camera), text_of(asked.light));
+    apply_scene_edits(*imported_, edited);
+    for (const Word& word : words.edits) apply_edit(*imported_, edited, word.key, word.value);
+    if (edited.follows_path && !edited.camera_path.empty())
+        edited.view.camera = edited.camera_path.at(edited.camera_path.keys.front().time_s);
+    return visible_view(edited);
+}
+
+void clarity_tracer::trace_samples(const Prepared& prepared, const Settings& settings, const View& view, Progress& progress) {
+    constexpr double kSamplesMs = 100;
+    const auto all = static_cast<unsigned>(settings.spp);
+    double wall_ms = 0;
+    uint64_t not_finite = 0;
+    for (unsigned done = 0, next = std::min(all, 2u); done < all;) {
+        if (!progress.report(float(done) / float(all))) throw Cancelled();
+        const FrameStats stats = frames_->trace(prepared, settings, view, Samples(done, next), true, progress);
+        wall_ms += stats.wall_ms;
+        not_finite += stats.not_finite;
+        done += next;
+        next =
+            std::min(static_cast<unsigned>(std::clamp(kSamplesMs / std::max(wall_ms / done, 1e-3), 1.0, 1024.0)), all - done);
+    }
+    if (not_finite > 0) log(LogLevel::error, not_finite_text(not_finite));
+}
+
+void clarity_tracer::render(const clarity_picture& asked, clarity_picture& picture, Progress& progress) {
+    Words words{settings_, {}};
+    read_words(asked.settings, words);
+    Settings& settings = words.settings;
+    const unsigned channels = find_aov(settings.aov).value_channels();
+    const uint64_t floats = uint64_t(settings.width) * uint64_t(settings.height) * channels;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const View view = view_of(asked, words);
+    if (asked.pixels) {
+        if (asked.room < floats)
+            throw Error(Exit::usage, "the picture has " + std::to_string(floats) + " floats, and there is room for " +
+                                         std::to_string(asked.room) + ": call with pixels = NULL to learn the size");
+        settings.optics = optics_of(*placed_, view, settings);
+        const auto prepared = preparer_.prepare(placed_, settings, progress, prepared_->accel, {prepared_->on_device, false});
+        progress.stage("rendering");
+        if (!frames_) frames_.emplace(device_);
+        trace_samples(*prepared, settings, view, progress);
+        const FloatImage image = frames_->read_values();
+        std::copy(image.pixels.begin(), image.pixels.end(), asked.pixels);
+    }
+    picture.channels = channels;
+    picture.width = static_cast<uint32_t>(settings.width);
+    picture.height = static_cast<uint32_t>(settings.height);
+}

@@ -1,0 +1,119 @@
+"""Calls of the library that Ctrl-C ends, with progress."""
+import ctypes
+import logging
+import sys
+import threading
+
+from ._binding import constants, header, library, struct
+from ._errors import error_of
+
+_log = logging.getLogger("clarity")
+_log.addHandler(logging.NullHandler())
+_LEVELS = {
+    constants["CLARITY_LOG_DEBUG"]: logging.DEBUG,
+    constants["CLARITY_LOG_INFO"]: logging.INFO,
+    constants["CLARITY_LOG_WARNING"]: logging.WARNING,
+    constants["CLARITY_LOG_ERROR"]: logging.ERROR,
+}
+
+
+def check(code):
+    if code:
+        raise error_of(code)
+
+
+class _Bar:
+    """progress=True: a line on stderr, if that is a terminal."""
+
+    def __init__(self):
+        self._shown = sys.stderr is not None and sys.stderr.isatty()
+
+    def __call__(self, stage, fraction):
+        if self._shown:
+            share = f" {100 * fraction:3.0f} %" if fraction is not None else ""
+            sys.stderr.write(f"\r\033[K{stage}{share}")
+            sys.stderr.flush()
+
+    def end(self):
+        if self._shown:
+            sys.stderr.write("\r\033[K")
+            sys.stderr.flush()
+
+
+class _Watch:
+    """Of one call: its cancel, and the function that hears of progress."""
+
+    def __init__(self, progress):
+        self.failure = None
+        self._cancel = ctypes.c_int32(0)
+        self._function = _Bar() if progress is True else progress or None
+        told = dict(header.structs["clarity_watch"]._fields_)["progress"]
+        self._told = told(self._tell) if self._function else told()
+        self.struct = struct("clarity_watch", progress=self._told, cancel=ctypes.addressof(self._cancel))
+
+    def cancel(self):
+        self._cancel.value = 1
+
+    def end(self):
+        if isinstance(self._function, _Bar):
+            self._function.end()
+
+    def _tell(self, _user, stage, fraction):
+        try:
+            going = self._function(stage.decode(errors="replace"), fraction if fraction >= 0 else None)
+            return 0 if going is False else 1
+        except BaseException as failure:  # passed on by the call
+            self.failure = failure
+            return 0
+
+
+def call(function, *arguments, progress=None):
+    """Calls a function whose last argument is a watch. Python handles signals on its main thread alone, between its own
+    instructions: so there the library works on another thread, and a KeyboardInterrupt cancels it."""
+    watch = _Watch(progress)
+    if threading.current_thread() is not threading.main_thread():
+        code = function(*arguments, ctypes.byref(watch.struct))
+        error = error_of(code) if code else None
+    else:
+        results = []
+        done = threading.Event()
+
+        def work():
+            try:
+                code = function(*arguments, ctypes.byref(watch.struct))
+                results.append(error_of(code) if code else None)  # texts are those of this thread
+            finally:
+                done.set()
+
+        threading.Thread(target=work, name="clarity", daemon=True).start()
+        try:
+            done.wait()
+        except BaseException:
+            watch.cancel()
+            done.wait()  # arrays must not go while the library writes to them
+            watch.end()
+            raise
+        error = results[0]
+    watch.end()
+    if watch.failure:
+        raise watch.failure
+    if error:
+        raise error
+
+
+def _on_log(_user, level, text):
+    try:
+        _log.log(_LEVELS.get(level, logging.INFO), "%s", text.decode(errors="replace"))
+    except Exception:  # a handler of the user's must not disturb the library
+        pass
+
+
+_listener = library.clarity_set_log.argtypes[0](_on_log)
+
+
+def start_log():
+    check(library.clarity_set_log(_listener, None))
+
+
+def end_log():
+    library.clarity_set_log(library.clarity_set_log.argtypes[0](), None)

@@ -1,0 +1,159 @@
+"""Scenes, and tracers: scenes in a structure on a device."""
+import atexit
+import ctypes
+import json
+import os
+import weakref
+
+import numpy as np
+
+from ._binding import constants, library, struct, texts
+from ._calls import call, check, end_log, start_log
+from ._errors import UsageError
+from ._rays import Hit, Rays, as_array, check_out
+
+# Rays that are traced before a person waits: no thread is started for them.
+_FEW = 4096
+
+
+def _settings(settings):
+    """Texts as of `clarity --set`, from keyword arguments."""
+    return [f"{key}={str(value).lower() if isinstance(value, bool) else value}" for key, value in settings.items()]
+
+
+def _numbers(value):
+    """A text, or numbers with commas between them; None stays."""
+    if value is None or isinstance(value, str):
+        return value and value.encode()
+    return ",".join(repr(float(number)) for number in np.ravel(value)).encode()
+
+
+class Scene:
+    """What files or arrays describe. Scene(vertices, faces): triangles of arrays of the shapes (n, 3). float32 vertices and uint32
+    faces without gaps are lent, not copied: they must not change while the scene or a tracer of it lives."""
+
+    def __init__(self, vertices, faces, *, progress=None):
+        vertices = np.ascontiguousarray(as_array(vertices, "vertices"))
+        faces = np.asarray(faces)
+        for name, array in (("vertices", vertices), ("faces", faces)):
+            if array.ndim != 2 or array.shape[1] != 3:
+                raise UsageError(f"{name}: expected an array of shape (n, 3), found {array.shape}")
+        if faces.dtype.kind not in "iu":
+            raise UsageError(f"faces: expected whole numbers, found an array of {faces.dtype}")
+        if faces.size and (int(faces.min()) < 0 or int(faces.max()) >= len(vertices)):
+            raise UsageError(f"faces: the numbers {faces.min()} to {faces.max()} do not fit {len(vertices)} vertices")
+        faces = np.ascontiguousarray(faces, np.uint32)
+        self._lent = vertices, faces
+        double = vertices.dtype == np.float64
+        mesh = struct(
+            "clarity_mesh",
+            type=constants["CLARITY_FLOAT64" if double else "CLARITY_FLOAT32"],
+            vertex_count=len(vertices),
+            triangle_count=len(faces),
+            positions=vertices.ctypes.data,
+            triangles=faces.ctypes.data,
+        )
+        self._take(library.clarity_scene_from_mesh, ctypes.byref(mesh), progress=progress)
+
+    def _take(self, function, *arguments, progress):
+        handle = ctypes.c_void_p()
+
+        def made(*words):
+            return function(*words, ctypes.byref(handle))
+
+        try:
+            call(made, *arguments, progress=progress)
+        finally:
+            if handle:
+                # At the program's end too, before Python's own.
+                weakref.finalize(self, library.clarity_scene_free, handle.value)
+        self._handle = handle.value
+        text = ctypes.c_char_p()
+        check(library.clarity_scene_info(self._handle, ctypes.byref(text)))
+        self.info = json.loads(text.value.decode(errors="replace"))
+        self.warnings = self.info["warnings"]
+
+    @property
+    def bounds(self):
+        """The box of everything finite as an array of two points in float64; None if there is nothing."""
+        box = np.empty((2, 3))
+        check(library.clarity_scene_bounds(self._handle, box[0].ctypes.data, box[1].ctypes.data))
+        return box if box[0, 0] <= box[1, 0] else None
+
+    def on(self, device="", accel="", *, progress=None, **settings):
+        """A tracer of this scene. device and accel: texts as of --device and --accel; "": the best. progress: True for a line on
+        stderr, or a function of the stage and the fraction that is done (None: not known), which returns False to cancel."""
+        return Tracer(self, device, accel, settings, progress)
+
+    def __repr__(self):
+        return f"<clarity.Scene: {self.info['triangles']} triangles>"
+
+
+def load(*files, progress=None):
+    """A scene from files."""
+    scene = Scene.__new__(Scene)
+    names = [os.fspath(file) for file in files]
+    scene._take(library.clarity_scene_load, texts(names), len(names), progress=progress)
+    return scene
+
+
+class Tracer:
+    """A scene in a structure on a device; made by Scene.on()."""
+
+    def __init__(self, scene, device, accel, settings, progress):
+        self.scene = scene
+        self._warm = set()  # names of functions whose kernels are compiled
+        options = struct("clarity_options", device=device.encode(), accel=accel.encode(), settings=texts(_settings(settings)))
+        handle = ctypes.c_void_p()
+
+        def made(watch):
+            return library.clarity_tracer_new(scene._handle, ctypes.byref(options), watch, ctypes.byref(handle))
+
+        try:
+            call(made, progress=progress)
+        finally:
+            if handle:
+                weakref.finalize(self, library.clarity_tracer_free, handle.value)
+        self._handle = handle.value
+
+    def _trace(self, function, rays, to, progress):
+        if rays.count <= _FEW and function.__name__ in self._warm and progress is None:
+            check(function(self._handle, ctypes.byref(rays.struct), to, None))
+        else:
+            call(function, self._handle, ctypes.byref(rays.struct), to, progress=progress)
+            if rays.count:
+                self._warm.add(function.__name__)
+
+    def closest(self, origins, directions, t_min=None, t_max=None, *, out=None, progress=None):
+        """The nearest hits of rays as a Hit. Arrays of float32 or float64 in any strides, broadcast against each other. out: a Hit
+        of the same shape, which is filled and returned."""
+        rays = Rays(origins, directions, t_min, t_max)
+        hit = Hit(rays.shape) if out is None else out
+        self._trace(library.clarity_closest, rays, ctypes.byref(hit._struct_for(rays)), progress)
+        return hit
+
+    def any(self, origins, directions, t_min=None, t_max=None, *, out=None, progress=None):
+        """An array of bool: whether rays hit anything between t_min and t_max."""
+        rays = Rays(origins, directions, t_min, t_max)
+        occluded = np.empty(rays.shape, bool) if out is None else out
+        check_out(occluded, rays.shape, bool, "out")
+        self._trace(library.clarity_any, rays, occluded.ctypes.data, progress)
+        return occluded
+
+    def render(self, width, height, *, camera=None, light=None, out=None, progress=None, **settings):
+        """A picture as an array of float32, the top row first: (height, width, 3) for colours and vectors, else (height, width).
+        settings: spp=16, tracer="path", depth=8, aov="t", and all others of --set. camera, light: texts as of --camera and
+        --light, or their numbers."""
+        words = texts(_settings({"size": f"{width}x{height}", **settings}))
+        picture = struct("clarity_picture", settings=words, camera=_numbers(camera), light=_numbers(light))
+        check(library.clarity_render(self._handle, ctypes.byref(picture), None))
+        shape = (picture.height, picture.width) + ((picture.channels,) if picture.channels > 1 else ())
+        pixels = np.empty(shape, np.float32) if out is None else out
+        check_out(pixels, shape, np.float32, "out")
+        picture.room, picture.pixels = pixels.size, pixels.ctypes.data
+        call(library.clarity_render, self._handle, ctypes.byref(picture), progress=progress)
+        return pixels
+
+
+start_log()
+atexit.register(end_log)

@@ -1,0 +1,345 @@
+"""The Python package, against the command line: hits and pictures have to be the same bits.
+Run by ctest, with CLARITY_PROGRAM: the program of the build."""
+import logging
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import clarity
+
+PROGRAM = os.environ["CLARITY_PROGRAM"]
+QUICK = bool(os.environ.get("CLARITY_QUICK_TESTS"))
+STRUCTURES = ["bvh2,max_leaf=4", "grid"]
+
+
+def soup(count, seed):
+    """Small triangles in the cube from 0 to 1."""
+    random = np.random.default_rng(seed)
+    corners = random.random((count, 1, 3)) + 0.1 * random.standard_normal((count, 3, 3))
+    return corners.reshape(-1, 3).astype(np.float32), np.arange(3 * count).reshape(-1, 3)
+
+
+def some_rays(count, seed):
+    """Half of them to the cube, half of them past it."""
+    random = np.random.default_rng(seed)
+    origins = (4 * random.random((count, 3)) - 1.5).astype(np.float32)
+    directions = (random.random((count, 3)) - origins).astype(np.float32)
+    directions[::2] = random.standard_normal((len(directions[::2]), 3))
+    return origins, directions
+
+
+def text_of(number):
+    return repr(float(number))
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="clarity_python_")
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.vertices, cls.faces = soup(300, 1)
+        cls.mesh_file = os.path.join(cls.folder, "soup.obj")
+        with open(cls.mesh_file, "w") as file:
+            for vertex in cls.vertices:
+                file.write("v " + " ".join(map(text_of, vertex)) + "\n")
+            for face in cls.faces + 1:
+                file.write("f {} {} {}\n".format(*face))
+        cls.scene_file = os.path.join(cls.folder, "mixed.scene")
+        with open(cls.scene_file, "w") as file:
+            file.write("sphere center 0.5 0.5 0.5 radius 0.4\nplane normal 0 1 0 offset -0.2\nload soup.obj translate 0.2 0 0\n")
+        try:
+            clarity.Scene(cls.vertices, cls.faces).on()
+        except clarity.DeviceError as error:
+            raise unittest.SkipTest(str(error)) from None
+
+    def run_program(self, *words):
+        return subprocess.run([PROGRAM, *words], check=True, capture_output=True, text=True).stdout
+
+    def run_python(self, lines, **options):
+        return subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True, timeout=300, **options)
+
+    def equal(self, hit, other):
+        for name in ("t", "prim", "instance", "uv"):
+            np.testing.assert_array_equal(getattr(hit, name), getattr(other, name), name)
+
+
+class Hits(Case):
+    def test_are_those_of_the_program_bit_for_bit(self):
+        origins, directions = some_rays(700, 2)
+        t_min = np.linspace(0, 0.3, 700, dtype=np.float32)
+        t_max = np.where(np.arange(700) % 3 == 0, 1.5, np.inf).astype(np.float32)
+        rays = os.path.join(self.folder, "rays.txt")
+        with open(rays, "w") as file:
+            for row in zip(origins, t_min, directions, t_max):
+                file.write(" ".join(text_of(number) for part in row for number in np.ravel(part)) + "\n")
+        for path in (self.mesh_file, self.scene_file):
+            scene = clarity.load(path)
+            for structure in STRUCTURES:
+                with self.subTest(path=path, structure=structure):
+                    rt = scene.on(accel=structure)
+                    hit = rt.closest(origins, directions, t_min, t_max)
+                    self.assertTrue(100 < np.count_nonzero(hit.mask) < 700, hit)
+                    words = ["trace", path, "--rays", rays, "-o", "-", "--accel", structure]
+                    rows = [line.split() for line in self.run_program(*words).splitlines()[1:]]
+                    columns = [np.array(column) for column in zip(*rows)]
+                    np.testing.assert_array_equal(hit.t, columns[0].astype(np.float32))
+                    np.testing.assert_array_equal(hit.prim, columns[1].astype(np.int32))
+                    np.testing.assert_array_equal(hit.instance, columns[2].astype(np.int32))
+                    np.testing.assert_array_equal(hit.uv, np.stack(columns[3:], -1).astype(np.float32))
+                    occluded = self.run_program(*words, "--any").split()[2:]
+                    any_hit = rt.any(origins, directions, t_min, t_max)
+                    np.testing.assert_array_equal(any_hit, np.array(occluded) == "1")
+                    np.testing.assert_array_equal(any_hit, hit.mask)
+
+    def test_of_arrays_are_those_of_the_file(self):
+        origins, directions = some_rays(20000, 3)
+        from_file = clarity.load(self.mesh_file).on(accel="bvh4").closest(origins, directions)
+        faces = self.faces.astype(np.uint32)
+        self.equal(clarity.Scene(self.vertices, faces).on(accel="bvh4").closest(origins, directions), from_file)
+        wide = np.zeros((len(self.vertices), 7))
+        wide[:, 2:5] = self.vertices
+        scene = clarity.Scene(wide[:, 2:5], [list(face) for face in self.faces])
+        self.equal(scene.on(accel="bvh4").closest(origins, directions), from_file)
+
+    def test_do_not_depend_on_strides_and_types(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        origins, directions = some_rays(24 * 36, 4)
+        plain = rt.closest(origins, directions, t_max=1.25)
+        self.equal(rt.closest(origins.astype(float), directions, t_max=[1.25]), plain)
+        self.equal(rt.closest(np.asfortranarray(origins), directions.astype(">f4"), t_max=1.25), plain)
+        backwards = np.zeros((2 * len(origins), 5), np.float64)
+        backwards[::-2, ::2] = origins
+        self.equal(rt.closest(backwards[::-2, ::2], directions, t_max=1.25), plain)
+        packed = np.zeros(len(origins) * 25 + 1, np.uint8)  # not aligned
+        records = packed[1:].view(np.dtype([("o", "<f4", 3), ("label", "u1"), ("d", "<f4", 3)]))
+        records["o"], records["d"] = origins, directions
+        self.equal(rt.closest(records["o"], records["d"], t_max=1.25), plain)
+        grid = rt.closest(origins.reshape(24, 36, 3).swapaxes(0, 1), directions.reshape(24, 36, 3).swapaxes(0, 1), t_max=1.25)
+        self.assertEqual((grid.t.shape, grid.uv.shape), ((36, 24), (36, 24, 2)))
+        np.testing.assert_array_equal(grid.t.T.ravel(), plain.t)
+        np.testing.assert_array_equal(grid.prim.T.ravel(), plain.prim)
+
+        fan = rt.closest([0.5, 0.5, 3], directions)
+        self.equal(fan, rt.closest(np.tile([0.5, 0.5, 3], (len(directions), 1)), directions))
+        table = rt.closest(origins[:8, None], directions[None, :9], t_max=np.full((8, 1), 1.25))
+        self.assertEqual(table.t.shape, (8, 9))
+        np.testing.assert_array_equal(table.t[3], rt.closest(origins[3], directions[:9], t_max=1.25).t)
+        one = rt.closest(origins[5], directions[5], t_max=1.25)
+        self.assertEqual((one.t.shape, one.t), ((), plain.t[5]))
+        self.assertEqual(rt.closest(np.empty((0, 3)), [0, 0, 1]).t.shape, (0,))
+
+    def test_fill_arrays_that_are_there(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        origins, directions = some_rays(100, 5)
+        hit = rt.closest(origins, directions)
+        arrays = hit.t, hit.prim, hit.instance, hit.uv
+        again = rt.closest(origins[::-1], directions[::-1], out=hit)
+        self.assertTrue(again is hit and all(a is b for a, b in zip(arrays, (hit.t, hit.prim, hit.instance, hit.uv))))
+        np.testing.assert_array_equal(hit.t, rt.closest(origins, directions).t[::-1])
+        occluded = np.zeros(100, bool)
+        self.assertIs(rt.any(origins, directions, out=occluded), occluded)
+        np.testing.assert_array_equal(occluded, rt.closest(origins, directions).mask)
+        for bad in (np.zeros(99, bool), np.zeros(200, bool)[::2], np.zeros(100, np.int8)):
+            with self.assertRaisesRegex(clarity.UsageError, "out: expected a writeable array"):
+                rt.any(origins, directions, out=bad)
+        with self.assertRaisesRegex(clarity.UsageError, "out.t: expected"):
+            rt.closest(origins[:7], directions[:7], out=hit)
+
+    def test_far_from_the_origin_keep_their_digits(self):
+        far = np.array([5e6, -3e6, 7e6])
+        scene = clarity.Scene(self.vertices.astype(float) + far, self.faces)
+        np.testing.assert_allclose(scene.bounds, clarity.Scene(self.vertices, self.faces).bounds + far, rtol=0, atol=1e-6)
+        origins, directions = some_rays(500, 6)
+        near = clarity.Scene(self.vertices, self.faces).on(accel="bvh2").closest(origins, directions)
+        hit = scene.on(accel="bvh2").closest(origins + far, directions)
+        both = near.mask & hit.mask
+        self.assertTrue(np.count_nonzero(near.mask != hit.mask) <= 2 and np.count_nonzero(both) > 100)
+        self.assertEqual(hit.points().dtype, np.float64)
+        np.testing.assert_allclose((hit.points() - far)[both], near.points()[both], rtol=0, atol=2e-6)
+        self.assertTrue(np.isnan(hit.points()[~hit.mask]).all())
+
+
+class Scenes(Case):
+    def test_tell_what_is_in_them(self):
+        scene = clarity.Scene(self.vertices, self.faces)
+        self.assertEqual(scene.info["triangles"], 300)
+        np.testing.assert_array_equal(scene.bounds, [self.vertices.min(0), self.vertices.max(0)])
+        self.assertIsNone(clarity.Scene(np.empty((0, 3)), np.empty((0, 3), int)).bounds)
+        mixed = clarity.load(self.scene_file)
+        self.assertEqual((mixed.info["spheres"], mixed.info["planes"], mixed.warnings), (1, 1, mixed.info["warnings"]))
+
+    def test_errors_have_kinds(self):
+        scene = clarity.Scene(self.vertices, self.faces)
+        rt = scene.on(accel="bvh2")
+        usage = clarity.UsageError
+        for kind, words, wrong in (
+            (clarity.ImportFailed, "no/such.obj", lambda: clarity.load("no/such.obj")),
+            (usage, "no scene file", lambda: clarity.load()),
+            (usage, r"vertices: expected .* \(n, 3\)", lambda: clarity.Scene(np.zeros((4, 2)), self.faces)),
+            (usage, "numbers 0 to 899 do not fit 3", lambda: clarity.Scene(self.vertices[:3], self.faces)),
+            (usage, "numbers -1 to", lambda: clarity.Scene(self.vertices, [[0, 1, -1]])),
+            (usage, "whole numbers", lambda: clarity.Scene(self.vertices, [[0, 1, 2.5]])),
+            (usage, "mesh of arrays", lambda: clarity.Scene([[np.nan, 0, 0]] * 3, [[0, 1, 2]])),
+            (usage, "no_tree", lambda: scene.on(accel="no_tree")),
+            (usage, "no_setting", lambda: scene.on(no_setting=1)),
+            (clarity.DeviceError, "no such device", lambda: scene.on("no such device")),
+            (usage, r"directions: expected .* \(\.\.\., 3\)", lambda: rt.closest([0, 0, 0], [1, 2])),
+            (usage, "do not fit each other", lambda: rt.any(np.zeros((4, 3)), np.zeros((5, 3)))),
+            (usage, "expected numbers", lambda: rt.any([0, 0, 1j], [0, 0, 1])),
+            (usage, "no such camera", lambda: rt.render(4, 4, camera="no such camera")),
+            (usage, "size", lambda: rt.render(0, 4)),
+            (usage, "out: expected", lambda: rt.render(4, 4, out=np.zeros((4, 4), np.float32))),
+        ):
+            with self.subTest(words=words), self.assertRaisesRegex(kind, words):
+                wrong()
+        self.assertTrue(issubclass(usage, ValueError) and issubclass(clarity.ImportFailed, clarity.Error))
+
+    def test_tell_their_progress_and_may_be_cancelled(self):
+        stages = []
+        scene = clarity.load(self.mesh_file, progress=lambda stage, fraction: stages.append(stage))
+        scene.on(accel="bvh2", progress=lambda stage, fraction: stages.append(stage))
+        self.assertTrue({"building bvh2", "uploading the scene"} <= set(stages), stages)
+        with self.assertRaises(clarity.Cancelled):
+            scene.on(accel="bvh2", progress=lambda stage, fraction: False)
+        with self.assertRaises(ZeroDivisionError):
+            scene.on(accel="bvh2", progress=lambda stage, fraction: 1 / 0)
+
+    def test_lend_arrays_and_free_them(self):
+        rt = clarity.Scene(self.vertices.copy(), self.faces.astype(np.uint32)).on(accel="bvh2")
+        origins, directions = some_rays(100, 7)
+        expected = clarity.load(self.mesh_file).on(accel="bvh2").closest(origins, directions)
+        self.equal(rt.closest(origins, directions), expected)  # nobody but the tracer holds the arrays
+        for _ in range(20):
+            clarity.Scene(self.vertices, self.faces)
+
+
+class Pictures(Case):
+    def test_are_those_of_the_program(self):
+        rt = clarity.load(self.scene_file).on(accel="bvh2")
+        for words, settings in ((["--spp", "3", "--tracer", "path"], {"spp": 3, "tracer": "path"}), (["--aov", "t"], {"aov": "t"})):
+            with self.subTest(words=words):
+                file = os.path.join(self.folder, "picture.pfm")
+                camera = "0.5,1,4,0.5,0.5,0.5,40"
+                self.run_program("render", self.scene_file, "-q", "--accel", "bvh2", "--size", "40x24", "--camera", camera, "-o", file, *words)
+                with open(file, "rb") as stream:
+                    kind, size, scale = (stream.readline().decode().split() for _ in range(3))
+                    shape = (24, 40, 3) if kind == ["PF"] else (24, 40)
+                    expected = np.frombuffer(stream.read(), "<f4" if float(scale[0]) < 0 else ">f4").reshape(shape)[::-1]
+                self.assertEqual(size, ["40", "24"])
+                picture = rt.render(40, 24, camera=[float(number) for number in camera.split(",")], **settings)
+                self.assertEqual((picture.dtype, picture.shape), (np.float32, shape))
+                np.testing.assert_array_equal(picture, expected)
+                out = np.empty(shape, np.float32)
+                self.assertIs(rt.render(40, 24, camera=camera, out=out, **settings), out)
+                np.testing.assert_array_equal(out, expected)
+
+
+class Processes(Case):
+    def test_import_and_end_cleanly(self):
+        lines = "import clarity"
+        used = """
+import clarity, numpy
+scene = clarity.Scene(numpy.eye(3), [[0, 1, 2]])
+rt = scene.on(accel="bvh2")
+assert rt.any([0, 0, 0], [1, 1, 1])
+"""
+        for i in range(10 if QUICK else 50):
+            result = self.run_python(used if i % 5 == 0 else lines)
+            self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+
+    def test_from_two_threads(self):
+        origins, directions = some_rays(30000, 8)
+        expected = clarity.Scene(self.vertices, self.faces).on(accel="bvh2").closest(origins, directions)
+        found = {}
+
+        def trace(name):
+            rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+            found[name] = [rt.closest(origins, directions) for _ in range(4)]
+            try:
+                rt.any(origins, directions, t_max="far")
+            except ValueError as error:
+                found[name, "error"] = error
+
+        threads = [threading.Thread(target=trace, args=(name,)) for name in ("a", "b")]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for name in ("a", "b"):
+            self.assertIn((name, "error"), found)
+            for hit in found[name]:
+                self.equal(hit, expected)
+
+    def test_that_were_forked_are_refused(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        child = os.fork()
+        if child == 0:
+            code = 1
+            try:
+                rt.any([0, 0, 0], [1, 1, 1])
+            except clarity.ForkError:
+                code = 0
+            finally:
+                os._exit(code)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        self.assertFalse(rt.any([0, 0, 9], [0, 0, 1]))
+
+    def test_hear_ctrl_c_in_a_long_call(self):
+        lines = """
+import clarity, numpy, time
+random = numpy.random.default_rng(1)
+scene = clarity.Scene(random.random((30000, 3)), numpy.arange(30000).reshape(-1, 3))
+rt = scene.on(accel="linear")
+rt.any([0, 0, 0], [1, 1, 1])
+rays = random.random((2000000, 3))
+try:
+    rt.closest([0, 0, 0], rays, progress=lambda stage, fraction: print("going", flush=True))
+except KeyboardInterrupt:
+    print("interrupted", time.monotonic(), flush=True)
+print(bool(rt.any([0, 0, 0], [0, 0, -1])))
+"""
+        with subprocess.Popen([sys.executable, "-c", lines], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            self.assertEqual(process.stdout.readline(), "going\n")
+            time.sleep(0.3)
+            sent = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            out, err = process.communicate(timeout=120)
+            took = time.monotonic() - sent
+        words = out.replace("going\n", "").split()
+        self.assertEqual((process.returncode, words[:1], words[2:], err), (0, ["interrupted"], ["False"], ""), out)
+        heard = float(words[1]) - sent
+        logging.getLogger(__name__).warning("Ctrl-C was heard after %.2f s, the end came after %.2f s", heard, took)
+        self.assertLess(heard, 2)  # 0.5 s on a machine that does nothing else
+
+    def test_of_another_version_are_refused(self):
+        package = os.path.join(self.folder, "other", "clarity")
+        shutil.copytree(os.path.dirname(clarity.__file__), package)
+        with open(os.path.join(package, "clarity.h"), "a") as file:
+            file.write("/* another version */\n")
+        library = clarity._binding.library._name
+        environment = {**os.environ, "PYTHONPATH": os.path.dirname(package), "CLARITY_LIBRARY": library}
+        result = self.run_python("import clarity", env=environment)
+        self.assertIn("ImportError", result.stderr)
+        self.assertIn("was built with another header", result.stderr)
+
+    def test_log_to_logging(self):
+        lines = """
+import logging, os
+logging.basicConfig(level=logging.WARNING, format="%(name)s %(levelname)s %(message)s")
+os.environ["CLARITY_PLUGIN_PATH"] = "/no_such_folder"
+import clarity
+clarity.Scene([[0, 0, 0]] * 3, [[0, 1, 2]])
+"""
+        self.assertRegex(self.run_python(lines).stderr, "clarity WARNING .*/no_such_folder")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
