@@ -120,6 +120,10 @@ void PathReplayer::trace(const Prepared& prepared, const Settings& settings, con
     if (x >= width || y >= height)
         throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
                                      std::to_string(width) + "x" + std::to_string(height));
+    if (!prepared.knows(view))
+        throw Error(Exit::failed,
+                    "the view has kinds of lights or surfaces that the kernels were not compiled for: prepare the "
+                    "scene with the view's optics in the settings");
     const auto program = tried_program(im.programs, prepared, replay_row(), progress);
     const auto first = static_cast<unsigned>(replay.samples.size());
     const size_t of_sample = RT_MOST_PATH_RECORDS(size_t(settings.depth)) * sizeof(rt_path_record);
