@@ -25,6 +25,7 @@ struct Parsed {
     BenchCommand bench;
     TraceCommand rays;
     CompareCommand compare;
+    WhyCommand why;
     CheckCommand check;
     NewPluginCommand fresh;
     std::string key_map;
@@ -103,6 +104,25 @@ void add_compare(CLI::App& app, CompareCommand& command) {
                           "Write the signed error as .png: red where A is brighter than B, blue where it is darker"))
         ->type_name("DIFF");
     app.add_flag("--json", command.json, "As JSON");
+}
+
+void add_why(CLI::App& app, WhyCommand& why) {
+    single(app.add_option("--pixel", why.pixel, "The pixel: its column and row, counted from 0 at the top left"))
+        ->type_name("X,Y")
+        ->required();
+    single(
+        app.add_option("--samples", why.samples,
+                       "Samples of the pixel that are traced once more, as --spp; default: --spp if that is given, else 1024"))
+        ->type_name("K")
+        ->check(CLI::Range(2, 65536));
+    single(app.add_option("--csv", why.csv_file,
+                          "Write the ten brightest paths: each event and each light, with throughput, densities and weight"))
+        ->type_name("FILE");
+    app.add_flag("--json", why.json, "As JSON");
+    single(
+        app.add_option("--fps", why.fps, "Frames a second, of which --shutter is a share; default: those of the clip, else 24"))
+        ->type_name("F")
+        ->check(CLI::Range(1e-3, 1e6));
 }
 
 void add_check(CLI::App& app, CheckCommand& command) {
@@ -271,6 +291,7 @@ CommandLine parse_command_line(int argc, char** argv) {
     CLI::App* view = app.add_subcommand("view", "Open the window on a scene");
     CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
     CLI::App* trace = app.add_subcommand("trace", "Trace rays that are given by their numbers");
+    CLI::App* why = app.add_subcommand("why", "Say why a pixel of the tracer `path` is noisy");
     CLI::App* compare = app.add_subcommand("compare", "Say how much a picture differs from a reference");
     CLI::App* check = app.add_subcommand("check", "Say whether a plugin is right, in a process that it may crash");
     CLI::App* fresh = app.add_subcommand("new-plugin", "Make a folder with a plugin that builds and works, to begin with");
@@ -317,6 +338,21 @@ CommandLine parse_command_line(int argc, char** argv) {
             command.trace = parsed->trace;
             command.quiet = parsed->common.quiet;
             return run_trace(registry, command);
+        };
+    });
+
+    add_scene(*why, p.scene)->required();
+    add_why(*why, p.why);
+    add_pose(*why, p.render.pose);
+    add_trace(*why, p.trace);
+    why->callback([&] {
+        line.command = [parsed](const PluginRegistry& registry) {
+            WhyCommand command = parsed->why;
+            command.scene = parsed->scene;
+            command.trace = parsed->trace;
+            command.pose = parsed->render.pose;
+            command.quiet = parsed->common.quiet;
+            return run_why(registry, command);
         };
     });
 
@@ -367,7 +403,7 @@ CommandLine parse_command_line(int argc, char** argv) {
         line.lists_plugins = true;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
-    for (CLI::App* sub : {view, render, trace, compare, check, fresh, bench, info, devices, plugins}) {
+    for (CLI::App* sub : {view, render, trace, why, compare, check, fresh, bench, info, devices, plugins}) {
         add_common(*sub, p.common);
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);

@@ -94,6 +94,19 @@ struct TraceCommand {
 };
 int run_trace(const PluginRegistry& plugins, const TraceCommand& command);
 
+// A pixel of which to say why it is noisy.
+struct WhyCommand {
+    SceneOptions scene;
+    TraceOptions trace;
+    PoseOptions pose;
+    double fps = 0;        // for motion blur; 0: the clip's own
+    std::string pixel;     // x,y from the top left
+    int samples = 0;       // 0: those of `trace`, or a number that suits
+    std::string csv_file;  // gets the brightest paths; "": none
+    bool json = false, quiet = false;
+};
+int run_why(const PluginRegistry& plugins, const WhyCommand& command);
+
 struct CheckCommand {
     std::vector<std::string> what;  // ids and libraries
     check::CheckOptions options;

@@ -80,6 +80,20 @@ std::string inspection_text(const Session& session) {
     return json.dump();
 }
 
+std::string noise_text(const Session& session) {
+    const auto noise = session.inspector().latest_noise();
+    if (!noise) throw Error(Exit::failed, "no pixel was explained");
+    if (!noise->failure.empty()) throw Error(Exit::failed, noise->failure);
+    const NoiseReport& report = noise->report;
+    return nlohmann::json{{"x", noise->x},
+                          {"y", noise->y},
+                          {"cause", name_of(report.cause)},
+                          {"sentence", report.sentence},
+                          {"samples", report.samples},
+                          {"mean", report.mean}}
+        .dump();
+}
+
 std::vector<std::string> dropped_files(const std::string& text) {
     try {
         return nlohmann::json::parse(text).get<std::vector<std::string>>();
@@ -222,6 +236,12 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
         unsigned x = 0, y = 0;
         std::istringstream(text) >> x >> y;
         command == "pick" ? session.pick(x, y) : session.inspect(x, y);
+    } else if (command == "why") {
+        unsigned x = 0, y = 0;
+        std::istringstream(text) >> x >> y;
+        session.explain(x, y);
+    } else if (command == "noise") {
+        std::printf("%s\n", noise_text(session).c_str());
     } else if (command == "inspection") {
         std::printf("%s\n", inspection_text(session).c_str());
     } else if (command == "continuous") {

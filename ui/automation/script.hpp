@@ -30,6 +30,8 @@
 //   turntable N FILE            a sequence of N pictures; FILE has #### for the number
 //   inspect X Y, pick X Y       traces a pixel's rays; pick also selects what the camera ray hit
 //   inspection                  the traced rays as JSON
+//   why X Y                     traces a pixel's samples once more, to say why it is noisy
+//   noise                       what that said, as JSON
 //   find LABEL                  rectangle of this row's widget or list entry, as last drawn: JSON x, y, w, h
 // The commands of picture_script.hpp and time_script.hpp work as well.
 #pragma once

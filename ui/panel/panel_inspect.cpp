@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "render/settings/tracer_choice.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/ray_text.hpp"
@@ -133,6 +134,8 @@ void draw_inspect_tab(Session& session, UiState& state) {
         return;
     }
     pixel_rows(*inspection);
+    if (picture_of_tracer(session.desired.main.settings.tracer) == std::string(kPathPicture))
+        draw_noise_rows(session, state, inspection->x, inspection->y);
     section("RAYS");
     legend();
     ImGui::PushStyleVar(ImGuiStyleVar_IndentSpacing, 14 * ui_scale());

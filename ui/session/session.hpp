@@ -84,6 +84,8 @@ class Session {
     void inspect(unsigned x, unsigned y);
     // Like inspect(), then selects the object that the camera ray hit.
     void pick(unsigned x, unsigned y);
+    // Traces the samples of a pixel of the newest picture once more, to say why it is noisy.
+    void explain(unsigned x, unsigned y);
     const InspectThread& inspector() const { return inspector_; }
     // Says that this instance will be moved: it is kept apart in the structure, so that the first step is quick.
     void prepare_to_move(rt_u32 instance);

@@ -14,6 +14,14 @@ void Session::inspect(unsigned x, unsigned y) {
     inspector_.ask(picture_->job, x, y);
 }
 
+void Session::explain(unsigned x, unsigned y) {
+    if (!picture_) return;
+    std::vector<std::string> names;
+    for (const DesiredLight& light : desired.lights)
+        if (light.on) names.push_back(light.name);
+    inspector_.ask_why(picture_->job, x, y, std::move(names));
+}
+
 void Session::pick(unsigned x, unsigned y) {
     if (!picture_) return;
     pick_request_ = inspector_.ask(picture_->job, x, y);

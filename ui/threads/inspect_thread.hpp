@@ -1,5 +1,5 @@
-// inspect_thread.hpp -- the thread that traces the rays of one pixel, independent of the thread that traces pictures. Only the
-// newest request is answered.
+// inspect_thread.hpp -- the thread that traces the rays of one pixel, or its samples once more, independent of the thread that
+// traces pictures. Of each kind only the newest request is answered.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "render/noise/noise.hpp"
 #include "render/tracers/inspect/inspect.hpp"
 #include "ui/threads/picture.hpp"
 
@@ -23,6 +24,16 @@ struct Inspection {
     uint64_t request = 0;  // the number which ask() returned
 };
 
+// Why a pixel of the tracer `path` is noisy.
+struct NoiseInspection {
+    FrameJob job;
+    unsigned x = 0, y = 0;
+    NoiseNames names;
+    Replay replay;
+    NoiseReport report;
+    std::string failure;  // why there is no report; empty: there is
+};
+
 // The thread. All public members may be called from any thread; only release() waits.
 class InspectThread {
  public:
@@ -31,6 +42,9 @@ class InspectThread {
     // Requests the rays of pixel (x, y) of the job's picture. Replaces a waiting request. Returns the request's number.
     uint64_t ask(FrameJob job, unsigned x, unsigned y);
     std::shared_ptr<const Inspection> latest() const;  // nullptr until the first answer
+    // The same for the samples of a pixel. names: of the job's lights.
+    void ask_why(FrameJob job, unsigned x, unsigned y, std::vector<std::string> names);
+    std::shared_ptr<const NoiseInspection> latest_noise() const;
     bool busy() const;
     // As in FrameThread.
     void release();
@@ -43,17 +57,23 @@ class InspectThread {
         uint64_t number = 0;
     };
     void run();
-    void follow(const Request& request, Inspection& answer);
+    std::shared_ptr<const Inspection> answer(const Request& request);
+    std::shared_ptr<const NoiseInspection> answer_why(NoiseInspection request);
+    // Of the job's main side; nullptr: its devices were closed, and its picture is about to be replaced.
+    std::shared_ptr<const Prepared> open(const FrameJob& job);
 
     const std::function<void()> wake_;
     std::shared_ptr<Device> device_;  // used by the thread only, like inspector_
     std::unique_ptr<Inspector> inspector_;
+    std::unique_ptr<PathReplayer> replayer_;
     mutable std::mutex mutex_;
     std::condition_variable changed_, stopped_;
     bool stop_ = false, running_ = false, released_ = false;
     uint64_t last_number_ = 0;
     std::unique_ptr<Request> waiting_;
+    std::unique_ptr<NoiseInspection> waiting_noise_;  // without an answer
     std::shared_ptr<const Inspection> latest_;
+    std::shared_ptr<const NoiseInspection> latest_noise_;
     std::thread thread_;  // last member: the thread starts when all others exist
 };
 

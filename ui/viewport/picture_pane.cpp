@@ -10,6 +10,7 @@
 #include "base/elapsed.hpp"
 #include "scene/camera.hpp"
 #include "scene/motion/deform.hpp"
+#include "ui/overlay/path_lines.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session_view.hpp"
@@ -155,6 +156,10 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
         looking && state.show_rays && inspection && inspection->failure.empty() && inspection->job.ready->scene == scene;
     if (rays_shown_)
         append_ray_lines(inspection->result, projection, scene_size(session) * 0.6f, scale, state.selected_ray, marks);
+    const auto noise = session.inspector().latest_noise();
+    if (looking && state.show_paths && noise && noise->failure.empty() && noise->job.revision == picture_->job.revision)
+        append_path_lines(noise->replay, noise->report.brightest, projection, scene_size(session) * 0.6f, scale,
+                          state.selected_path, marks);
     if (marks == marks_) return;
     marks_ = std::move(marks);
     ++marks_revision_;

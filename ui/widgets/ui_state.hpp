@@ -47,6 +47,8 @@ struct UiState {
     bool keys_open = false;             // whether the list of keys is shown over the picture
     std::string pictures_folder = ".";  // folder into which pictures are saved
     int selected_ray = -1;       // index of the ray that is marked in the scene, among those of the inspected pixel; -1: none
+    bool show_paths = true;      // the brightest paths of the explained pixel are drawn in the scene
+    int selected_path = -1;      // which of them is marked; -1: none
     std::string browser_folder;  // the folder that the file browser shows
     std::vector<std::string> recent_files;     // newest first
     std::vector<Bookmark> bookmarks;           // of the open scene

@@ -50,21 +50,28 @@ RT_INLINE vfloat rt_found_weight(const constant rt_frame *frame, const rt_path *
     vfloat weight = rt_vfloat(frame->path_flags & RT_PATH_FINDS_LIGHTS ? 1.0f : 0.0f);
     if ((frame->path_flags & RT_PATH_DRAWS_LIGHTS) && (frame->path_flags & RT_PATH_FINDS_LIGHTS))
         weight = rt_mis_weight(frame, p->pdf, light_pdf);
-    return rt_select(p->sharp | RT_MASK(light_pdf == rt_vfloat(0.0f)), rt_vfloat(1.0f), weight);
+    weight = rt_select(p->sharp | RT_MASK(light_pdf == rt_vfloat(0.0f)), rt_vfloat(1.0f), weight);
+    RT_RECORD(rt_note_weight(p->recorder, rt_select(p->sharp, rt_vfloat(0.0f), p->pdf), light_pdf, weight))
+    return weight;
 }
 
-/* How the first event of a path scatters, by whether its ray goes through the surface. */
+/* How an event scatters, by whether its ray goes through the surface. */
+RT_INLINE vint rt_kind_of_event(const rt_bsdf *bsdf, vmask sharp, vmask through)
+{
+    return rt_select(through, rt_vint(RT_FIRST_TRANSMISSION),
+                     rt_select(sharp | ~rt_is_diffuse(bsdf), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
+}
+/* The same of the first event of a path. */
 RT_INLINE vint rt_first_kind(const rt_path *p, const rt_bsdf *bsdf, vmask sharp, vmask through)
 {
-    const vint kind = rt_select(through, rt_vint(RT_FIRST_TRANSMISSION),
-                                rt_select(sharp | ~rt_is_diffuse(bsdf), rt_vint(RT_FIRST_GLOSSY), rt_vint(RT_FIRST_DIFFUSE)));
-    return rt_select(RT_MASK(p->event == rt_vint(0)), kind, p->first);
+    return rt_select(RT_MASK(p->event == rt_vint(0)), rt_kind_of_event(bsdf, sharp, through), p->first);
 }
 
 /* Counts light that paths have found, if it is of the kinds that are asked for. bounce: events between it and the camera. by:
  * RT_BY_*. */
 RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lanes, rt_vec light, vint bounce, uint by, vint first, vint number)
 {
+    RT_RECORD(const rt_noted noted = rt_take_noted(p->recorder))
     if (RT_SETTING(frame, only_bounce) >= 0) lanes &= RT_MASK(bounce == rt_vint(RT_SETTING(frame, only_bounce)));
     if (frame->only_by != RT_NONE && frame->only_by != by) return;
     if (frame->only_first != RT_NONE) lanes &= RT_MASK(first == rt_vint((int)frame->only_first));
@@ -75,6 +82,7 @@ RT_INLINE void rt_collect(const constant rt_frame *frame, rt_path *p, vmask lane
     light = rt_vec_of(by == RT_BY_NEE ? all : rt_vfloat(0.0f), all, rt_vfloat(0.0f));
 #endif
     p->light = rt_choose(lanes, rt_add(p->light, light), p->light);
+    RT_RECORD(rt_record_light(p->recorder, &noted, lanes, p->weight, light, bounce, by, first, number))
 }
 
 /* What is left of light after a way through the medium that a path is in (Beer-Lambert). */
@@ -173,6 +181,8 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
 #endif
     if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(asked & rt_in_medium(p))) light = rt_choose(above & rt_in_medium(p), rt_mul(rt_passed(p, s.distance), light), light);
     const vint first = rt_first_kind(p, &m->bsdf, rt_vint(0), ~above);
+    RT_RECORD(rt_note_ray(p->recorder, outside, s.towards, s.distance))
+    RT_RECORD(rt_note_weight(p->recorder, s.pdf, rt_select(s.delta, zero, surface_pdf), rt_drawn_weight(frame, &s, surface_pdf)))
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
 
@@ -211,6 +221,8 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     if (rt_any(on & s.transmitted & ~rt_is_sheet(&m->bsdf))) rt_change_medium(ctx, p, surface, ~point->leaving, on & s.transmitted & ~rt_is_sheet(&m->bsdf));
 #endif
     p->first = rt_first_kind(p, &m->bsdf, s.delta, s.transmitted);
+    RT_RECORD(rt_record_event(p->recorder, lanes, on, point->at, p->event + rt_vint(1), rt_kind_of_event(&m->bsdf, s.delta, s.transmitted), s.delta,
+                              s.pdf, weight, surface->material))
     p->event += rt_vint(1);
 #ifdef RT_SPLITS_INCOHERENT
     p->area = rt_select(on, point->area, p->area);
@@ -246,6 +258,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     vfloat t = hit.t;
     vint light;
     rt_hit_lights(ctx, frame, &ray, &t, &light);
+    RT_RECORD(rt_note_ray(p->recorder, p->origin, p->direction, t))
     if (RT_MAY_SCATTER(RT_LOBE_ABSORBS) && rt_any(p->alive & rt_in_medium(p))) p->weight = rt_choose(rt_in_medium(p), rt_mul(rt_passed(p, t), p->weight), p->weight);
     const vmask lights = p->alive & RT_MASK(light >= rt_vint(0)), hits = p->alive & ~lights & RT_MASK(hit.prim >= rt_vint(0));
     const vmask missed = p->alive & ~lights & ~hits;
@@ -276,6 +289,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     m.point = rt_point_of(&ray, &surface, hits);
     if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE)) {
         const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
+        RT_RECORD(p->recorder->noted.material = surface.material)
         rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
     }
 
@@ -284,6 +298,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     /* Surfaces that are not lit end paths: with their colour where a camera sees them, directly or by what is smooth. */
     rt_vec shown;
     const vmask unlit = rt_unlit(ctx, &surface, hit_bits, m.point.at, &shown);
+    RT_RECORD(p->recorder->noted.material = surface.material)
     if (rt_any(unlit)) rt_collect(frame, p, unlit & p->sharp, shown, p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
     scattered &= ~unlit;
 #endif

@@ -29,6 +29,7 @@ typedef struct rt_path {
 #ifdef RT_HAS_MIPS
     vfloat cone, cone_angle; /* the ray's width where it starts, and how it grows with the distance */
 #endif
+    RT_RECORD(rt_path_recorder *recorder)
 } rt_path;
 
 RT_INLINE vmask rt_mask_of_bits(uint bits)

@@ -1,4 +1,6 @@
 // path.cpp -- the tracer `path`: a path of light at a time in each lane; a lane whose path has ended takes the next pixel.
+#include "render/tracers/path/path.hpp"
+
 #include "render/emitters/emitter_table.hpp"
 #include "render/tracers/tracer.hpp"
 
@@ -11,13 +13,7 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     r.what = "tracer path";
     r.file = "tracers/path/path.cl";
     r.entry = "trace_path";
-    r.headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h", "sampling/math.h", "sampling/warps.h"};
-    const auto add = [&](const std::vector<const char*>& more) { r.headers.insert(r.headers.end(), more.begin(), more.end()); };
-    add({"shading/power.h"});
-    add(material_headers());
-    add(surface_headers());
-    add(emitter_headers());
-    add({"tracers/path/sum.h", "tracers/path/camera_rays.h", "tracers/path/state.h", "tracers/path/scatter.h"});
+    r.headers = path_headers();
     r.defines = defines;
     r.traits = kFrame | kCountsRays | kPicksLights | kSumsSamples;
     return r;
@@ -29,6 +25,19 @@ const KernelRow& kernel(const Settings& settings, const Layout&) {
 }
 
 }  // namespace
+
+std::vector<const char*> path_headers(const std::vector<const char*>& recorder) {
+    std::vector<const char*> headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h",
+                                        "sampling/math.h", "sampling/warps.h", "shading/power.h"};
+    const auto add = [&](const std::vector<const char*>& more) { headers.insert(headers.end(), more.begin(), more.end()); };
+    add(material_headers());
+    add(surface_headers());
+    add(emitter_headers());
+    add({"tracers/path/sum.h", "tracers/path/camera_rays.h"});
+    add(recorder);
+    add({"tracers/path/state.h", "tracers/path/scatter.h"});
+    return headers;
+}
 
 const Tracer& path_tracer() {
     static const Tracer tracer = [] {

@@ -1,0 +1,79 @@
+// noise_test.cpp -- the Inspect tab says why a pixel of `path` is noisy, by a button; its samples are the picture's, its paths
+// are drawn in the scene and saved.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/pictures/picture_read.hpp"
+#include "ui/driver/window_fixture.hpp"
+
+namespace clarity::ui {
+namespace {
+
+class Noise : public WindowTest {
+ protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        if (IsSkipped()) return;
+        const std::string scene = folder.path() + "/caustic.scene";
+        std::ofstream(scene) << "background 0 0 0\ncamera main eye 0 3 6 target 0 0 0 fov 40\n"
+                                "light sphere center 0 6 -2 radius .2 radiance 300 name bulb\n"
+                                "material floor model lambert color .7\nmaterial clear model dielectric color 1 ior 1.5\n"
+                                "plane normal 0 1 0 offset 0 material floor\nsphere center 0 1.2 -.4 radius 1 material clear\n";
+        window = open_scene(scene, "64x48");
+        for (const char* line : {"set tracer path", "set spp 300", "tab Inspect"}) ASSERT_EQ(window->command(line), "");
+        window->settle();
+        ASSERT_EQ(window->command("inspect 32 24"), "");
+        window->settle();
+    }
+    TemporaryFolder folder;
+    std::unique_ptr<WindowDriver> window;
+};
+
+TEST_F(Noise, AButtonExplainsThePixelAndDrawsItsPaths) {
+    const Pixels before = window->screenshot();
+    window->click_on("Why is this pixel noisy?");
+    ASSERT_TRUE(
+        window->reaches([&](const nlohmann::json&) { return window->command("noise").find("no pixel") == std::string::npos; }));
+    window->settle();
+    const auto noise = window->query("noise");
+    EXPECT_EQ(noise["cause"], "caustic") << noise;
+    EXPECT_NE(std::string(noise["sentence"]).find("lamp `bulb`"), std::string::npos) << noise;
+    EXPECT_EQ(noise["samples"], 300);
+    // The mean is the picture's pixel, bit for bit.
+    const std::string path = folder.path() + "/film.pfm";
+    save(*window, path);
+    const FloatImage film = read_picture(path);
+    const size_t at = 3 * (size_t(noise["y"]) * film.width + size_t(noise["x"]));
+    for (size_t k = 0; k < 3; ++k) EXPECT_EQ(float(noise["mean"][k]), film.pixels[at + k]);
+    EXPECT_GT(film.pixels[at], 0);
+    // The picture's half of the window shows lines now.
+    const Pixels after = window->screenshot();
+    size_t changed = 0;
+    for (int y = 0; y < after.height; ++y)
+        for (int x = 0; x < after.width / 2; ++x) {
+            const size_t i = 3 * (size_t(y) * size_t(after.width) + size_t(x));
+            changed += std::abs(int(after.rgb[i]) - int(before.rgb[i])) > 40;
+        }
+    EXPECT_GT(changed, 300u);
+}
+
+TEST_F(Noise, WhatCannotBeExplainedIsSaid) {
+    ASSERT_EQ(window->command("why 32 24"), "");
+    window->settle();
+    EXPECT_EQ(window->query("noise")["cause"], "caustic");
+    ASSERT_EQ(window->command("set tracer iterative"), "");
+    window->settle();
+    ASSERT_EQ(window->command("why 32 24"), "");
+    window->settle();
+    EXPECT_NE(window->command("noise").find("only pictures of the tracer `path`"), std::string::npos);
+    ASSERT_EQ(window->command("set tracer path"), "");
+    window->settle();
+    ASSERT_EQ(window->command("why 64 24"), "");
+    window->settle();
+    EXPECT_NE(window->command("noise").find("no pixel 64,24"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace clarity::ui
