@@ -12,7 +12,7 @@ namespace clarity {
 struct CommonOptions {
     std::vector<std::string> plugin_files;
     bool verbose = false, quiet = false;
-    std::string log_file;
+    std::string log_file, timeline_file;
 };
 
 struct CommandLine {

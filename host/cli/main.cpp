@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/files/process_folder.hpp"
 #include "base/log.hpp"
+#include "base/timeline.hpp"
 #include "check/check.hpp"
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
@@ -43,6 +44,7 @@ int run(int argc, char** argv) {
     const CommandLine line = parse_command_line(argc, argv);
     if (!line.command) return static_cast<int>(Exit::done);
     set_up_log(line.common);
+    if (!line.common.timeline_file.empty()) timeline::record(line.common.timeline_file);
     const PluginRegistry plugins = line.needs_plugins ? find_plugins(line) : PluginRegistry();
     return line.command(plugins);
 }
@@ -82,6 +84,7 @@ int main(int argc, char** argv) {
     if (const clarity::worker::JobKind* job = clarity::worker::kind_of_worker(argc, argv, clarity::kJobs))
         return clarity::worker::worker_main(*job, argc, argv);
     const int code = clarity::run_and_report(argc, argv);
+    clarity::timeline::write();
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
         clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));

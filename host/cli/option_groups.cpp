@@ -64,6 +64,9 @@ void add_common(CLI::App& app, CommonOptions& common) {
     auto* verbose = app.add_flag("-v,--verbose", common.verbose, "Log debug messages too");
     app.add_flag("-q,--quiet", common.quiet, "Warnings and errors only, no progress bar")->excludes(verbose);
     single(app.add_option("--log-file", common.log_file, "Append the log, with times, to this file"))->type_name("FILE");
+    single(app.add_option("--trace", common.timeline_file,
+                          "Record what the program and its devices do, and when, for Perfetto or chrome://tracing (.json)"))
+        ->type_name("FILE");
 }
 
 CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {

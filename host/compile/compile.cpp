@@ -6,6 +6,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/timeline.hpp"
 #include "compile/compile_in_worker.hpp"
 #include "compile/pocl_entries.hpp"
 #include "compile/program_store.hpp"
@@ -82,6 +83,7 @@ std::optional<std::vector<char>> stored_program(const DeviceRequest& wanted) {
 
 BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
+    const timeline::Scope span("compile", [&] { return "compile " + request.what; });
     const DeviceInfo& info = device.info();
     const auto here = [&](const std::string& options) {
         BuildResult built = build_program(device, request.source, options, request.what);

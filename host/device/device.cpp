@@ -9,7 +9,7 @@ namespace clarity {
 Device::Device(DeviceInfo info) : info_(std::move(info)), loss_(std::make_shared<DeviceLoss>()) {
     try {
         context_ = cl::Context(info_.cl_device);
-        queue_ = cl::CommandQueue(context_, info_.cl_device, CL_QUEUE_PROFILING_ENABLE);
+        queue_ = Queue(context_, info_.cl_device, true);
     } catch (const cl::Error& e) {
         throw Error(Exit::no_device, "device " + info_.id() + " (" + info_.name + ") cannot be opened: " + e.what() +
                                          " failed with OpenCL error " + std::to_string(e.err()) +
@@ -19,11 +19,11 @@ Device::Device(DeviceInfo info) : info_(std::move(info)), loss_(std::make_shared
 
 Device::Device(DeviceInfo info, cl::Context context, std::shared_ptr<DeviceLoss> loss)
     : info_(std::move(info)), loss_(std::move(loss)), context_(std::move(context)) {
-    queue_ = cl::CommandQueue(context_, info_.cl_device, CL_QUEUE_PROFILING_ENABLE);
+    queue_ = Queue(context_, info_.cl_device, true);
 }
 
 Device::~Device() {
-    if (loss_->stuck()) never_release(std::make_shared<std::pair<cl::Context, cl::CommandQueue>>(context_, queue_));
+    if (loss_->stuck()) never_release(std::make_shared<std::pair<cl::Context, Queue>>(context_, queue_));
 }
 
 void Device::drain() const noexcept {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "device/device_loss.hpp"
+#include "device/queue.hpp"
 
 namespace clarity {
 
@@ -66,7 +67,7 @@ class Device {
     Device& operator=(const Device&) = delete;
     const DeviceInfo& info() const { return info_; }
     cl::Context& context() { return context_; }
-    cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
+    Queue& queue() { return queue_; }  // in order, profiling enabled
     // Shared by all queues of the context. A device that is lost has to be opened anew.
     const std::shared_ptr<DeviceLoss>& loss() const { return loss_; }
     // Waits for what is in the queue, on a CPU: after a failure the owner of a buffer frees it, and kernels of PoCL do not keep
@@ -80,7 +81,7 @@ class Device {
     DeviceInfo info_;
     std::shared_ptr<DeviceLoss> loss_;
     cl::Context context_;
-    cl::CommandQueue queue_;
+    Queue queue_;
 };
 
 }  // namespace clarity

@@ -65,7 +65,7 @@ void wait_for(const Device& device, const cl::Event& event, const char* what) {
     wait_for(device, event, [what] { return std::string(what); });
 }
 
-void finish(const Device& device, cl::CommandQueue& queue, const char* what) {
+void finish(const Device& device, Queue& queue, const char* what) {
     if (device.info().cpu) {
         queue.finish();
         return;

@@ -22,6 +22,6 @@ double launch_limit_s();
 void wait_for(const Device& device, const cl::Event& event, const std::function<std::string()>& what);
 void wait_for(const Device& device, const cl::Event& event, const char* what);
 // Waits for everything in the queue, likewise.
-void finish(const Device& device, cl::CommandQueue& queue, const char* what);
+void finish(const Device& device, Queue& queue, const char* what);
 
 }  // namespace clarity

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files/frame_path.hpp"
 #include "base/log.hpp"
+#include "base/timeline.hpp"
 #include "import/file_access.hpp"
 #include "import/import_in_worker.hpp"
 #include "import/sink/scene_builder.hpp"
@@ -38,6 +39,7 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
             throw Error(Exit::import_failed, file + ": no file has such a name; # stands for the digits of a frame's number");
         check_model_file(first);
     }
+    const timeline::Scope span("import", [&] { return "import " + files.front(); });
     Scene scene = options.in_process ? import_in_process(plugins, files, options, progress)
                                      : import_in_worker(plugins, files, options, progress);
     if (const Problem why = complete_scene(plugins, scene))

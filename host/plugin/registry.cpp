@@ -16,6 +16,7 @@
 #include "base/files/packed_file.hpp"
 #include "base/log.hpp"
 #include "base/lower.hpp"
+#include "base/timeline.hpp"
 #include "plugin/elf_file.hpp"
 #include "plugin/load_trial.hpp"
 #include "plugin/plugin_check.hpp"
@@ -287,6 +288,7 @@ std::string kind_and_id(const rt_plugin& plugin) {
 }  // namespace
 
 PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files, bool log_refused) {
+    const timeline::Scope span("load", "find plugins");
     Search search;
     for (const std::string& file : plugin_files) search.add_file(file);
     const size_t named = search.paths().size();

@@ -14,6 +14,7 @@
 #include "base/lower.hpp"
 #include "base/memory_text.hpp"
 #include "base/printable.hpp"
+#include "base/timeline.hpp"
 
 namespace clarity::worker {
 namespace {
@@ -36,6 +37,8 @@ std::string Job::worker_name() const {
 }
 
 void Job::follow(const MemoryFile& arguments, Progress& progress) {
+    const timeline::Scope span("worker",
+                               [&] { return std::string(kind_.name) + " worker" + (what_.empty() ? "" : ": " + what_); });
     progress_ = &progress;
     std::vector<std::string> words = {program};
     words.insert(words.end(), words_before.begin(), words_before.end());

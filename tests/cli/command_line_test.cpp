@@ -125,6 +125,7 @@ TEST(CommandLine, UsageErrorsAreOneLineAndExit2AndWriteNothing) {
         {{"render", scene, "-o", out, "--light", "1,2"}, "1,2"},
         {{"render", scene, "-o", out, "--stats", scratch.path("missing/s.json")}, "missing/s.json"},
         {{"render", scene, "-o", out, "--log-file", scratch.path("missing/l.txt")}, "missing/l.txt"},
+        {{"render", scene, "-o", out, "--trace", scratch.path("missing/t.json")}, "missing/t.json"},
         {{"render", scene, "-o", out, "-v", "-q"}, "quiet"},
         {{"info"}, "scene"},
         {{"info", scene, "--size", "1x1"}, "--size"},

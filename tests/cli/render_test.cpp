@@ -5,7 +5,9 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/run_program.hpp"
 #include "support/scratch.hpp"
@@ -190,6 +192,48 @@ TEST_F(Render, QuietPrintsNothingVerbosePrintsMore) {
     EXPECT_GT(run_program(words({"-o", out("a.png"), "-v"})).err.size(), normal.size());
     ASSERT_EQ(run_program(words({"-o", out("a.png"), "-q", "--log-file", out("log.txt")})).exit_code, 0);
     EXPECT_NE(scratch_.read("out/log.txt").find("a.png"), std::string::npos) << "the log file has every message";
+}
+
+// The clock of a device is another than the host's: a frame has launches within its own time.
+TEST_F(Render, ATimelineHasWhatTheProgramAndItsDeviceDid) {
+    ASSERT_EQ(run_program(words({"-o", out("a.png")})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("b.png"), "--trace", out("b.json"), "--spp", "4"})).exit_code, 0);
+    const nlohmann::json file = nlohmann::json::parse(scratch_.read("out/b.json"));
+    std::map<std::string, double> first, last;  // by kind, in us
+    std::map<int, std::string> tracks;
+    std::set<int> of_launches;
+    std::vector<std::pair<double, double>> launches, frames;
+    for (const nlohmann::json& event : file["traceEvents"]) {
+        if (event["name"] == "thread_name") tracks[event["tid"]] = event["args"]["name"];
+        if (event["ph"] != "X") continue;
+        const double begin = event["ts"], end = begin + event["dur"].get<double>();
+        EXPECT_GE(begin, 0) << event;
+        EXPECT_GE(end, begin) << event;
+        const std::string kind = event["cat"];
+        first[kind] = first.count(kind) ? std::min(first[kind], begin) : begin;
+        last[kind] = std::max(last[kind], end);
+        if (kind == "launch") of_launches.insert(event["tid"].get<int>()), launches.emplace_back(begin, end);
+        if (kind == "frame") frames.emplace_back(begin, end);
+    }
+    for (const char* kind : {"load", "import", "build", "compile", "worker", "frame", "launch", "copy", "write"})
+        EXPECT_TRUE(first.count(kind)) << kind << " has no span";
+    ASSERT_FALSE(of_launches.empty());
+    EXPECT_NE(tracks[*of_launches.begin()].find("queue"), std::string::npos) << tracks[*of_launches.begin()];
+    EXPECT_LE(last["import"], first["build"]);
+    EXPECT_LE(last["launch"], first["write"] + 100);
+    for (const auto& [begin, end] : frames)
+        EXPECT_TRUE(std::any_of(launches.begin(), launches.end(), [begin = begin - 100, end = end + 100](const auto& launch) {
+            return launch.first > begin && launch.second < end;
+        })) << begin;
+    ASSERT_EQ(run_program(words({"-o", out("c.png"), "--spp", "4"})).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/b.png"), scratch_.read("out/c.png")) << "recording changes the picture";
+}
+
+// What failed is what one wants to see.
+TEST_F(Render, ATimelineIsWrittenOfWhatFails) {
+    const std::string broken = scratch_.write("broken.scene", "sphere colour\n");
+    EXPECT_NE(run_program({"info", broken, "--trace", out("a.json")}).exit_code, 0);
+    EXPECT_NE(scratch_.read("out/a.json").find("import " + broken), std::string::npos);
 }
 
 TEST_F(Render, CtrlCWritesWhatIsAccumulated) {

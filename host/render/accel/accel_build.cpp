@@ -14,6 +14,7 @@
 #include "base/parallel_for.hpp"
 #include "base/problem.hpp"
 #include "base/scoped_fp_mode.hpp"
+#include "base/timeline.hpp"
 #include "plugin/host_services.hpp"
 #include "render/accel/builder_output.hpp"
 #include "render/accel/topology_check.hpp"
@@ -131,6 +132,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     if (!layout.accel->build)
         throw Error(Exit::failed, std::string("accel ") + plugin.id + ": it builds a topology, and its layout '" +
                                       plugin.accel->layout + "' is not there to pack it; load that plugin, too");
+    const timeline::Scope span("build", [&] { return std::string("build ") + plugin.id; });
     AccelData data;
     data.plugin = &plugin;
     data.layout = &layout;

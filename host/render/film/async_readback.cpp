@@ -34,7 +34,7 @@ void AsyncReadback::settle() {
 ByteImage AsyncReadback::wait(std::vector<KernelTime>* times) {
     wrap_cl_errors(*device_, "reading the picture", [&] {
         if (in_place_()) {
-            cl::CommandQueue& queue = device_->queue();
+            Queue& queue = device_->queue();
             void* const seen = queue.enqueueMapBuffer(in_place_, CL_TRUE, CL_MAP_READ, 0, bytes(), nullptr, &copied_);
             queue.enqueueUnmapMemObject(in_place_, seen);
         } else {

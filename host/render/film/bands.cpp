@@ -59,7 +59,7 @@ Row longest_row(const std::vector<Band>& bands, const std::vector<bool>& taken, 
 
 }  // namespace
 
-void read_bands(cl::CommandQueue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
+void read_bands(Queue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
                 std::vector<cl::Event>* events) {
     const size_t all_bytes = from.getInfo<CL_MEM_SIZE>();
     std::vector<bool> taken(bands.size());

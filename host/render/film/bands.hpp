@@ -3,6 +3,7 @@
 #include <CL/opencl.hpp>
 #include <vector>
 
+#include "device/queue.hpp"
 #include "render/kernels/layout.hpp"
 #include "rt_types.h"
 
@@ -28,7 +29,7 @@ struct GroupRows {
 
 // Enqueues copies of these bands of a picture; each keeps its position. `row_bytes` is the size of a row of pixels. Bands at
 // equal distances share one copy, because each copy costs a GPU's driver 6 us. If given, `events` gets the event of each copy.
-void read_bands(cl::CommandQueue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
+void read_bands(Queue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
                 std::vector<cl::Event>* events = nullptr);
 
 }  // namespace clarity

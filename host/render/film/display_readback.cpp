@@ -25,7 +25,7 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
         image.mapped_ = kernels_.map_tones(film.sums, tones, pixels, settings);
         const std::vector<cl::Event> after = {image.mapped_};
         if (overlapped && !copies_) copies_ = device_->with_own_queue();
-        cl::CommandQueue& copies = overlapped ? copies_->queue() : device_->queue();
+        Queue& copies = overlapped ? copies_->queue() : device_->queue();
         copies.enqueueReadBuffer(tones, CL_FALSE, 0, image.bytes(), image.memory_.get(), &after, &image.copied_);
         display.copied = image.copied_;
         device_->queue().flush();  // otherwise the other queue waits for commands that are not submitted

@@ -70,7 +70,7 @@ FilmKernels::~FilmKernels() {
 }
 
 cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned count, CounterWidth width) {
-    cl::CommandQueue& queue = device_->queue();
+    Queue& queue = device_->queue();
     const cl::Buffer& out = sums_.fit(device_->context(), kSumBytes);
     if (!read_sums_) read_sums_ = memory_.lend(kSumBytes);
     queue.enqueueFillBuffer(out, cl_uint(0), 0, kSumBytes);

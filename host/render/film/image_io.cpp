@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "base/files/pending_write.hpp"
+#include "base/timeline.hpp"
 #include "render/film/png_text.hpp"
 
 // Static, because the window links the stb library too.
@@ -205,6 +206,7 @@ PictureNotes picture_notes() {
 }
 
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes) {
+    const timeline::Scope span("write", [&] { return "write " + path; });
     const PendingWrite pending;
     check_ending(path);
     const Format format = format_of(path);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "device/queue.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/kernels/kernel_arguments.hpp"
 
@@ -15,9 +16,9 @@ class OverflowCounter {
     // Sets the argument if the kernel has it. Call clear() before.
     void bind(KernelArguments& kernel) const;
     // Enqueues a reset to zero.
-    void clear(cl::CommandQueue& queue);
+    void clear(Queue& queue);
     // Waits for all queued commands and returns how many stacks were full since clear().
-    uint64_t read(cl::CommandQueue& queue) const;
+    uint64_t read(Queue& queue) const;
 
  private:
     GrowingBuffer count_{CL_MEM_READ_WRITE};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel_for.hpp"
+#include "base/timeline.hpp"
 #include "device/cl_errors.hpp"
 #include "device/launch_limit.hpp"
 #include "render/film/bands.hpp"
@@ -169,7 +170,7 @@ struct FrameRenderer::Impl {
     LaunchTimes launch(const Picture& picture, unsigned sample, unsigned at_once, const cl::Buffer& into,
                        const SideWork& side_work) {
         const auto& [prepared, settings, view_of, shared, progress] = picture;
-        cl::CommandQueue& queue = device->queue();
+        Queue& queue = device->queue();
         const unsigned layers = sums_samples ? 1 : at_once;
         std::vector<rt_frame> frames;
         for (unsigned layer = 0; layer < layers; ++layer) {
@@ -255,6 +256,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
         throw Error(Exit::failed, "tracing: the view has kinds of lights or surfaces that the kernels were not compiled for: " +
                                       std::string("prepare the scene with the view's optics in the settings"));
     return wrap_cl_errors(*im.device, "tracing", [&] {
+        const timeline::Scope span("frame", "trace samples");
         const Impl::Picture picture{prepared, settings, view, shared, progress};
         im.begin(picture);
         // If the last picture was displayed, tone mapping and copy are queued right behind the trace, so that the host waits

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "base/timeline.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/kernels/scene_buffers.hpp"
 
@@ -88,7 +89,7 @@ class Uploader {
  private:
     Device& device_;
     Progress& progress_;
-    cl::CommandQueue queue_;  // its own, so that frames continue in the device's queue
+    Queue queue_;  // its own, so that frames continue in the device's queue
     uint64_t total_ = 0, done_ = 0;
 };
 
@@ -150,6 +151,7 @@ void add_slots(const AccelData& accel, std::vector<Content>& contents) {
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
                          Progress& progress)
     : loss_(device.loss()), scene_(std::move(scene)), accel_(std::move(accel)) {
+    const timeline::Scope span("copy", "bring the scene to the device");
     for (const Material& material : scene_->materials) {
         materials_.push_back(material.values);
         layers_.push_back(material.values.layers);
@@ -253,7 +255,7 @@ DeviceScene::Moving DeviceScene::moving() const {
     return {buffers_.at(kLeaves), buffers_.at(kInstances), buffers_.at(kNormals), slots_, bounds_, roots_};
 }
 
-void DeviceScene::complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
+void DeviceScene::complete(Queue& queue, const cl::Buffer& frames, size_t count) const {
     if (!bounds_()) return;
     for (size_t i = 0; i < count; ++i) {
         const size_t frame = i * sizeof(rt_frame);
@@ -282,7 +284,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> stil
     // A copy on the device, into which the normals of the deformed meshes are written.
     const size_t normal_bytes = scene_->normals.size() * sizeof(float);
     const cl::Buffer normals(device.context(), CL_MEM_READ_ONLY, normal_bytes);
-    cl::CommandQueue queue(device.context(), device.info().cl_device);
+    Queue queue(device.context(), device.info().cl_device);
     queue.enqueueCopyBuffer(buffers_[kNormals], normals, 0, 0, normal_bytes);
     for (const PosedMesh& mesh : deformed)
         if (!mesh.normals.empty())

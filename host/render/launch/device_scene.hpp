@@ -45,7 +45,7 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     bool has_triangles() const { return has_triangles_; }
 
     // Writes bounds and root into `count` rt_frame, if the host does not know them.
-    void complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const;
+    void complete(Queue& queue, const cl::Buffer& frames, size_t count) const;
     // Sets the kernel's scene arguments. `lights` comes from the frame. If given, `materials` and `layers` replace the scene's.
     void bind(KernelArguments& kernel, const cl::Buffer& lights, const cl::Buffer* materials = nullptr,
               const cl::Buffer* layers = nullptr) const;

@@ -9,7 +9,7 @@
 
 namespace clarity {
 
-LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, unsigned group_count, unsigned most,
+LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_count, unsigned most,
                           const std::function<Piece(unsigned first, unsigned count)>& enqueue,
                           const std::function<void()>& go_on, const SideWork& side_work) {
     LaunchTimes times;
@@ -42,7 +42,7 @@ LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, unsigne
     return times;
 }
 
-LaunchTimes Launcher::run(const Device& device, cl::CommandQueue& queue, KernelArguments& kernel, unsigned group_count,
+LaunchTimes Launcher::run(const Device& device, Queue& queue, KernelArguments& kernel, unsigned group_count,
                           unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;

@@ -32,14 +32,13 @@ class Launcher {
     // Runs groups [0, group_count) in pieces of at most `most`. `enqueue` enqueues one piece. `go_on` is called between pieces
     // and stops the run by throwing. The call waits for side_work.behind with the last piece; its time is in none of the
     // returned times. queue: of the device. Throws Error(failed) if a piece does not end (device/launch_limit.hpp).
-    LaunchTimes run(const Device& device, cl::CommandQueue& queue, unsigned group_count, unsigned most,
+    LaunchTimes run(const Device& device, Queue& queue, unsigned group_count, unsigned most,
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
                     const SideWork& side_work = {});
     // Runs groups [begin, begin + group_count) of `group_size` work-items. The argument `first_group` (a uint) receives the
     // number of a piece's first group. The global offset stays zero, because PoCL compiles a kernel again for another offset.
-    LaunchTimes run(const Device& device, cl::CommandQueue& queue, KernelArguments& kernel, unsigned group_count,
-                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0,
-                    const SideWork& side_work = {});
+    LaunchTimes run(const Device& device, Queue& queue, KernelArguments& kernel, unsigned group_count, unsigned group_size,
+                    const std::function<void()>& go_on, unsigned begin = 0, const SideWork& side_work = {});
     void forget() { pace_.forget(); }
     void slow_down(double times) { pace_.slow_down(times); }
     // Expected time of that many groups, in ms; infinite if nothing is known.

@@ -22,8 +22,8 @@ void check_materials(const Scene& scene, const std::vector<MaterialValues>& mate
 
 }  // namespace
 
-void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device,
-                        const std::vector<rt_frame>& frames, const View& view, const std::vector<rt_u32>& rows) {
+void ViewBuffers::write(Queue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
+                        const View& view, const std::vector<rt_u32>& rows) {
     own_materials_ = !view.materials.empty();
     if (own_materials_) check_materials(scene, view.materials);
     const size_t frame_bytes = frames.size() * sizeof(rt_frame), row_bytes = rows.size() * sizeof(rt_u32);
@@ -41,7 +41,7 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
     layers_.write(queue, material_layers_.data(), material_layers_.size() * sizeof(rt_layers));
 }
 
-void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
+void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
                                  const View& view, const DeviceScene* moved) {
     const auto same = [](const auto& a, const auto& b) {
         return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
@@ -81,7 +81,7 @@ void ViewBuffers::write_emitters(cl::CommandQueue& queue, const Scene& scene, co
     emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view)};
 }
 
-void UploadedBuffer::write(cl::CommandQueue& queue, const void* data, size_t bytes) {
+void UploadedBuffer::write(Queue& queue, const void* data, size_t bytes) {
     const cl::Buffer before = buffer_.get();
     const cl::Buffer& to = buffer_.fit(queue.getInfo<CL_QUEUE_CONTEXT>(), bytes);
     const bool same =

@@ -1,5 +1,6 @@
 // view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
 #pragma once
+#include "device/queue.hpp"
 #include "render/accel/accel_build.hpp"
 #include "render/emitters/sky_table.hpp"
 #include "render/film/growing_buffer.hpp"
@@ -14,7 +15,7 @@ namespace clarity {
 class UploadedBuffer {
  public:
     ~UploadedBuffer();
-    void write(cl::CommandQueue& queue, const void* data, size_t bytes);
+    void write(Queue& queue, const void* data, size_t bytes);
     const cl::Buffer& get() const { return buffer_.get(); }
 
  private:
@@ -33,13 +34,13 @@ class ViewBuffers {
     // on_device: the buffers that the frames are traced in.
     // Throws Error(failed) if the view's materials do not match the scene's, since kernels index materials and textures by
     // number.
-    void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
+    void write(Queue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
                const View& view, const std::vector<rt_u32>& rows = {});
     // Uploads the table of emitters, for kernels with kPicksLights. The view is that of write(). Makes the table only if the
     // structure, the lights or the materials have changed, or after forget_emitters(). moved: the buffers of a structure that
     // was moved on the device, of which surfaces that emit are read back; nullptr: it is where accel has it.
-    void write_emitters(cl::CommandQueue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
-                        const View& view, const DeviceScene* moved = nullptr);
+    void write_emitters(Queue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel, const View& view,
+                        const DeviceScene* moved = nullptr);
     void forget_emitters() { emitters_of_ = {}; }
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets `frame` and the scene's arguments of the kernel.

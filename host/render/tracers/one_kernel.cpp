@@ -26,7 +26,7 @@ cl::Event OneKernel::begin_count(FilmKernels& film) const {
     return film.begin_sum(counters_.get(), counted_, FilmKernels::CounterWidth::bits32);
 }
 
-uint64_t OneKernel::overflows(cl::CommandQueue& queue) const {
+uint64_t OneKernel::overflows(Queue& queue) const {
     return overflows_.read(queue);
 }
 

@@ -13,7 +13,7 @@ class OneKernel : public FrameTracer {
     LaunchTimes trace(Launcher& launcher, const FrameLaunch& frame, const std::function<void()>& go_on,
                       const SideWork& side_work) override;
     cl::Event begin_count(FilmKernels& film) const override;
-    uint64_t overflows(cl::CommandQueue& queue) const override;
+    uint64_t overflows(Queue& queue) const override;
 
  private:
     KernelArguments kernel_;

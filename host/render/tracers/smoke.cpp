@@ -16,7 +16,7 @@ namespace {
 struct SmallFrame {
     std::shared_ptr<const Prepared> prepared;
     std::unique_ptr<FrameTracer> tracer;
-    cl::CommandQueue queue;
+    Queue queue;
     cl::Buffer film, distances;
     ViewBuffers buffers;
     Launcher launcher;
@@ -27,7 +27,7 @@ struct SmallFrame {
         const auto buffer = [&](size_t bytes) {
             return cl::Buffer(device->context(), CL_MEM_READ_WRITE, std::max<size_t>(bytes, 4096));
         };
-        queue = cl::CommandQueue(device->context(), device->info().cl_device, CL_QUEUE_PROFILING_ENABLE);
+        queue = Queue(device->context(), device->info().cl_device, true);
         film = buffer(size_t(width) * height * find_aov(settings.aov).film_channels() * sizeof(float) *
                       film_planes(prepared->program->row));
         distances = buffer(layout.packets(width, height) * layout.rays() * sizeof(float));

@@ -25,7 +25,7 @@ struct FrameLaunch {
     const Settings& settings;  // the frame's size and depth, and others that act at once
     const View& view;
     const ViewBuffers& buffers;  // with an rt_frame for each sample
-    cl::CommandQueue& queue;
+    Queue& queue;
     const cl::Buffer &film, &distances;
     unsigned begin = 0, groups = 1, sample = 0;
 };
@@ -45,7 +45,7 @@ class FrameTracer {
     // Enqueues the sum of the last launch's ray counters; FilmKernels::end_sum() returns it. Only if counts_rays().
     virtual cl::Event begin_count(FilmKernels& film) const = 0;
     // How many traversal stacks of a debug program were full since the launch of work-group 0. Only if not counts_rays().
-    virtual uint64_t overflows(cl::CommandQueue& queue) const = 0;
+    virtual uint64_t overflows(Queue& queue) const = 0;
 
  protected:
     const std::shared_ptr<Device> device_;

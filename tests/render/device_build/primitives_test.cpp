@@ -35,7 +35,7 @@ class DeviceBuild : public ::testing::TestWithParam<BuildForm> {
         return values;
     }
     BuildKernels kernels_{device(), GetParam()};
-    cl::CommandQueue& queue_ = device()->queue();
+    Queue& queue_ = device()->queue();
     std::mt19937_64 random_{20};
 
     // keys: as wide as T. Sorts by all counts of kCounts, with keys of which many are equal and keys that differ everywhere.

@@ -285,7 +285,7 @@ TEST_P(DeviceTopology, DISABLED_Times) {
             const cl::Buffer boxes = kernels_.buffer(count * sizeof(rt_prim)), order = kernels_.buffer(4 * count);
             const uint64_t elements = layout.elements(0, count, params.data());
             const cl::Buffer slot = kernels_.buffer(128 * elements);
-            cl::CommandQueue& queue = device()->queue();
+            Queue& queue = device()->queue();
             queue.enqueueWriteBuffer(boxes, CL_TRUE, 0, count * sizeof(rt_prim), scene.data());
             const rt_u32 prims = plan.add(boxes), slots = plan.add(slot), leaves = plan.add(order);
             const TreePlace place(slots, plan.add(kernels_.buffer(8 * elements)), count, elements);

@@ -183,7 +183,7 @@ std::vector<LightDraw> LightBench::run(const Point& at, const Numbers& numbers, 
         std::vector<float> in(kIn * count, 0.5f), out(kOut * count);
         for (size_t i = 0; i < numbers.size(); ++i)
             for (unsigned k = 0; k < kIn; ++k) in[k * count + i] = numbers[i][k];
-        cl::CommandQueue& queue = im.device->queue();
+        Queue& queue = im.device->queue();
         Settings settings = im.prepared->settings;
         im.buffers.write(queue, *im.scene, *im.prepared->on_device,
                          {make_frame(im.view, settings, im.prepared->layout, *im.prepared->accel, 0)}, im.view);

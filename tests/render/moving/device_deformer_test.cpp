@@ -132,7 +132,7 @@ class DeviceDeformerTest : public ::testing::TestWithParam<BuildForm> {
         queue().enqueueReadBuffer(buffer, CL_TRUE, 0, 4 * values.size(), values.data());
         return values;
     }
-    cl::CommandQueue& queue() { return kernels_.device().queue(); }
+    Queue& queue() { return kernels_.device().queue(); }
     void make(const std::vector<Deformation>& deformations) {
         std::vector<const Deformation*> meshes;
         for (const Deformation& d : deformations) meshes.push_back(&d);

@@ -44,7 +44,7 @@ class FailingDevice : public ::testing::Test {
     }
     // Without a context and a queue, every call of a device fails.
     void lose(Team& team, size_t device) {
-        team.devices[device]->queue() = cl::CommandQueue();
+        team.devices[device]->queue() = Queue();
         team.devices[device]->context() = cl::Context();
     }
     void expect_whole(Team& team, Warnings& warnings) {

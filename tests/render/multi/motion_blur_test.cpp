@@ -242,7 +242,7 @@ TEST_F(Blur, APictureThatLostADeviceBeginsAnew) {
     bool shared = false;
     for (int picture = 0; picture < 20 && !shared; ++picture) shared = both_take_part();
     ASSERT_TRUE(shared);
-    team.devices[1]->queue() = cl::CommandQueue();
+    team.devices[1]->queue() = Queue();
     team.devices[1]->context() = cl::Context();
     EXPECT_THROW(team.frames.trace(prepared, settings, view_of(*scene), 2, false, team.progress), SamplesLost);
     EXPECT_EQ(team.frames.trace(prepared, settings, view_of(*scene), 0, false, team.progress, 8).samples, 8u);

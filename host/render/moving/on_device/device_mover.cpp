@@ -53,7 +53,7 @@ const Problem& DeviceMover::cannot() const {
 // Sends the pose of the build, and refits all of it once, to know the costs of the build.
 void DeviceMover::start() {
     const BuildScene& build = built_->scene;
-    cl::CommandQueue& queue = device_->queue();
+    Queue& queue = device_->queue();
     const auto filled = [&](const void* data, size_t bytes) {
         cl::Buffer buffer = kernels_.buffer(bytes);
         if (bytes > 0) queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);

@@ -212,7 +212,7 @@ void DeviceStructure::build(rt_u32 number, bool with_cost) {
 void DeviceStructure::take_tree(rt_u32 number, const DeviceStructure& from) {
     const DeviceGroups::Group& group = groups_.groups_[number];
     const rt_accel& accel = *groups_.built_->layout->accel;
-    cl::CommandQueue& queue = groups_.kernels_.device().queue();
+    Queue& queue = groups_.kernels_.device().queue();
     const bool built = from.is_built_[number] != 0;
     const DeviceGroups::Place& place = built ? group.built : group.at_rest;
     const uint64_t leaves = group.count * sizeof(rt_packed_prim), first_leaf = group.first_leaf * sizeof(rt_packed_prim);

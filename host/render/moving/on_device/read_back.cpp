@@ -9,7 +9,7 @@ AccelData read_back(const AccelData& built, const DeviceScene& moved) {
     const DeviceScene::Moving buffers = moved.moving();
     const auto context = buffers.leaves.getInfo<CL_MEM_CONTEXT>();
     // Its own queue, so that frames go on.
-    const cl::CommandQueue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
+    const Queue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
     AccelData now;
     static_cast<AccelFacts&>(now) = built;
     const rt_accel& table = *built.layout->accel;

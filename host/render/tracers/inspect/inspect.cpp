@@ -84,7 +84,7 @@ struct Inspector::Impl {
 
     std::shared_ptr<Device> device;
     ProgramCache programs;
-    cl::CommandQueue queue;  // its own, so that frames continue in the device's queue
+    Queue queue;  // its own, so that frames continue in the device's queue
     ViewBuffers view;
     GrowingBuffer records{CL_MEM_READ_WRITE}, summary{CL_MEM_WRITE_ONLY}, distances{CL_MEM_READ_WRITE};
 };

@@ -23,7 +23,7 @@ const cl::Buffer& RayQueries::Counted::fit(const cl::Context& context, size_t ra
     return fitting;
 }
 
-void RayQueries::Counted::take(cl::CommandQueue& queue, const std::function<void(cl_uint parity)>& enqueue) {
+void RayQueries::Counted::take(Queue& queue, const std::function<void(cl_uint parity)>& enqueue) {
     parity.take([&](cl_uint) { queue.enqueueFillBuffer(buffer.get(), cl_uint(0), 0, 2 * sizeof(cl_uint)); }, enqueue);
 }
 
@@ -54,7 +54,7 @@ LaunchTimes RayQueries::trace_at_once(const Launch& launch) {
 }
 
 LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
-    cl::CommandQueue& queue = device_->queue();
+    Queue& queue = device_->queue();
     const cl::Buffer& list = long_rays_.fit(device_->context(), launch.blocks);
     KernelArguments first = kernel_of(launch),
                     rest = kernel_of(launch, launch.any_hit ? "trace_long_any" : "trace_long_closest");
@@ -79,7 +79,7 @@ LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
 }
 
 LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
-    cl::CommandQueue& queue = device_->queue();
+    Queue& queue = device_->queue();
     const unsigned most = std::max(1u, device_->info().compute_units) * kFetchGroupsPerUnit;
     KernelArguments kernel = kernel_of(launch);
     kernel.set("share", cl_uint(launch.blocks / (most * kGroup) >= kManyEach ? 2 : 1));

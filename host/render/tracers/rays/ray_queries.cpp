@@ -60,7 +60,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         Progress never_cancelled;
         const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
         tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
-        cl::CommandQueue& queue = device_->queue();
+        Queue& queue = device_->queue();
         view_.write(queue, *prepared.scene, *prepared.on_device,
                     {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));

@@ -49,7 +49,7 @@ class RayQueries {
         GrowingBuffer buffer{CL_MEM_READ_WRITE};
         PingPong parity;
         const cl::Buffer& fit(const cl::Context& context, size_t rays);
-        void take(cl::CommandQueue& queue, const std::function<void(cl_uint parity)>& enqueue);
+        void take(Queue& queue, const std::function<void(cl_uint parity)>& enqueue);
     };
     KernelArguments kernel_of(const Launch& launch, const char* entry = nullptr) const;
     LaunchTimes trace(const Launch& launch);

@@ -47,7 +47,7 @@ class Wavefront : public FrameTracer {
     cl::Event begin_count(FilmKernels& film) const override {
         return film.begin_sum(counters_.get(), work_groups_, FilmKernels::CounterWidth::bits64);
     }
-    uint64_t overflows(cl::CommandQueue&) const override { return 0; }
+    uint64_t overflows(Queue&) const override { return 0; }
 
  private:
     // How many rays a level's queue holds, and for how many groups of pixels that is meant.
@@ -93,7 +93,7 @@ void Wavefront::make_buffers(const FrameLaunch& frame, const Room& room) {
 }
 
 Launcher::Piece Wavefront::enqueue(const FrameLaunch& frame, const Room& room, unsigned first, unsigned count) {
-    cl::CommandQueue& queue = frame.queue;
+    Queue& queue = frame.queue;
     const size_t local = frame.prepared.layout.local_size(), global = work_groups_ * local;
     const cl::Buffer& sums = room.splits && frame.sample > 0 ? sums_.get() : frame.film;
     first += frame.begin;

@@ -43,7 +43,7 @@ class LaneKernel {
         std::vector<float> found(padded * writes_);
         const cl::Buffer in(device().context(), CL_MEM_READ_ONLY, rows.size() * 4),
             out(device().context(), CL_MEM_WRITE_ONLY, found.size() * 4);
-        cl::CommandQueue& queue = device().queue();
+        Queue& queue = device().queue();
         queue.enqueueWriteBuffer(in, CL_TRUE, 0, rows.size() * 4, rows.data());
         kernel_.setArg(0, in);
         kernel_.setArg(1, out);
