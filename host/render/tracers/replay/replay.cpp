@@ -54,7 +54,7 @@ struct PathReplayer::Impl {
 
     std::shared_ptr<Device> device;
     ProgramCache programs;
-    cl::CommandQueue queue;  // its own, so that frames continue in the device's queue
+    Queue queue;  // its own, so that frames continue in the device's queue
     ViewBuffers view;
     GrowingBuffer records{CL_MEM_WRITE_ONLY}, counts{CL_MEM_WRITE_ONLY}, lights{CL_MEM_READ_WRITE},
         distances{CL_MEM_READ_WRITE}, film{CL_MEM_READ_WRITE};
