@@ -39,7 +39,7 @@ set(CPACK_PACKAGE_CONTACT "Clarity maintainers <maintainers@clarity.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray-tracing workbench on OpenCL")
 set(CPACK_PACKAGE_DESCRIPTION "Clarity renders scenes by ray tracing on GPUs, or on CPUs through PoCL. Its window shows what structures and
 settings cost while it traces. The package has the program, its importers and structures, the SDK for more of
-them, sample scenes, and recipes for farms of machines.")
+them, a library for C and Python, sample scenes, and recipes for farms of machines.")
 set(CPACK_RESOURCE_FILE_README ${PROJECT_SOURCE_DIR}/README.md)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
@@ -54,5 +54,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The window draws with OpenGL, which GLFW and epoxy load while they run.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "util-linux")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, libgl1, libgl1-mesa-dri")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, slurm-client, openmpi-bin, ffmpeg, imagemagick")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, slurm-client, openmpi-bin, ffmpeg, imagemagick, python3-numpy")
 include(CPack)

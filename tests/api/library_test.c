@@ -134,9 +134,9 @@ static void test_rays(const clarity_scene* scene, const char* accel, const char*
     CHECK(occluded[0] == 1 && occluded[1] == 0 && occluded[2] == 0);
 
     /* Doubles, z before y before x, and one direction for all. */
-    const double backwards[] = {4, 0.25, 0.75, 4, 0, 3}, down[] = {0, 0, -2}, t_min = 1, t_max = 2.5;
+    const double backwards[] = {4, 0.25, 0.75, 3.5, 0.5, 0.5, 2.5, 0.5, 0.5}, down[] = {0, 0, -2}, t_min = 1.5, t_max = 2.5;
     query.type = CLARITY_FLOAT64;
-    query.count = 2;
+    query.count = 3;
     query.origins = backwards + 2;
     query.origin_steps[0] = 3 * sizeof(double);
     query.origin_steps[1] = -(int64_t)sizeof(double);
@@ -148,7 +148,7 @@ static void test_rays(const clarity_scene* scene, const char* accel, const char*
     query.t_min_step = query.t_max_step = 0;
     hits = hits_into(t, NULL, NULL, NULL);
     WORKS(clarity_closest(tracer, &query, &hits, NULL));
-    CHECK(t[0] == 2 && isinf(t[1]));
+    CHECK(t[0] == 2 && t[1] == 1.75f && isinf(t[2]));
 
     query.type = 5;
     FAILS(clarity_closest(tracer, &query, &hits, NULL), CLARITY_USAGE, "unknown type 5");

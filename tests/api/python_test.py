@@ -2,6 +2,7 @@
 Run by ctest, with CLARITY_PROGRAM: the program of the build."""
 import logging
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -329,6 +330,17 @@ print(bool(rt.any([0, 0, 0], [0, 0, -1])))
         result = self.run_python("import clarity", env=environment)
         self.assertIn("ImportError", result.stderr)
         self.assertIn("was built with another header", result.stderr)
+
+    def test_follow_the_page(self):
+        page = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../docs/python.md")
+        with open(page) as file:
+            blocks = re.findall(r"```python\n(.*?)```", file.read(), re.S)
+        self.assertEqual(len(blocks), 1)
+        result = self.run_python(blocks[0].replace("640, 480", "64, 48"), cwd=self.folder)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertRegex(result.stdout, r"79202 triangles(.|\n)*\(200, 200\) 1\.90(.|\n)*in shadow: 0\.4")
+        depth = np.load(os.path.join(self.folder, "depth.npy"))
+        self.assertTrue(depth.shape == (48, 64) and 0.2 < np.isfinite(depth).mean() < 0.3 and depth.min() > 1)
 
     def test_log_to_logging(self):
         lines = """
