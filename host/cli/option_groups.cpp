@@ -126,7 +126,8 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
         "A setting as key=value (ray_slots=16), or a change of the view: "
         "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, camera.aperture=f, camera.focus=f, background=r,g,b, ambient=r,g,b, "
         "sky=KIND, sky.KEY=value, "
-        "light.N=off|point,x,y,z,r,g,b|rect,..., light.N.KEY=value, material.N.KEY=value (keys of text scenes), "
+        "light.N=off|point,x,y,z,r,g,b|rect,..., light.N.KEY=value, material.N.KEY=value (keys of text scenes, also maps: a "
+        "texture or a picture's file), "
         "hide=3,5-9 (instances); may be repeated");
 }
 

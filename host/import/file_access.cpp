@@ -71,8 +71,10 @@ void check_model_file(const std::string& path) {
     }
 }
 
-FileAccess::FileAccess(const std::vector<std::string>& files, const std::vector<std::string>& search_paths) {
+FileAccess::FileAccess(const std::vector<std::string>& files, const std::vector<std::string>& search_paths,
+                       const std::vector<PictureFile>& pictures) {
     for (const std::string& file : files) add_unique(folders_, canonical_or_empty(folder_of(file)));
+    for (const PictureFile& picture : pictures) add_unique(folders_, canonical_or_empty(folder_of(picture.path)));
     for (const std::string& path : search_paths) {
         const std::string folder = canonical_or_empty(path);
         if (folder.empty()) throw Error(Exit::usage, path + ": search path: no such folder");

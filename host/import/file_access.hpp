@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "import/import.hpp"
+
 namespace clarity::import {
 
 // Throws Error(import_failed) "FILE: why" if the file is missing, a folder, a device, or not readable.
@@ -15,7 +17,9 @@ void check_model_file(const std::string& path);
 // named, and from the search paths. Symbolic links are resolved first; the target decides.
 class FileAccess {
  public:
-    FileAccess(const std::vector<std::string>& files, const std::vector<std::string>& search_paths);
+    // pictures: that the user named, too.
+    FileAccess(const std::vector<std::string>& files, const std::vector<std::string>& search_paths,
+               const std::vector<PictureFile>& pictures = {});
 
     // Canonical folders, without duplicates.
     const std::vector<std::string>& folders() const { return folders_; }

@@ -13,9 +13,10 @@ namespace {
 
 Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                         Progress& progress) {
-    const FileAccess access(files, options.search_paths);
+    const FileAccess access(files, options.search_paths, options.pictures);
     SceneBuilder builder(plugins, parse_importer_choices(plugins, options.importers), access, progress);
     for (const std::string& file : files) builder.add_root(file);
+    for (const PictureFile& picture : options.pictures) builder.add_picture(picture.path, picture.space);
     return builder.take();
 }
 

@@ -7,6 +7,7 @@
 #include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "plugin/registry.hpp"
+#include "scene/map_edit.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::import {
@@ -17,6 +18,7 @@ struct ImportOptions {
     uint64_t memory_limit_bytes = 0;        // of the worker's address space; 0: chosen by the file's size
     std::vector<std::string> search_paths;  // folders that it may read from, besides the folder of each file
     std::vector<std::string> importers;     // "ID,key=value...": parameters of importers; see importer_choice.hpp
+    std::vector<PictureFile> pictures;      // become textures behind those of the files; their names are whole paths
     bool log_warnings = true;               // false: the caller shows Scene::warnings itself
     std::string worker;                     // program that runs as the worker; empty: CLARITY_WORKER, or this program
 };

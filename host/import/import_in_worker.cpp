@@ -15,6 +15,7 @@
 #include "base/files/packed_file.hpp"
 #include "base/files/parcel.hpp"
 #include "base/log.hpp"
+#include "base/numbers.hpp"
 #include "base/physical_memory.hpp"
 #include "base/printable.hpp"
 #include "import/import.hpp"
@@ -30,19 +31,32 @@ namespace {
 struct ImportJob {
     worker::WorkerLimits limits;
     std::vector<std::string> plugins, search_paths, importers, files;
+    std::vector<PictureFile> pictures;
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.limits, self.plugins, self.search_paths, self.importers, self.files);
+        parcel(self.limits, self.plugins, self.search_paths, self.importers, self.files, self.pictures);
     }
 };
 
 using worker::MessageKind;
 
-// Names each file to the parent before it is imported, and waits until the worker's limits allow for it.
+// Names each file to the parent before it is imported, and what pictures take, and waits until the worker's limits allow for
+// it.
 class ImportProgress : public worker::ChannelProgress, public ImportObserver {
  public:
-    void running(const std::string& file, const std::string& importer) override {
-        worker::say_step(file + '\n' + importer);
+    void running(const std::string& file, const std::string& importer) override { ask(file + '\n' + importer); }
+    void decoding(uint64_t bytes) override {
+        constexpr uint64_t kWorthAsking = 1 << 20;
+        waiting_ += bytes;
+        if (waiting_ < kWorthAsking) return;
+        ask('\n' + std::to_string(waiting_));
+        waiting_ = 0;
+    }
+
+ private:
+    // Returns once the parent's limits allow for it.
+    static void ask(const std::string& step) {
+        worker::say_step(step);
         worker::Message answer;
         do {
             pollfd ready = {worker::kChannelFd, POLLIN, 0};
@@ -51,10 +65,11 @@ class ImportProgress : public worker::ChannelProgress, public ImportObserver {
             if (answer.kind == MessageKind::cancel) throw Cancelled();
         } while (answer.kind != MessageKind::proceed);
     }
+    uint64_t waiting_ = 0;  // bytes of pictures that were not asked for yet
 };
 
 void import_files(const ImportJob& job, ImportProgress& progress) {
-    const FileAccess access(job.files, job.search_paths);
+    const FileAccess access(job.files, job.search_paths, job.pictures);
     const PluginRegistry plugins = PluginRegistry::of(job.plugins);
     const ImporterParameters parameters = parse_importer_choices(plugins, job.importers);
     // A file that the user named may be a link to another folder. Only the target itself may be read, not the files beside it.
@@ -63,6 +78,7 @@ void import_files(const ImportJob& job, ImportProgress& progress) {
     worker::enter_sandbox(worker::WorkerKind::parser, access.folders(), named, job.limits);
     SceneBuilder builder(plugins, parameters, access, progress, &progress);
     for (const std::string& file : job.files) builder.add_root(file);
+    for (const PictureFile& picture : job.pictures) builder.add_picture(picture.path, picture.space);
     SentScene result{builder.take()};
     try {
         worker::answer(result);
@@ -71,8 +87,8 @@ void import_files(const ImportJob& job, ImportProgress& progress) {
     }
 }
 
-// The work of kImportJob. Its steps are a file, a line break and the importer that reads it, and it waits with each for
-// MessageKind::proceed.
+// The work of kImportJob. Its steps are a file, a line break and the importer that reads it, or a line break and the bytes that
+// pictures take. It waits with each for MessageKind::proceed.
 void import_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<ImportJob>(arguments);
     ImportProgress progress;
@@ -83,18 +99,20 @@ void import_job(ParcelReader& arguments) {
     }
 }
 
-// Limits of a worker. They grow with the sizes of all files that it reads, included files too.
+// Limits of a worker. They grow with the sizes of all files that it reads, included files too, and of decoded pictures.
 class Limits {
  public:
     explicit Limits(const ImportOptions& options) : options_(options) {}
     void add_file(const std::string& path) { file_bytes_ += std::min(stated_content_bytes(path), uint64_t(1) << 50); }
+    // Of what is small in files: pictures.
+    void add_memory(uint64_t bytes) { more_bytes_ += std::min(bytes, uint64_t(1) << 50); }
     // Seconds without progress. Small files are read in milliseconds; a damaged file that puts a parser into an endless loop
     // must be stopped within ten seconds.
     double idle_s() const { return std::min(7 + 2 * static_cast<double>(file_bytes_) / (1 << 20), options_.time_limit_s); }
     uint64_t cpu_s() const { return static_cast<uint64_t>(std::ceil(std::clamp(options_.time_limit_s, 1.0, 1e9))); }
     uint64_t memory_bytes() const {
         if (options_.memory_limit_bytes > 0) return options_.memory_limit_bytes;
-        return std::min(std::max(uint64_t(1) << 30, 64 * file_bytes_), most_memory_bytes());
+        return std::min(std::max(uint64_t(1) << 30, 64 * file_bytes_) + more_bytes_, most_memory_bytes());
     }
     uint64_t most_memory_bytes() const {
         if (options_.memory_limit_bytes > 0) return options_.memory_limit_bytes;
@@ -103,7 +121,7 @@ class Limits {
 
  private:
     const ImportOptions& options_;
-    uint64_t file_bytes_ = 0;
+    uint64_t file_bytes_ = 0, more_bytes_ = 0;
 };
 
 class Import : public worker::Job {
@@ -117,11 +135,20 @@ class Import : public worker::Job {
     void take_limits() { limits_ = {import_limits_.idle_s(), import_limits_.cpu_s(), import_limits_.memory_bytes()}; }
     void on_step(const std::string& text) override {
         const size_t end = text.find('\n');
+        const uint64_t before = limits_.memory_bytes;
+        if (end == 0) {
+            uint64_t bytes = 0;
+            if (read_number(text.substr(1), bytes)) import_limits_.add_memory(bytes);
+            return proceed(before);
+        }
         what_ = text.substr(0, end);
         importer_ = end == std::string::npos ? "" : text.substr(end + 1);
         who_ = "the importer" + (importer_.empty() ? "" : " " + importer_);
-        const uint64_t before = limits_.memory_bytes;
         import_limits_.add_file(what_);
+        proceed(before);
+    }
+    // before: the limit of memory that the worker has.
+    void proceed(uint64_t before) {
         take_limits();
         process().raise_memory_limit(limits_.memory_bytes - before);
         worker::send_message(process().channel(), {worker::MessageKind::proceed, 0, 0, {}});
@@ -167,7 +194,8 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
                   {},
                   options.search_paths,
                   options.importers,
-                  files};
+                  files,
+                  options.pictures};
     for (const PluginRecord& record : plugins.records())
         if (record.plugin && !record.shadowed && !record.plugin->accel) job.plugins.push_back(record.loaded);
     Import import(limits, files.front());

@@ -51,6 +51,12 @@ const std::array<MapUse, RT_MAP_USES>& map_uses() {
     return uses;
 }
 
+rt_u32 find_map_use(const std::string& name) {
+    for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
+        if (name == map_uses()[use].name) return use;
+    return RT_NONE;
+}
+
 const rt_primitive_kind* map_kind_for_plugins() {
     static const std::vector<rt_key> keys = [] {
         std::vector<rt_key> rows;

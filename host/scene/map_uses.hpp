@@ -17,6 +17,8 @@ struct MapUse {
 
 // By RT_MAP_.
 const std::array<MapUse, RT_MAP_USES>& map_uses();
+// The number of a use by its name; RT_NONE: there is no such use.
+rt_u32 find_map_use(const std::string& name);
 const rt_primitive_kind* map_kind_for_plugins();
 
 // Calls tell(use, map) for each map of a material.

@@ -94,6 +94,7 @@ App::~App() {
     overlay_.reset();
     session_.reset();
     pane_.reset();
+    preview_.reset();
 }
 
 int App::run() {

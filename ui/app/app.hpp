@@ -11,6 +11,7 @@
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_pane.hpp"
+#include "ui/viewport/picture_texture.hpp"
 #include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
@@ -40,6 +41,7 @@ class App {
     void apply_motion(float seconds, const HeldKeys& keys);
     void draw();
     void upload_picture();
+    void upload_preview();
     void finish_frame();
 
     std::atomic<bool> woken_{false};  // set by threads which have news, cleared by turn()
@@ -54,6 +56,8 @@ class App {
     PreferencesSync preferences_sync_;
     HeldKeys held_;
     std::shared_ptr<const Picture> uploaded_;
+    std::unique_ptr<PictureTexture> preview_;
+    std::shared_ptr<const Preview> uploaded_preview_;
     std::string capture_path_;
     double last_turn_s_ = 0;   // start of the last turn, in seconds of the steady clock
     double oldest_key_s_ = 0;  // time of the oldest key event that the coming frame handles; 0: no key event

@@ -33,7 +33,17 @@ void App::draw() {
     draw_keys_hud({0, 0, left, above}, state_);
 }
 
+void App::upload_preview() {
+    const auto preview = session_->preview();
+    if (preview == uploaded_preview_) return;
+    uploaded_preview_ = preview;
+    const bool has_image = preview && preview->image.width > 0;
+    if (!preview_) preview_ = std::make_unique<PictureTexture>();
+    state_.preview_texture = has_image && !preview_->upload(preview->image) ? preview_->name() : 0;
+}
+
 void App::upload_picture() {
+    upload_preview();
     const auto picture = session_->picture();
     if (!picture || picture == uploaded_) return;
     if (const Problem why = pane_->upload(picture)) session_->messages().report(why.text());

@@ -59,12 +59,8 @@ long resident_kilobytes() {
 
 // Applies a change of the view in the words of edit.hpp: "background 1,0,0".
 void edit(Session& session, const std::string& text) {
-    if (!session.ready()) throw Error(Exit::usage, "no scene yet");
     const size_t space = text.find(' ');
-    EditedView edited = edited_view(session.desired);
-    apply_edit(*session.ready()->loaded->scene, edited, text.substr(0, space),
-               space == std::string::npos ? "" : text.substr(space + 1));
-    session.adopt_view(edited);
+    session.apply({text.substr(0, space), space == std::string::npos ? "" : text.substr(space + 1)});
 }
 
 std::string inspection_text(const Session& session) {
@@ -272,6 +268,10 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
     } else if (command == "picture") {
         if (!session.picture()) throw Error(Exit::failed, "no picture yet");
         write_image(text, {}, session.picture()->main.image);
+    } else if (command == "preview") {
+        const auto preview = session.preview();
+        if (!preview || preview->image.width == 0) throw Error(Exit::failed, "no preview yet");
+        write_image(text, {}, preview->image);
     } else if (command == "state") {
         if (text == "reset") window.times = {};
         std::printf("%s\n", state_text(window).c_str());
@@ -340,6 +340,11 @@ std::string Script::state_text(ScriptedWindow& window) const {
                                                {"primitives", tree.primitives},
                                                {"cost_ratio", tree.cost_ratios.back()}});
     }
+    if (const auto preview = session.preview())
+        json["preview"] = {{"material", preview->material},
+                           {"samples", preview->samples},
+                           {"failure", preview->failure},
+                           {"done", preview->done}};
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();
     json["kernel_revision"] = session.sources_revision();

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ui/browser/folder_reader.hpp"
+#include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -36,6 +37,7 @@ Browser& browser() {
 
 std::vector<std::string> extensions_for(const Session& session, BrowseFor what) {
     if (what == BrowseFor::preset) return {"json"};
+    if (what == BrowseFor::picture) return {"png", "jpg", "jpeg", "bmp", "tga", "psd", "gif", "hdr", "ppm", "pgm"};
     std::vector<std::string> all;
     for (const rt_plugin* plugin : session.plugins().importers())
         for (const char* const* e = plugin->importer->extensions; e && *e; ++e) {
@@ -68,6 +70,8 @@ void finish(Session& session, UiState& state, std::vector<std::string> paths) {
         session.open(std::move(paths));
     else if (state.browse_for == BrowseFor::preset)
         attempt(session, [&] { session.load_preset(paths.front()); });
+    else if (state.browse_for == BrowseFor::picture)
+        attempt(session, [&] { give_picture(session, state.picture_for.first, state.picture_for.second, paths.front()); });
     state.browser_open = false;
 }
 
@@ -293,6 +297,8 @@ const char* title_of(BrowseFor what) {
             return "Open a model or a scene";
         case BrowseFor::preset:
             return "Load a preset";
+        case BrowseFor::picture:
+            return "A picture for the material";
         case BrowseFor::folder_of_pictures:
             break;
     }

@@ -14,7 +14,8 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state);
 void draw_output_rows(Session& session, UiState& state);  // in the Render tab: presets, pictures, sequences
 void draw_scene_tab(Session& session, UiState& state);
 void draw_scene_tree(Session& session, UiState& state);
-void draw_material_rows(Session& session);
+void draw_material_rows(Session& session, UiState& state);
+void draw_texture_rows(Session& session, UiState& state, rt_u32 material);
 void draw_object_rows(Session& session, UiState& state);
 void draw_light_rows(Session& session, UiState& state);
 void draw_sky_rows(Session& session);

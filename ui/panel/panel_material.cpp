@@ -1,9 +1,9 @@
 // The rows of the selected object's material.
 #include <imgui.h>
 
+#include <cmath>
 #include <cstring>
 
-#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
@@ -13,6 +13,8 @@
 
 namespace clarity::ui {
 namespace {
+
+constexpr float kPreviewSize = 120;  // pixels along a side, before scaling
 
 std::string material_name(const Scene& scene, size_t index) {
     const std::string& name = scene.materials[index].name;
@@ -34,6 +36,31 @@ void choose_material(Session& session, const Scene& scene, size_t current) {
     ImGui::EndCombo();
 }
 
+// A ball of the material, with what there is to say of it at its right.
+void preview_row(Session& session, const UiState& state, rt_u32 index) {
+    const float size = std::round(kPreviewSize * ui_scale());
+    session.want_preview(index, static_cast<unsigned>(size));
+    const auto preview = session.preview();
+    const bool is_there = preview && preview->material == index;
+    if (is_there && state.preview_texture != 0)
+        ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(state.preview_texture)), {size, size});
+    else
+        ImGui::Dummy({size, size});
+    note_rect("preview");
+    tooltip("the material by the tracer `path`, on a floor of squares under a soft sky and a lamp");
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    ImGui::PushTextWrapPos(0);
+    if (is_there && !preview->failure.empty())
+        wrapped_text("no preview: " + preview->failure, colors::kAmber);
+    else if (!is_there || preview->samples == 0)
+        dim_text("the preview is being made\u2026");
+    else
+        dim_text(plural(preview->samples, "sample"));
+    ImGui::PopTextWrapPos();
+    ImGui::EndGroup();
+}
+
 bool value_rows(MaterialValues& values, float size) {
     bool changed = false;
     for (const Key& key : material_keys()) {
@@ -46,21 +73,9 @@ bool value_rows(MaterialValues& values, float size) {
     return changed;
 }
 
-// The textures of a material, by use. They are those of its file.
-void texture_rows(const Scene& scene, const Material& material, const MaterialValues& values) {
-    const auto row = [&](const MapUse& use, rt_u32 texture) {
-        row_label(use.label, std::string("texture: ") + use.help);
-        ImGui::TextUnformatted(texture_name(scene, texture).c_str());
-        const rt_texture& t = scene.textures[texture];
-        tooltip(std::to_string(t.width) + " x " + std::to_string(t.height) + ", `" + use.name + "` in text scenes");
-    };
-    if (values.texture != RT_NONE) row(map_uses()[RT_MAP_COLOR], values.texture);
-    each_map(scene, material, [&](const MapUse& use, const rt_map& map) { row(use, map.texture); });
-}
-
 }  // namespace
 
-void draw_material_rows(Session& session) {
+void draw_material_rows(Session& session, UiState& state) {
     const auto ready = session.ready();
     if (!ready) return;
     const Scene& scene = *ready->loaded->scene;
@@ -70,20 +85,29 @@ void draw_material_rows(Session& session) {
     }
     const auto index = static_cast<rt_u32>(session.selection.material);
     choose_material(session, scene, index);
+    preview_row(session, state, index);
     MaterialValues values = material(session, index);
     ImGui::PushID(static_cast<int>(index));
     if (value_rows(values, scene_size(session))) edited_material(session, index) = values;
     ImGui::PopID();
-    texture_rows(scene, scene.materials[index], values);
+    draw_texture_rows(session, state, index);
     const MaterialValues& own = scene.materials[index].values;
-    const bool edited = std::memcmp(&material(session, index), &own, sizeof own) != 0;
+    MapEdits without = session.desired.maps;
+    without.reset(index);
+    const bool edited = std::memcmp(&material(session, index), &own, sizeof own) != 0 || without != session.desired.maps;
     ImGui::BeginDisabled(!edited);
     const float half = share_of_line(2);
-    if (button("Reset material", "as the file has it", half)) edited_material(session, index) = own;
+    if (button("Reset material", "as the file has it", half)) {
+        edited_material(session, index) = own;
+        session.desired.maps = std::move(without);
+    }
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::BeginDisabled(session.desired.materials.empty());
-    if (button("Reset all", "every material as the file has it", half)) session.desired.materials.clear();
+    ImGui::BeginDisabled(session.desired.materials.empty() && session.desired.maps.empty());
+    if (button("Reset all", "every material as the file has it", half)) {
+        session.desired.materials.clear();
+        session.desired.maps = {};
+    }
     ImGui::EndDisabled();
 }
 

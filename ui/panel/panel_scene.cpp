@@ -146,7 +146,7 @@ void draw_scene_tab(Session& session, UiState& state) {
     if (folding_section("WHAT IT HOLDS", false)) fact_rows(*ready);
     if (folding_section("TREE")) draw_scene_tree(session, state);
     if (folding_section("OBJECT")) draw_object_rows(session, state);
-    if (folding_section("MATERIAL")) draw_material_rows(session);
+    if (folding_section("MATERIAL")) draw_material_rows(session, state);
     if (folding_section("LIGHTS")) draw_light_rows(session, state);
     if (folding_section("CAMERA")) camera_rows(session, state);
     if (folding_section("BOOKMARKS")) draw_bookmark_rows(session, state);

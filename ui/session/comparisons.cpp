@@ -36,7 +36,8 @@ bool same_view(const View& a, const View& b) {
 }
 
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b) {
-    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose) && a.instances == b.instances && a.apart == b.apart;
+    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose) && a.instances == b.instances && a.maps == b.maps &&
+           a.apart == b.apart;
 }
 
 bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b) {

@@ -33,6 +33,7 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
     if (a.ambient != b.ambient) names.push_back("Ambient light");
     if (!same_edited_sky(a.sky, b.sky)) names.push_back("Sky");
     if (!same_bytes(a.materials, b.materials)) names.push_back("Material");
+    if (a.maps != b.maps) names.push_back("Texture");
     if (a.instances.moved != b.instances.moved) names.push_back("Place of objects");
     if (a.instances.hidden != b.instances.hidden) names.push_back("Visibility");
     if (a.pose.clip != b.pose.clip)

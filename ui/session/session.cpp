@@ -38,14 +38,17 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       libraries_(plugins_, wake),
       frames_(wake),
       inspector_(wake),
+      preview_(plugins_, wake),
       worker_(plugins_, options.import,
               {[this] {
                    frames_.release();
                    inspector_.release();
+                   preview_.release();
                },
                [this] {
                    frames_.resume();
                    inspector_.resume();
+                   preview_.resume();
                }},
               wake) {
     desired.main = {options.device, options.settings};
@@ -55,11 +58,14 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
         if (const rt_plugin* accel = plugins_.accel(desired.main.settings.accel))
             desired.main.settings.accel_params = default_parameters(*accel);
     if (!options.scenes.empty()) open(options.scenes);
+    pictures_ = pictures_of(first_edits_);
 }
 
 void Session::open(std::vector<std::string> files) {
     files_ = std::move(files);
     files_revision_ = ++last_files_revision_;
+    pictures_.clear();
+    waiting_edits_.clear();
 }
 
 void Session::set_accel(const std::string& id) {
@@ -102,6 +108,7 @@ void Session::cancel() {
     else
         desired.other = was.other;
     desired.instances = was.instances;
+    desired.maps = was.maps;
     apart_ = was.apart;
     playback_.rest(desired);
     if (was.pose.time_s) {
@@ -109,6 +116,8 @@ void Session::cancel() {
         desired.pose = was.pose;
     }
     files_ = was.files;
+    pictures_ = was.pictures;
+    waiting_edits_.clear();
     files_revision_ = was.files_revision;
     // The prepared scene already has these settings, so there is nothing to request, unless its devices were closed meanwhile.
     posted_request_.reset();
@@ -137,6 +146,7 @@ void Session::follow_main() {
 PrepareRequest Session::desired_request() const {
     PrepareRequest request;
     request.files = files_;
+    request.pictures = pictures_;
     request.files_revision = files_revision_;
     request.camera = first_camera_;
     request.light = first_light_;
@@ -146,6 +156,7 @@ PrepareRequest Session::desired_request() const {
     // Indices of instances and names of clips are only valid in the scene that they were chosen in.
     if (files_revision_ == viewed_files_revision_) {
         request.instances = desired.instances;
+        request.maps = desired.maps;
         request.apart = apart_;
         if (desired.pose.time_s) request.pose = desired.pose;
         add_optics(request);
@@ -204,7 +215,8 @@ void Session::post_frame() {
     const bool first = !posted_job_.ready;
     const bool moved = !first && (!same_view(job.view, posted_job_.view) ||
                                   !same_pose(job.ready->request.pose, posted_job_.ready->request.pose) ||
-                                  job.ready->request.instances != posted_job_.ready->request.instances);
+                                  job.ready->request.instances != posted_job_.ready->request.instances ||
+                                  job.ready->request.maps != posted_job_.ready->request.maps);
     const double now = now_s();
     if (moved) moved_at_s_ = now;
     moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
@@ -249,6 +261,7 @@ void Session::update(bool gesture) {
     if (picture_ && picture_->job.revision == posted_job_.revision) shown_sides_ = posted_sides_;
     take_saved();
     take_pick();
+    take_preview();
 }
 
 void Session::take_outcomes() {
@@ -266,6 +279,8 @@ void Session::take_outcomes() {
                     // The worker keeps the old files by itself. A new request would remove the message.
                     const bool asked = is_posted(desired_request());
                     files_ = ready_->loaded->files;
+                    pictures_ = ready_->loaded->pictures;
+                    waiting_edits_.clear();
                     files_revision_ = ready_->loaded->files_revision;
                     if (asked) posted_request_ = desired_request();
                 }
@@ -284,6 +299,7 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     const bool same_files = viewed_files_revision_ != 0 && ready->loaded->files_revision == reread_files_revision_;
     viewed_files_revision_ = ready->loaded->files_revision;
     if (same_files) first_edits_ = edits_to_keep(*before);
+    for (Word& word : std::exchange(waiting_edits_, {})) first_edits_.push_back(std::move(word));
     const Selection selected = std::exchange(selection, {});
     if (same_files && before->loaded->scene->instances.size() == ready->loaded->scene->instances.size()) selection = selected;
     watch_scene_files();
@@ -319,7 +335,8 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
         }
     }
     adopt_view(edited);
-    history_.forget();
+    // The numbers in earlier steps hold for more pictures, too: those of the files come first.
+    if (pictures_revision_ != ready->loaded->files_revision) history_.forget();
 }
 
 // Shows the pose that the command line asks for.

@@ -25,6 +25,7 @@
 #include "ui/threads/frame_thread.hpp"
 #include "ui/threads/inspect_thread.hpp"
 #include "ui/threads/prepare_worker.hpp"
+#include "ui/threads/preview_thread.hpp"
 
 namespace clarity::ui {
 
@@ -62,6 +63,10 @@ class Session {
     // Starts or ends the comparison. The second side begins as a copy of the first.
     void compare(bool on);
     void swap_sides();
+    // Applies an edit in the words of edit.hpp. Throws Error(usage).
+    void apply(const Word& word);
+    // Whether the word names a picture that was not read with the scene. It is read then, and the edit made afterwards.
+    bool waits_for_picture(const Word& word);
 
     void undo() { history_.undo(desired); }
     void redo() { history_.redo(desired); }
@@ -87,6 +92,9 @@ class Session {
     // Traces the samples of a pixel of the newest picture once more, to say why it is noisy.
     void explain(unsigned x, unsigned y);
     const InspectThread& inspector() const { return inspector_; }
+    // Shows a ball of the material, of `size` pixels along a side. To be asked for in each frame in which it is to be seen.
+    void want_preview(rt_u32 material, unsigned size);
+    std::shared_ptr<const Preview> preview() const { return preview_.latest(); }  // nullptr: none yet
     // Says that this instance will be moved: it is kept apart in the structure, so that the first step is quick.
     void prepare_to_move(rt_u32 instance);
     // Where the middle of an instance is as desired: what it turns about. nullopt: there is no such instance.
@@ -142,6 +150,7 @@ class Session {
     void follow_main();  // copies the shared settings of the main side to the other side
     void take_saved();
     void take_pick();
+    void take_preview();
     PrepareRequest desired_request() const;
     void add_optics(PrepareRequest& request) const;
     bool is_posted(const PrepareRequest& request) const;
@@ -156,6 +165,9 @@ class Session {
     std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
     uint64_t viewed_files_revision_ = 0;            // the scene that gave `desired` its camera and lights
     uint64_t reread_files_revision_ = 0;            // the same files read by a rebuilt importer: the camera stays
+    uint64_t pictures_revision_ = 0;                // the same files, read again for pictures alone: undo stays, too
+    std::vector<PictureFile> pictures_;             // that the user gave to materials of files_
+    std::vector<Word> waiting_edits_;               // for pictures that are being read
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;
@@ -182,6 +194,7 @@ class Session {
     MeshMiddles middles_;                // of the imported scene
     bool moving_ = false;
     double moved_at_s_ = -1e9;
+    bool preview_wanted_ = false;  // since the last update
     uint64_t pick_request_ = 0, picked_request_ = 0;
     LogBuffer log_;
     const std::function<void()> wake_;
@@ -192,6 +205,7 @@ class Session {
     uint64_t seen_kernels_ = 0, sources_revision_ = 0;
     FrameThread frames_;
     InspectThread inspector_;
+    PreviewThread preview_;
     PrepareWorker worker_;  // after the threads that it asks to release the devices
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
 #include "ui/session/session.hpp"
@@ -45,8 +46,38 @@ void Session::take_libraries() {
 
 // Reads the same files again: camera, time and edits stay.
 void Session::reopen() {
+    const std::vector<PictureFile> pictures = pictures_;
+    const std::vector<Word> waiting = waiting_edits_;
     open(files_);
+    pictures_ = pictures;
+    waiting_edits_ = waiting;
     reread_files_revision_ = files_revision_;
+}
+
+bool Session::waits_for_picture(const Word& word) {
+    const PictureFile picture = picture_of(word);
+    if (picture.path.empty() || !ready_) return false;
+    const auto is_known = [&](const PictureFile& known) { return known == picture; };
+    const std::vector<PictureFile>& read = ready_->loaded->pictures;
+    if (std::any_of(read.begin(), read.end(), is_known) && ready_->loaded->files_revision == files_revision_) {
+        // Unless it could not be read then.
+        const std::string name = picture_name(picture.path);
+        const std::vector<std::string>& names = ready_->loaded->scene->texture_names;
+        if (std::find(names.begin(), names.end(), name) != names.end()) return false;
+    }
+    if (std::none_of(pictures_.begin(), pictures_.end(), is_known)) pictures_.push_back(picture);
+    waiting_edits_.push_back(word);
+    reopen();
+    pictures_revision_ = files_revision_;
+    return true;
+}
+
+void Session::apply(const Word& word) {
+    if (!ready_) throw Error(Exit::usage, "no scene yet");
+    if (waits_for_picture(word)) return;
+    EditedView edited = edited_view(desired);
+    apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
+    adopt_view(edited);
 }
 
 void Session::take_scene_files() {

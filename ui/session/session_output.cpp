@@ -53,7 +53,8 @@ void Session::load_preset(const std::string& path) {
     EditedView edited;
     if (ready_) {
         edited = first_view();
-        for (const Word& word : preset.edits) apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
+        for (const Word& word : preset.edits)
+            if (!waits_for_picture(word)) apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
     }
     desired.main = {preset.device.empty() ? desired.main.device : preset.device, preset.settings};
     if (ready_) adopt_view(edited);
@@ -80,9 +81,12 @@ std::string scene_path(const Session& session) {
 void save_scene(const Session& session, const std::string& path) {
     const std::shared_ptr<const Ready> ready = session.ready();
     if (!ready) throw Error(Exit::usage, path + ": cannot save, because no scene is open; open a scene first");
-    clarity::save_scene({*ready->loaded->scene, ready->loaded->files, edited_view(session.desired)}, path);
+    const EditedView edited = edited_view(session.desired);
+    clarity::save_scene({*ready->loaded->scene, ready->loaded->files, edited}, path);
     log(LogLevel::info, "saved " + path);
-    for (const std::string& folder : folders_outside(ready->loaded->files, path))
+    std::vector<std::string> files = ready->loaded->files;
+    for (const std::string& picture : given_pictures(*ready->loaded->scene, edited.maps)) files.push_back(picture);
+    for (const std::string& folder : folders_outside(files, path))
         log(LogLevel::warning, path + ": it loads files outside of its folder; open it with --search-path '" + folder + "'");
 }
 

@@ -1,5 +1,6 @@
 // The parts of Session which work on the scene: inspecting and picking pixels, selecting, focusing, editing and hiding objects.
 #include <algorithm>
+#include <utility>
 
 #include "base/log.hpp"
 #include "render/view/size_note.hpp"
@@ -40,6 +41,18 @@ void Session::take_pick() {
     selection.prim = inspection->result.rays.front().prim;
     selection.instance = place.instance == RT_NONE ? -1 : static_cast<rt_i32>(place.instance);
     selection.material = place.material == RT_NONE ? -1 : static_cast<rt_i32>(place.material);
+}
+
+void Session::want_preview(rt_u32 material, unsigned size) {
+    if (!ready_ || material >= ready_->scene->materials.size() || sequence_.running()) return;
+    preview_wanted_ = true;
+    const std::vector<MaterialValues>& edited = desired.materials;
+    preview_.show({ready_, material, edited.empty() ? ready_->scene->materials[material].values : edited[material], size});
+}
+
+void Session::take_preview() {
+    preview_.set_busy(!frames_.idle() || worker_.activity().busy || moving_);
+    if (!std::exchange(preview_wanted_, false)) preview_.hide();
 }
 
 void Session::prepare_to_move(rt_u32 instance) {
@@ -95,6 +108,7 @@ void Session::adopt_view(const EditedView& edited) {
     desired.sky = view.sky;
     desired.materials = view.materials;
     desired.instances = edited.instances;
+    desired.maps = edited.maps;
     desired.lights.clear();
     selected_light = 0;
     for (size_t i = 0; i < view.lights.size(); ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/map_uses.hpp"
+#include "scene/material_keys.hpp"
 #include "ui/session/camera_control.hpp"
 
 namespace clarity::ui {
@@ -57,6 +59,31 @@ MaterialValues& edited_material(Session& session, rt_u32 index) {
 const MaterialValues& material(const Session& session, rt_u32 index) {
     const DesiredState& desired = session.desired;
     return desired.materials.empty() ? session.ready()->loaded->scene->materials.at(index).values : desired.materials.at(index);
+}
+
+namespace {
+
+// A factor of 0 of a use that had no texture hides the one that it gets.
+void show_texture(Session& session, rt_u32 index, rt_u32 use) {
+    if (session.desired.maps.texture_of(*session.ready()->loaded->scene, index, use) != RT_NONE) return;
+    for (const char* const* name = map_uses()[use].multiplies.data(); *name; ++name) {
+        const Key& key = material_key(*name);
+        if (value_of(key, &material(session, index)) == std::array<float, 3>{})
+            set_material_value(edited_material(session, index), key, nearest_value(key, {1, 1, 1}));
+    }
+}
+
+}  // namespace
+
+void give_texture(Session& session, rt_u32 material, rt_u32 use, rt_u32 texture) {
+    if (texture != RT_NONE) show_texture(session, material, use);
+    session.desired.maps.give(*session.ready()->loaded->scene, material, use, texture);
+}
+
+void give_picture(Session& session, rt_u32 material, rt_u32 use, const std::string& path) {
+    show_texture(session, material, use);
+    const std::string key = "material." + std::to_string(material) + "." + map_uses()[use].name;
+    session.apply({key, path});
 }
 
 float scene_size(const Session& session) {

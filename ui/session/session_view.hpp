@@ -15,6 +15,10 @@ void frame_selection(Session& session);  // frames the selection, or the whole s
 // The materials to edit. They are copied from the scene to `desired` at the first edit.
 MaterialValues& edited_material(Session& session, rt_u32 index);
 const MaterialValues& material(const Session& session, rt_u32 index);
+// Gives a material another texture of the scene, or none; or a picture of a file, which is read first. Factors that it
+// multiplies become 1 where they would hide it.
+void give_texture(Session& session, rt_u32 material, rt_u32 use, rt_u32 texture);
+void give_picture(Session& session, rt_u32 material, rt_u32 use, const std::string& path);
 // Unit for steps of camera and lights: the diagonal of the scene.
 float scene_size(const Session& session);
 

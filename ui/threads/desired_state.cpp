@@ -14,6 +14,7 @@ EditedView edited_view(const DesiredState& desired) {
         edited.lights_on.push_back(light.on);
     }
     edited.instances = desired.instances;
+    edited.maps = desired.maps;
     edited.camera_path = desired.camera_path;
     if (desired.pose.time_s && !desired.camera_path.empty()) {
         CameraKey key{0, desired.camera};

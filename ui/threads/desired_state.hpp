@@ -35,6 +35,7 @@ struct DesiredState {
     std::optional<SkyValues> sky;           // the edited sky; empty: that of the scene
     std::vector<MaterialValues> materials;  // the edited materials; empty: those of the scene
     InstanceEdits instances;                // moved and hidden
+    MapEdits maps;                          // other textures of materials
     PoseTime pose;                 // when the scene is shown; its clip is the chosen one even while the scene is at rest
     CameraPath camera_path;        // the camera is there when the time changes
     std::array<double, 2> loop{};  // the seconds of the clip that are played, again and again

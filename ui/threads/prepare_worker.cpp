@@ -234,8 +234,10 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     ready->request = request;
     ready->request.main.device = main_.choice;
     ready->request.files = loaded_->files;
+    ready->request.pictures = loaded_->pictures;
     ready->request.files_revision = loaded_->files_revision;
     ready->request.instances = shown_.instances();
+    ready->request.maps = shown_.maps();
     ready->request.apart = shown_.asked_apart();
     ready->request.pose = shown_.pose();
     ready->loaded = loaded_;
@@ -361,10 +363,13 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     progress.stage("importing " + request.files.front());
     const auto begin = Clock::now();
     auto loaded = std::make_shared<ImportedScene>();
-    loaded->scene = std::make_shared<const Scene>(import::import_scene(plugins_, request.files, import_, progress));
+    import::ImportOptions options = import_;
+    options.pictures = request.pictures;
+    loaded->scene = std::make_shared<const Scene>(import::import_scene(plugins_, request.files, options, progress));
     loaded->import_ms = ms_since(begin);
-    instance_edits(*loaded->scene, {});  // a file with an edit that cannot be made is not loaded
+    scene_edits(*loaded->scene, {});  // a file with an edit that cannot be made is not loaded
     loaded->files = request.files;
+    loaded->pictures = request.pictures;
     loaded->files_revision = request.files_revision;
     loaded->bounds = loaded->scene->bounds();
     loaded->placed_triangles = loaded->scene->placed_triangle_count();

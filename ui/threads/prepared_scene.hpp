@@ -18,11 +18,13 @@ namespace clarity::ui {
 // Everything that a picture needs besides the view and the settings of a frame.
 struct PrepareRequest {
     std::vector<std::string> files;
-    uint64_t files_revision = 0;  // the files are imported (again) when it changes
-    std::string camera, light;    // as on the command line; for the first view of newly imported files
+    std::vector<PictureFile> pictures;  // that are read with them
+    uint64_t files_revision = 0;        // the files are imported (again) when it changes
+    std::string camera, light;          // as on the command line; for the first view of newly imported files
     Side main;
     std::optional<Side> other;
     InstanceEdits instances;       // moved and hidden
+    MapEdits maps;                 // other textures of materials
     std::vector<rt_u32> apart;     // instances that are about to be moved: ascending
     uint64_t kernel_revision = 0;  // the kernels are read (again) when it changes
     PoseTime pose;
@@ -35,6 +37,7 @@ struct PrepareRequest {
 struct ImportedScene {
     std::shared_ptr<const Scene> scene;
     std::vector<std::string> files;
+    std::vector<PictureFile> pictures;
     uint64_t files_revision = 0;
     Bounds bounds;
     uint64_t placed_triangles = 0;

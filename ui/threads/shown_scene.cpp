@@ -34,37 +34,49 @@ void ShownScene::update(const std::shared_ptr<const ImportedScene>& loaded, cons
     const bool same_files = request.files_revision == loaded->files_revision, fresh = loaded_ != loaded;
     const PoseTime pose = same_files ? request.pose : fresh ? PoseTime() : pose_;
     const InstanceEdits edits = same_files ? request.instances : fresh ? InstanceEdits() : instances_;
+    const MapEdits maps = same_files ? request.maps : fresh ? MapEdits() : maps_;
     const std::vector<rt_u32> apart = same_files ? request.apart : fresh ? std::vector<rt_u32>() : asked_apart_;
     if (fresh) {
-        rest_ = scene_ = loaded->scene;
+        mapped_ = rest_ = scene_ = loaded->scene;
         cameras_ = scene_->cameras;
         lights_ = scene_->lights;
         pose_ = {};
         geometry_ = {};
         instances_ = {};
+        maps_ = {};
         apart_.clear();
         asked_apart_.clear();
         middles_ = {};
         loaded_ = loaded;
     }
-    const bool edited = edit(edits, apart);
+    const bool mapped = give_maps(maps), edited = edit(edits, apart, mapped);
     if (edited || !same_pose(pose, pose_)) place(pose, edited);
 }
 
+// Returns whether the imported scene has other textures now.
+bool ShownScene::give_maps(const MapEdits& maps) {
+    if (maps == maps_) return false;
+    maps_ = maps;
+    mapped_ = maps_.empty() ? loaded_->scene : std::make_shared<const Scene>(with_maps(*loaded_->scene, maps_));
+    return true;
+}
+
 // Returns whether the scene at rest is another one now.
-bool ShownScene::edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart) {
-    if (edits == instances_ && apart == asked_apart_) return false;
+bool ShownScene::edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart, bool mapped) {
+    if (!mapped && edits == instances_ && apart == asked_apart_) return false;
     std::vector<rt_u32> all = apart_;
     for (const InstanceEdits::Moved& moved : edits.moved) all.push_back(moved.instance);
     for (const auto* more : {&edits.hidden, &apart}) all.insert(all.end(), more->begin(), more->end());
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
-    const bool same = edits == instances_ && all == apart_;
+    const bool same = !mapped && edits == instances_ && all == apart_;
     instances_ = edits;
     asked_apart_ = apart;
     apart_ = std::move(all);
     if (same) return false;
-    rest_ = std::make_shared<const Scene>(with_edits(*loaded_->scene, instances_, apart_, middles_));
+    rest_ = instances_.empty() && apart_.empty()
+                ? mapped_
+                : std::make_shared<const Scene>(with_edits(*mapped_, instances_, apart_, middles_));
     return true;
 }
 

@@ -30,29 +30,33 @@ class ShownScene : public PosedScene {
     // Whether a structure should follow geometry() by refits: a clip plays, or the user has moved or hidden something. Once he
     // has, this stays so until another scene is loaded, so that undo is a refit, too.
     bool follows() const override { return pose_.time_s || !apart_.empty(); }
-    PosedFrom from() const override { return {loaded_->scene, pose_.clip, !pose_.time_s, apart_}; }
+    PosedFrom from() const override { return {mapped_, pose_.clip, !pose_.time_s, apart_}; }
     // The pose of scene(); its cameras and lights may be of another one. Empty unless follows().
     const Pose& geometry() const override { return geometry_; }
     void add_vertices() override;
     // What moves the meshes whose vertices are left out: scene() has them at rest.
     std::vector<Deformation> left_out() const;
     const InstanceEdits& instances() const { return instances_; }
+    const MapEdits& maps() const { return maps_; }
     const std::vector<rt_u32>& asked_apart() const { return asked_apart_; }
     const std::vector<Camera>& cameras() const { return cameras_; }
     const std::vector<Light>& lights() const { return lights_; }
 
  private:
-    bool edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart);
+    bool edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart, bool mapped);
+    bool give_maps(const MapEdits& maps);
     void place(const PoseTime& pose, bool edited);
     bool shows(const Pose& pose, const std::string& clip) const;
 
     Progress unwatched_;  // of files of sequences
     import::SequenceReader sequences_;
     std::shared_ptr<const ImportedScene> loaded_;
+    std::shared_ptr<const Scene> mapped_;  // what was imported, with the textures that the user gave to materials
     std::shared_ptr<const Scene> rest_, scene_;
     Pose geometry_;
     PoseTime pose_;
     InstanceEdits instances_;
+    MapEdits maps_;
     std::vector<rt_u32> apart_, asked_apart_;  // instances that the user has moved or hidden, or is about to; ascending
     MeshMiddles middles_;
     std::vector<Camera> cameras_;

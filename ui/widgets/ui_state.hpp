@@ -1,6 +1,7 @@
 // ui_state.hpp -- the state of the window itself, apart from the session.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/motion/pose_time.hpp"
@@ -25,7 +26,7 @@ struct Bookmark {
 };
 
 // What the file browser is open for.
-enum class BrowseFor { scene, preset, folder_of_pictures };
+enum class BrowseFor { scene, preset, picture, folder_of_pictures };
 
 struct UiState {
     const KeyMap* key_map = &key_maps().front();
@@ -44,8 +45,10 @@ struct UiState {
     bool show_rays = true;       // the rays of the inspected pixel are drawn in the scene
     bool browser_open = false;   // whether the file browser is shown
     BrowseFor browse_for = BrowseFor::scene;
-    bool keys_open = false;             // whether the list of keys is shown over the picture
-    std::string pictures_folder = ".";  // folder into which pictures are saved
+    std::pair<rt_u32, rt_u32> picture_for{};  // the material and the use (RT_MAP_) that get the picture
+    bool keys_open = false;                   // whether the list of keys is shown over the picture
+    std::string pictures_folder = ".";        // folder into which pictures are saved
+    unsigned preview_texture = 0;             // of OpenGL, with the ball of the selected material; 0: there is none yet
     int selected_ray = -1;       // index of the ray that is marked in the scene, among those of the inspected pixel; -1: none
     bool show_paths = true;      // the brightest paths of the explained pixel are drawn in the scene
     int selected_path = -1;      // which of them is marked; -1: none

@@ -38,8 +38,8 @@ void FrameScene::take(std::shared_ptr<const Scene> imported) {
     scene_.reset();
     digest_.clear();
     if (!imported_) return;
-    const InstanceEdits instances = instance_edits(*imported_, words_.edits);
-    if (!instances.empty()) rest_ = std::make_shared<const Scene>(with_edits(*imported_, instances));
+    const EditedView edited = scene_edits(*imported_, words_.edits);
+    if (changes_scene(edited)) rest_ = std::make_shared<const Scene>(edited_scene(*imported_, edited));
 }
 
 bool FrameScene::follows_frames() const {

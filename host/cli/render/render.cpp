@@ -258,7 +258,9 @@ class RenderJob {
     void import(Progress& progress) {
         const auto begin = Clock::now();
         const auto import = [&] {
-            Scene scene = import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress);
+            import::ImportOptions with_pictures = options_.scene.import;
+            with_pictures.pictures = pictures_of(words_.edits);
+            Scene scene = import::import_scene(plugins_, options_.scene.files, with_pictures, progress);
             stats_.import_ms = ms_since(begin);
             return scene;
         };

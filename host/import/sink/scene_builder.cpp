@@ -22,6 +22,7 @@
 #include "import/sink/texture.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
+#include "scene/map_edit.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/singular_instances.hpp"
 #include "scene/tangents.hpp"
@@ -310,6 +311,7 @@ rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_
     rt_texture& picture = known->second;
     if (!is_new) return texture_of(picture, d);
     std::vector<uint32_t>& texels = scene_.texels.own();
+    if (observer_) observer_->decoding(d.height == 0 ? memory_of_texture(d.bytes, d.byte_count) : 6 * d.byte_count);
     const Problem why = completed(d.height == 0 ? decode_texture(d.bytes, d.byte_count, texels, picture)
                                                 : copy_texture(d.bytes, d.byte_count, d.width, d.height, texels, picture),
                                   d, texels, picture);
@@ -333,11 +335,29 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const rt_texture_d
     // A stage of its own: a small file may name many large pictures, each of which takes seconds.
     progress_.stage("reading " + file_name(found.path));
     Problem why = try_read_file(found.path, kMaxPictureFileBytes, bytes);
-    if (!why)
-        why = completed(decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), texels, picture), d,
-                        texels, picture);
+    if (!why) {
+        const auto* const begin = reinterpret_cast<const uint8_t*>(bytes.data());
+        if (observer_) observer_->decoding(memory_of_texture(begin, bytes.size()));
+        why = completed(decode_texture(begin, bytes.size(), texels, picture), d, texels, picture);
+    }
     progress_.stage("importing " + file_name(from));
     return why ? missing(why.text()) : texture_of(picture, d);
+}
+
+void SceneBuilder::add_picture(const std::string& path, rt_u32 space) {
+    rt_texture_desc desc{};
+    desc.path = path.c_str();
+    desc.space = space;
+    const rt_u32 known = texture_of_file("", desc);
+    if (known == RT_NONE) return;
+    // Also where a file names the picture: textures of files keep their numbers and names, whatever pictures a user gives.
+    scene_.texture_names.resize(scene_.textures.size());
+    if (scene_.texture_names[known].empty()) {
+        scene_.texture_names[known] = picture_name(path);
+    } else {
+        scene_.textures.push_back(rt_texture(scene_.textures[known]));
+        scene_.texture_names.push_back(picture_name(path));
+    }
 }
 
 // Channels of cameras and lights name them by `source` until here, because files that load each other mix their order.

@@ -21,6 +21,8 @@ class ImportObserver {
  public:
     virtual ~ImportObserver() = default;
     virtual void running(const std::string& file, const std::string& importer) = 0;
+    // Before a picture is decoded, which takes that much memory.
+    virtual void decoding(uint64_t) {}
 };
 
 class SceneBuilder {
@@ -30,6 +32,8 @@ class SceneBuilder {
 
     // Adds a file that the user named, with everything that it loads. Throws Error(import_failed) "FILE: why".
     void add_root(const std::string& path);
+    // Adds a picture that the user named as a texture of its own. If it cannot be read, that is a warning.
+    void add_picture(const std::string& path, rt_u32 space);
     // Returns the finished scene. It is sound, but callers still check it with validate(), as a safeguard against bugs here.
     Scene take();
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "import/sink/shape_parts.hpp"
 #include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
@@ -432,14 +433,22 @@ rt_u32 SceneSink::primitive(const rt_primitive_desc& d) {
 }
 
 int32_t SceneSink::edit(const char* key, const char* value, const char* where) {
-    const SceneEdit edit = {clean_name(key), clean_name(value), clean_name(where)};
-    rt_u32 number = 0;
+    SceneEdit edit = {clean_name(key), clean_name(value), clean_name(where)};
+    rt_u32 number = 0, id = 0;
     if (edit_number(edit.key, number) == EditOf::nothing) {
         fail((edit.where.empty() ? "" : edit.where + ": ") + "no edit `" + edit.key +
              "`; there are instance.N, material.N, light.N, sky");
         return RT_FAILED;
     }
-    content_.edits.push_back(edit);
+    if (find_map_use(edit.key.substr(edit.key.find_last_of('.') + 1)) != RT_NONE && read_number(edit.value, id)) {
+        if (id >= textures_.size()) {
+            fail(edit.where + ": `" + edit.key + "`: texture id " + edit.value +
+                 " is unknown: pass an id that the sink returned");
+            return RT_FAILED;
+        }
+        edit.value = std::to_string(textures_[id]);
+    }
+    content_.edits.push_back(std::move(edit));
     return RT_OK;
 }
 

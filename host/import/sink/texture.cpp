@@ -57,6 +57,16 @@ Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<ui
     return {};
 }
 
+uint64_t memory_of_texture(const uint8_t* bytes, uint64_t byte_count) {
+    int width = 0, height = 0, channels = 0;
+    if (byte_count > INT_MAX || !stbi_info_from_memory(bytes, static_cast<int>(byte_count), &width, &height, &channels))
+        return 0;
+    // The decoder's two copies; and the texels, with a third more for smaller pictures, in an array that is at most half empty
+    // and that is copied when it grows.
+    const uint64_t texels = 4 * static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+    return 2 * texels + 4 * (texels / 3 * 4);
+}
+
 Problem copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
                      rt_texture& texture) {
     if (Problem why = check_size(width, height, texels)) return why;

@@ -20,6 +20,10 @@ inline constexpr uint64_t kMaxPictureFileBytes = 256u << 20;
 // appended.
 Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture);
 
+// Bytes that decode_texture() takes for a picture, and what follows it with its smaller ones, while `texels` grows: those that
+// are there are copied then. 0: it is no picture.
+uint64_t memory_of_texture(const uint8_t* bytes, uint64_t byte_count);
+
 // Same as decode_texture(), for a picture of width x height RGBA8 texels in memory.
 Problem copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
                      rt_texture& texture);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
@@ -10,6 +11,7 @@
 #include "render/settings/settings.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/light_kinds.hpp"
+#include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 
 namespace clarity {
@@ -163,15 +165,37 @@ std::vector<MaterialValues> scene_materials(const Scene& scene) {
     return all;
 }
 
+std::string map_names() {
+    std::string names;
+    for (const MapUse& use : map_uses()) names += (names.empty() ? "" : ", ") + std::string(use.name);
+    return names;
+}
+
+rt_u32 read_texture(const Scene& scene, rt_u32 use, const std::string& key, const std::string& value) {
+    if (value == "none") return RT_NONE;
+    const rt_u32 texture = find_texture(scene, value, use);
+    if (texture != RT_NONE) return texture;
+    std::string names;
+    constexpr size_t kMostListed = 20;
+    for (size_t i = 0; i < std::min(scene.textures.size(), kMostListed); ++i)
+        names += ", " + texture_name(scene, static_cast<rt_u32>(i));
+    if (scene.textures.size() > kMostListed) names += ", ...";
+    refuse_value(key, value,
+                 "none, a picture's file that can be read, or a texture of the scene" +
+                     (names.empty() ? " (it has none)" : ":" + names.substr(1)));
+}
+
 void read_material(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
     const std::vector<std::string> path = split(key, '.');
     rt_u32 at = 0;
     const Key* part = path.size() == 3 ? find_key(material_keys(), path[2]) : nullptr;
-    if (!part || !read_number(path[1], at))
-        throw Error(Exit::usage,
-                    key + ": expected material.N.PART with N from 0 and PART one of " + key_names(material_keys()));
+    const rt_u32 use = path.size() == 3 ? find_map_use(path[2]) : RT_NONE;
+    if ((!part && use == RT_NONE) || !read_number(path[1], at))
+        throw Error(Exit::usage, key + ": expected material.N.PART with N from 0 and PART one of " +
+                                     key_names(material_keys()) + ", " + map_names());
     if (at >= scene.materials.size())
         throw Error(Exit::usage, key + ": the scene has materials 0 to " + std::to_string(scene.materials.size() - 1));
+    if (!part) return edited.maps.give(scene, at, use, read_texture(scene, use, key, value));
     const std::array<float, 3> number = read_key(*part, key, value, scene.origin);
     if (edited.view.materials.empty()) edited.view.materials = scene_materials(scene);
     set_material_value(edited.view.materials[at], *part, number);
@@ -243,6 +267,11 @@ bool begins(const std::string& text, const char* with) {
     return text.compare(0, std::strlen(with), with) == 0;
 }
 
+// The RT_MAP_ of an edit's key; RT_NONE: it is of another kind.
+rt_u32 map_use_of(const std::string& key) {
+    return begins(key, "material.") ? find_map_use(key.substr(key.find_last_of('.') + 1)) : RT_NONE;
+}
+
 // The words that make a light from nothing.
 void add_light_words(const rt_light& light, size_t number, const std::array<double, 3>& origin, std::vector<Word>& words) {
     const std::string name = "light." + std::to_string(number);
@@ -268,6 +297,19 @@ void add_material_words(const MaterialValues& was, const MaterialValues& is, siz
         if (other || (key.follows_model && differs && is.model != RT_MODEL_WHITTED))
             words.push_back({"material." + std::to_string(number) + "." + key.name, value_text(key, value, ",")});
     }
+}
+
+void add_map_words(const Scene& scene, const MapEdits& from, const MapEdits& to, std::vector<Word>& words) {
+    const auto add = [&](rt_u32 material, rt_u32 use) {
+        const rt_u32 was = from.texture_of(scene, material, use), is = to.texture_of(scene, material, use);
+        if (was != is)
+            words.push_back(
+                {"material." + std::to_string(material) + "." + map_uses()[use].name, texture_word(scene, is, use)});
+    };
+    for (const MapEdits::Given& given : to.given) add(given.material, given.use);
+    for (const MapEdits::Given& given : from.given)
+        if (to.texture_of(scene, given.material, given.use) == MapEdits().texture_of(scene, given.material, given.use))
+            add(given.material, given.use);
 }
 
 // The words that turn `from` into `to`.
@@ -355,6 +397,7 @@ std::vector<Word> edits_between(const Scene& scene, const EditedView& from, cons
         const MaterialValues& was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values;
         add_material_words(was, view.materials[i], i, words);
     }
+    add_map_words(scene, from.maps, edited.maps, words);
     add_instance_words(from.instances, edited.instances, words);
     return words;
 }
@@ -382,11 +425,15 @@ Scene with_scene_edits(Scene scene) {
     EditedView edited;
     for (const Light& light : scene.lights) edited.view.lights.push_back(light.values);
     apply_scene_edits(scene, edited);
-    Scene result = with_edits(scene, edited.instances);
+    Scene result = edited_scene(scene, edited);
     result.edits.clear();
     result.sky.values = sky_of(scene, edited.view);
     if (result.sky.values.kind != RT_SKY_PICTURE) result.sky.texels = {};
-    for (size_t i = 0; i < edited.view.materials.size(); ++i) result.materials[i].values = edited.view.materials[i];
+    for (size_t i = 0; i < edited.view.materials.size(); ++i) {
+        const rt_u32 texture = result.materials[i].values.texture;
+        result.materials[i].values = edited.view.materials[i];
+        result.materials[i].values.texture = texture;
+    }
     for (size_t i = 0; i < edited.view.lights.size(); ++i) {
         if (i == result.lights.size()) result.lights.emplace_back();
         result.lights[i].values = edited.view.lights[i];
@@ -396,15 +443,38 @@ Scene with_scene_edits(Scene scene) {
     return result;
 }
 
-InstanceEdits instance_edits(const Scene& scene, const std::vector<Word>& edits) {
+Scene edited_scene(const Scene& scene, const EditedView& edited) {
+    Scene result = with_edits(scene, edited.instances);
+    return edited.maps.empty() ? result : with_maps(result, edited.maps);
+}
+
+EditedView scene_edits(const Scene& scene, const std::vector<Word>& edits) {
     EditedView all;
     for (const Light& light : scene.lights) all.view.lights.push_back(light.values);
     apply_scene_edits(scene, all);
     for (const Word& word : edits) {
         if (word.key == "hide") read_hidden(scene, all.instances, word.value);
         if (begins(word.key, "instance.")) read_shift(scene, all.instances, word.key, word.value);
+        if (map_use_of(word.key) != RT_NONE) read_material(scene, all, word.key, word.value);
     }
-    return all.instances;
+    return all;
+}
+
+PictureFile picture_of(const Word& word) {
+    const rt_u32 use = map_use_of(word.key);
+    std::error_code error;
+    if (use == RT_NONE || word.value == "none" || !std::filesystem::is_regular_file(word.value, error)) return {};
+    return {word.value, map_uses()[use].space};
+}
+
+std::vector<PictureFile> pictures_of(const std::vector<Word>& edits) {
+    std::vector<PictureFile> pictures;
+    for (const Word& word : edits) {
+        PictureFile picture = picture_of(word);
+        if (!picture.path.empty() && std::find(pictures.begin(), pictures.end(), picture) == pictures.end())
+            pictures.push_back(std::move(picture));
+    }
+    return pictures;
 }
 
 }  // namespace clarity

@@ -10,6 +10,7 @@
 //   sky.KEY      one key of the sky's kind: sky.strength, sky.zenith
 //   camera_path  t:camera;t:camera;...: the camera at times of the clip; see camera_path.hpp
 //   material.N.KEY  one of material_keys.hpp: color (r,g,b), reflect (a number), model (a word), checker (true or false)
+//   material.N.USE  one of map_uses.hpp, as normal_map: none, or a texture of the scene (find_texture() in map_edit.hpp)
 //   hide         instances that the picture leaves out: 3,5-9
 //   instance.N.M where M is translate (x,y,z), rotate (degrees about x, then y, then z) or scale (x,y,z, or one number): moves
 //                instance N from where its file or pose has it; see instance_edit.hpp. hidden (0 or 1): as in `hide`
@@ -21,6 +22,7 @@
 #include "render/view/camera_path.hpp"
 #include "render/view/view.hpp"
 #include "scene/instance_edit.hpp"
+#include "scene/map_edit.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -35,6 +37,7 @@ struct EditedView {
     View view;                    // with all lights, including those that are off
     std::vector<bool> lights_on;  // one for each light; missing ones are on
     InstanceEdits instances;
+    MapEdits maps{};
     CameraPath camera_path{};
     bool follows_path = false;  // the camera was not set after the path
 };
@@ -50,9 +53,20 @@ std::vector<Word> edits_between(const Scene& scene, const EditedView& base, cons
 View visible_view(const EditedView& edited);
 // Puts the edits in force that the scene's files make. Throws Error(import_failed), which names the file and the line.
 void apply_scene_edits(const Scene& scene, EditedView& edited);
+// The scene at rest that the view is one of: with its instances moved and hidden, and its materials' textures.
+Scene edited_scene(const Scene& scene, const EditedView& edited);
 // A scene in which they are in force, for those who trace or describe it without a view. Shares all that is large.
 Scene with_scene_edits(Scene scene);
-// Returns what the scene's files, and then these edits, do to instances. Edits of other kinds are skipped.
-InstanceEdits instance_edits(const Scene& scene, const std::vector<Word>& edits);
+// Returns what the scene's files, and then these edits, do to instances and textures. Edits of other kinds are skipped.
+EditedView scene_edits(const Scene& scene, const std::vector<Word>& edits);
+// Whether edited_scene() has anything to do.
+inline bool changes_scene(const EditedView& edited) {
+    return !edited.instances.empty() || !edited.maps.empty();
+}
+
+// The file that such an edit gives to a material, to be read with the scene. Empty: the edit is of another kind, or the value
+// is no file: then it is a texture of the scene.
+PictureFile picture_of(const Word& word);
+std::vector<PictureFile> pictures_of(const std::vector<Word>& edits);
 
 }  // namespace clarity

@@ -15,6 +15,7 @@
 #include "render/edit/sky_edit.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/light_kinds.hpp"
+#include "scene/map_uses.hpp"
 
 namespace clarity {
 namespace {
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kCamera = "saved_view";  // the name of the camera that is written
+constexpr const char* kPicture = "picture_";   // the names of textures, with a number
 
 std::string spaced(const float* values, size_t count) {
     std::string text;
@@ -37,6 +39,13 @@ fs::path whole(const std::string& path) {
     std::error_code error;
     const fs::path canonical = fs::weakly_canonical(fs::absolute(path, error), error);
     return error ? fs::path(path) : canonical;
+}
+
+// A name or a path in quotes, which have no escapes.
+std::string quoted(const std::string& text, const std::string& what) {
+    if (text.find_first_of("\"\n\r") != std::string::npos)
+        throw Error(Exit::failed, what + ": cannot be named in a text scene, because its name holds a quote; rename it");
+    return "\"" + text + "\"";
 }
 
 bool is_below(const fs::path& file, const fs::path& folder) {
@@ -99,7 +108,8 @@ std::string light_line(const std::string& object, const rt_light& light, const s
 
 // The words of edit.hpp as statements: "material.3.color" and "1,0,0" become "edit material 3  color 1 0 0". Words for one
 // material follow each other, and go into one line. Others than those of materials, lights and the sky are left out.
-std::string word_lines(const std::vector<Word>& words, const Scene& scene, const View& view) {
+std::string word_lines(const std::vector<Word>& words, const Scene& scene, const View& view,
+                       const std::map<std::string, std::string>& statements) {
     std::string lines, last;
     if (std::any_of(words.begin(), words.end(), [](const Word& word) { return word.key.rfind("sky", 0) == 0; }))
         lines = "edit sky " + sky_line(sky_of(scene, view));
@@ -109,7 +119,10 @@ std::string word_lines(const std::vector<Word>& words, const Scene& scene, const
         std::getline(key, what, '.'), std::getline(key, number, '.'), std::getline(key, part, '.');
         // A light's line has all of its parts.
         if (what != "material" && (what != "light" || !part.empty())) continue;
-        std::replace(value.begin(), value.end(), ',', ' ');
+        if (find_map_use(part) == RT_NONE)
+            std::replace(value.begin(), value.end(), ',', ' ');
+        else
+            value = quoted(statements.count(value) ? statements.at(value) : value, word.key);
         const std::string object = "edit " + what + " " + number;
         if (object != last) lines += lines.empty() ? "" : "\n";
         if (what == "material")
@@ -121,10 +134,38 @@ std::string word_lines(const std::vector<Word>& words, const Scene& scene, const
     return lines.empty() ? "" : lines + "\n";
 }
 
+// The path of a file in statements of a scene that lies in this folder.
+std::string written_path(const std::string& file, const fs::path& folder) {
+    const fs::path path = whole(file);
+    return quoted(is_below(path, folder) ? path.lexically_relative(folder).generic_string() : path.generic_string(), file);
+}
+
+// Statements of the pictures that words name by their files. statements: their names, by the files.
+// kept: text that stays in the file.
+std::string picture_lines(const std::vector<Word>& words, const Scene& scene, const fs::path& folder, const std::string& kept,
+                          std::map<std::string, std::string>& statements) {
+    std::string lines;
+    size_t number = 0;
+    for (const Word& word : words) {
+        const bool is_map = find_map_use(word.key.substr(word.key.find_last_of('.') + 1)) != RT_NONE;
+        if (!is_map || !is_picture_name(word.value) || statements.count(word.value)) continue;
+        const auto& names = scene.texture_names;
+        std::string name;
+        do name = kPicture + std::to_string(++number);
+        while (std::find(names.begin(), names.end(), name) != names.end() || kept.find(name) != std::string::npos);
+        statements[word.value] = name;
+        lines += "texture " + name + " " + written_path(word.value, folder) + "\n";
+    }
+    return lines;
+}
+
 // base: what the statements that are loaded show without these lines.
-std::string edit_lines(const SceneToSave& scene, const EditedView& base) {
+std::string edit_lines(const SceneToSave& scene, const EditedView& base, const fs::path& folder, const std::string& kept) {
     const std::vector<Word> words = edits_between(scene.imported, base, scene.edited);
-    return instance_lines(base.instances, scene.edited.instances) + word_lines(words, scene.imported, scene.edited.view);
+    std::map<std::string, std::string> statements;
+    const std::string pictures = picture_lines(words, scene.imported, folder, kept, statements);
+    return pictures + instance_lines(base.instances, scene.edited.instances) +
+           word_lines(words, scene.imported, scene.edited.view, statements);
 }
 
 // The view without any edit; a scene without lights has none to start from.
@@ -136,11 +177,7 @@ EditedView plain(const Scene& scene) {
 }
 
 std::string load_line(const std::string& file, const fs::path& folder) {
-    const fs::path path = whole(file);
-    const std::string text = is_below(path, folder) ? path.lexically_relative(folder).generic_string() : path.generic_string();
-    if (text.find_first_of("\"\n\r") != std::string::npos)
-        throw Error(Exit::failed, file + ": cannot be loaded by a text scene, because its name holds a quote; rename it");
-    return "load \"" + text + "\"\n";
+    return "load " + written_path(file, folder) + "\n";
 }
 
 // The first two words of a line, and whether it begins a statement that save_scene() writes itself.
@@ -166,6 +203,14 @@ std::string kept_lines(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> given_pictures(const Scene& scene, const MapEdits& maps) {
+    std::vector<std::string> files;
+    for (const MapEdits::Given& given : maps.given)
+        if (given.texture < scene.texture_names.size() && is_picture_name(scene.texture_names[given.texture]))
+            files.push_back(scene.texture_names[given.texture]);
+    return files;
+}
+
 std::vector<std::string> folders_outside(const std::vector<std::string>& files, const std::string& path) {
     std::vector<std::string> folders;
     for (const std::string& file : files) {
@@ -184,15 +229,17 @@ void save_scene(const SceneToSave& scene, const std::string& path) {
     const fs::path target = whole(path);
     const bool in_place = scene.files.size() == 1 && whole(scene.files.front()) == target;
     if (in_place) {
-        text += kept_lines(read_file(path, kMaxTextFileBytes, Exit::failed)) + edit_lines(scene, plain(scene.imported));
+        const std::string kept = kept_lines(read_file(path, kMaxTextFileBytes, Exit::failed));
+        text += kept + edit_lines(scene, plain(scene.imported), target.parent_path(), kept);
     } else {
         // Edits of instances and materials come with a loaded text scene, those of lights do not.
         EditedView base = plain(scene.imported), own = base;
         apply_scene_edits(scene.imported, own);
         base.instances = own.instances;
         base.view.materials = own.view.materials;
+        base.maps = own.maps;
         for (const std::string& file : scene.files) text += load_line(file, target.parent_path());
-        text += edit_lines(scene, base);
+        text += edit_lines(scene, base, target.parent_path(), text);
     }
     write_text_file(path, text);
 }

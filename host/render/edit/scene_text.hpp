@@ -19,6 +19,8 @@ struct SceneToSave {
 // whole or not at all. Throws Error(usage) if the path does not end in .scene, and Error(failed).
 void save_scene(const SceneToSave& scene, const std::string& path);
 
+// The files of the pictures that edits give to materials.
+std::vector<std::string> given_pictures(const Scene& scene, const MapEdits& maps);
 // The folders besides that of `path` which a reader must allow (--search-path), because files lie there.
 std::vector<std::string> folders_outside(const std::vector<std::string>& files, const std::string& path);
 

@@ -10,6 +10,7 @@
 #include "render/settings/accel_choice.hpp"
 #include "render/tracers/smoke.hpp"
 #include "render/trial/trial.hpp"
+#include "scene/map_edit.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -106,7 +107,8 @@ AccelBuilder Preparer::builder(const Settings& settings) const {
 
 std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                          Progress& progress) {
-    if (last_ && !last_->is_moved && last_->scene == scene && asks_for(*last_->accel, settings)) return last_->accel;
+    const bool is_same = last_ && (last_->scene == scene || same_geometry(*last_->scene, *scene));
+    if (is_same && !last_->is_moved && asks_for(*last_->accel, settings)) return last_->accel;
     // The last scene is no longer in use elsewhere: free it before the next one is built.
     if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
     return build_new(plugins_, info_, *scene, settings, progress);

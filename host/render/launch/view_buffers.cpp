@@ -1,5 +1,6 @@
 #include "render/launch/view_buffers.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -35,6 +36,7 @@ void ViewBuffers::write(Queue& queue, const Scene& scene, const DeviceScene& on_
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
     if (!own_materials_) return;
     plain_materials_.assign(view.materials.begin(), view.materials.end());
+    for (size_t i = 0; i < plain_materials_.size(); ++i) plain_materials_[i].texture = scene.materials[i].values.texture;
     material_layers_.clear();
     for (const MaterialValues& material : view.materials) material_layers_.push_back(material.layers);
     materials_.write(queue, plain_materials_.data(), plain_materials_.size() * sizeof(rt_material));
@@ -48,7 +50,11 @@ void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::sh
     };
     if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
         same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background &&
-        same_sky(emitters_of_.sky, sky_of(scene, view)) && sky_of_.shares(scene.sky.texels))
+        same_sky(emitters_of_.sky, sky_of(scene, view)) && sky_of_.shares(scene.sky.texels) &&
+        same(emitters_of_.maps, scene.maps) &&
+        std::equal(emitters_of_.emission_maps.begin(), emitters_of_.emission_maps.end(), scene.materials.begin(),
+                   scene.materials.end(),
+                   [](rt_u32 map, const Material& material) { return map == material.maps[RT_MAP_EMISSION]; }))
         return;
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
         static const rt_emitter nothing{};  // kernels get no empty buffers
@@ -78,7 +84,8 @@ void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::sh
     upload(emitters_, table.emitters);
     upload(emitter_runs_, table.runs);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view)};
+    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view), scene.maps, {}};
+    for (const Material& material : scene.materials) emitters_of_.emission_maps.push_back(material.maps[RT_MAP_EMISSION]);
 }
 
 void UploadedBuffer::write(Queue& queue, const void* data, size_t bytes) {

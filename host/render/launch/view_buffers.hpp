@@ -54,6 +54,8 @@ class ViewBuffers {
         std::vector<MaterialValues> materials;
         std::array<float, 3> background{};
         SkyValues sky;
+        std::vector<rt_map> maps;           // an edit of textures keeps the structure
+        std::vector<rt_u32> emission_maps;  // of each material
     };
     UploadedBuffer frame_, lights_, materials_, layers_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
     std::vector<rt_material> plain_materials_;  // these two are kept for their memory: frames allocate nothing

@@ -13,7 +13,8 @@ namespace clarity {
 struct View {
     Camera camera;
     std::vector<rt_light> lights;
-    std::vector<MaterialValues> materials;  // one for each material of the scene; empty: use the scene's own
+    // One for each material of the scene; empty: use the scene's own. Textures are the scene's in any case.
+    std::vector<MaterialValues> materials;
     std::array<float, 3> background{}, ambient{};
     std::optional<SkyValues> sky;  // empty: the scene's own
 };

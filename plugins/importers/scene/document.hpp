@@ -93,6 +93,7 @@ struct Sky {
 struct Edit {
     std::string key, value;
     Position position;
+    rt_u32 use = RT_NONE;  // RT_MAP_: `value` is the name of a texture
 };
 
 // A shape that a plugin makes.

@@ -45,6 +45,8 @@ class Emitter {
  private:
     rt_u32 material(const Name& use) const { return use.text.empty() ? RT_NONE : material_ids_.at(use.text); }
     rt_u32 texture(const Texture& texture, rt_u32 space);
+    const Texture* texture_named(const std::string& name) const;  // nullptr: no statement has this name
+    rt_u32 space_of(const Texture& texture, rt_u32 use) const;
     std::vector<rt_map_desc> maps_of(const Material& material);
     bool triangles(size_t first, size_t count);
     bool shape(const Shape& shape);
@@ -85,14 +87,21 @@ rt_u32 Emitter::texture(const Texture& texture, rt_u32 space) {
     return known->second;
 }
 
+const Texture* Emitter::texture_named(const std::string& name) const {
+    const auto named = std::find_if(document_.textures.begin(), document_.textures.end(),
+                                    [&](const Texture& texture) { return texture.name.text == name; });
+    return named == document_.textures.end() ? nullptr : &*named;
+}
+
+rt_u32 Emitter::space_of(const Texture& texture, rt_u32 use) const {
+    return texture.space != RT_NONE ? texture.space : static_cast<rt_u32>(key_of(*document_.kinds.maps, use).def[0]);
+}
+
 std::vector<rt_map_desc> Emitter::maps_of(const Material& material) {
     std::vector<rt_map_desc> maps;
     for (const auto& [use, name] : material.maps) {
-        const std::string& wanted = name.text;
-        const auto named = std::find_if(document_.textures.begin(), document_.textures.end(),
-                                        [&](const Texture& texture) { return texture.name.text == wanted; });
-        const auto usual = static_cast<rt_u32>(key_of(*document_.kinds.maps, use).def[0]);
-        maps.push_back(map_of(*named, use, texture(*named, named->space == RT_NONE ? usual : named->space)));
+        const Texture& named = *texture_named(name.text);
+        maps.push_back(map_of(named, use, texture(named, space_of(named, use))));
     }
     return maps;
 }
@@ -170,7 +179,13 @@ bool Emitter::edits() {
             sink_.warn(sink_.ctx, (where() + ": this host cannot make edits").c_str());
             return true;
         }
-        if (sink_.edit(sink_.ctx, edit.key.c_str(), edit.value.c_str(), where().c_str()) != RT_OK) return false;
+        std::string value = edit.value;
+        if (const Texture* named = edit.use == RT_NONE ? nullptr : texture_named(edit.value)) {
+            const rt_u32 id = texture(*named, space_of(*named, edit.use));
+            if (id == RT_NONE) continue;
+            value = std::to_string(id);
+        }
+        if (sink_.edit(sink_.ctx, edit.key.c_str(), value.c_str(), where().c_str()) != RT_OK) return false;
     }
     return true;
 }

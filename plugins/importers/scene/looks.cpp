@@ -194,10 +194,19 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
 }
 
 void read_material_edits(Statement& s, const std::string& prefix, Document& document) {
-    const std::vector<const rt_key*> keys = keys_of(*document.kinds.material);
-    expect(s, keys);
+    const std::vector<const rt_key*> keys = keys_of(*document.kinds.material), maps = keys_of(*document.kinds.maps);
+    std::vector<Key> more;
+    for (const rt_key* map : maps) more.push_back({map->name});
+    expect(s, keys, more);
     while (!s.done()) {
-        const rt_key& key = *keys[s.key()];
+        const size_t i = s.key();
+        if (i >= keys.size()) {
+            const size_t use = i - keys.size();
+            const Name name = s.name("the name of a texture, or none");
+            document.edits.push_back({prefix + maps[use]->name, name.text, s.position(), static_cast<rt_u32>(use)});
+            continue;
+        }
+        const rt_key& key = *keys[i];
         const Vec3 value = read_look(s, key);
         document.edits.push_back({prefix + key.name, look_text(key, value), s.position()});
     }

@@ -48,8 +48,9 @@ class SceneTextTest : public ::testing::Test {
         scratch.write("part.obj", kObj);
         settings.accel = "bvh2";
     }
-    Scene load(const std::vector<std::string>& files) {
+    Scene load(const std::vector<std::string>& files, const std::vector<PictureFile>& pictures = {}) {
         import::ImportOptions options;
+        options.pictures = pictures;
         options.in_process = true;
         options.log_warnings = false;
         Progress progress;
@@ -63,7 +64,7 @@ class SceneTextTest : public ::testing::Test {
         return edited;
     }
     ByteImage picture(const Scene& scene, const EditedView& edited) {
-        const auto shown = std::make_shared<const Scene>(with_edits(scene, edited.instances));
+        const auto shown = std::make_shared<const Scene>(edited_scene(scene, edited));
         return Workbench::get().display(shown, settings, visible_view(edited));
     }
     void edit(const Scene& scene, EditedView& edited, const std::vector<Word>& words) {
@@ -125,6 +126,42 @@ TEST_F(SceneTextTest, ATextSceneKeepsItsTextAndGetsTheEdits) {
     EXPECT_EQ(twice.find("translate 0.25"), std::string::npos) << twice;
     EXPECT_NE(twice.find("edit instance 0  hidden 1\n"), std::string::npos) << twice;
     EXPECT_EQ(twice.find("camera saved_view"), twice.rfind("camera saved_view")) << twice;
+}
+
+TEST_F(SceneTextTest, TexturesOfMaterialsAreSaved) {
+    const std::string red = scratch.write("red.ppm", std::string("P6 1 1 255\n") + "\xff\x10\x10"),
+                      blue = scratch.write("blue sky.ppm", std::string("P6 1 1 255\n") + "\x10\x10\xff");
+    const std::string path = scratch.write("pictures.scene",
+                                           "camera main eye 0 0 5 fov 40\nlight directional direction 0 0 -1\n"
+                                           "texture wood \"red.ppm\" scale 2\n"
+                                           "material a model lambert color_map wood\nmaterial b model lambert color 1\n"
+                                           "polygon vertices -2 -1 0  0 -1 0  0 1 0  -2 1 0 material a\n"
+                                           "polygon vertices 0 -1 0  2 -1 0  2 1 0  0 1 0 material b\n");
+    const std::vector<Word> words = {{"material.1.color_map", blue}, {"material.2.color_map", "wood"}};
+    EXPECT_EQ(pictures_of(words), (std::vector<PictureFile>{{blue, RT_SPACE_SRGB}}));
+    EXPECT_EQ(pictures_of({{"material.1.normal_map", blue}, {"material.1.color", "1"}, {"hide", blue}}),
+              (std::vector<PictureFile>{{blue, RT_SPACE_LINEAR}}));
+    const Scene scene = load({path}, pictures_of(words));
+    EditedView edited = first(scene);
+    const ByteImage before = picture(scene, edited);
+    edit(scene, edited, words);
+    const ByteImage swapped = picture(scene, edited);
+    EXPECT_FALSE(swapped.pixels == before.pixels);
+    const std::string beside = expect_saved(scene, {path}, edited, "beside.scene");
+    EXPECT_NE(beside.find("texture picture_1 \"blue sky.ppm\"\n"), std::string::npos) << beside;
+    EXPECT_NE(beside.find("edit material 2  color_map \"wood\""), std::string::npos) << beside;
+    expect_saved(scene, {path}, edited, "pictures.scene");
+
+    // Once more, with another picture, and taken back.
+    const std::vector<Word> others = {{"material.1.color_map", red}, {"material.2.color_map", "none"}};
+    const Scene saved = load({path}, pictures_of(others));
+    EditedView again = first(saved);
+    EXPECT_EQ(again.maps.given.size(), 2u);
+    edit(saved, again, others);
+    const std::string twice = expect_saved(saved, {path}, again, "pictures.scene");
+    EXPECT_NE(twice.find("texture picture_2 \"red.ppm\"\n"), std::string::npos) << twice;
+    EXPECT_EQ(twice.find("edit material 2"), std::string::npos) << twice;
+    expect_saved(saved, {path}, again, "nested.scene");
 }
 
 TEST_F(SceneTextTest, LightsAndModelsOfAllKindsAreSaved) {
@@ -210,7 +247,7 @@ TEST_F(SceneTextTest, WrongEditsAreRefusedWithTheirPlace) {
         const std::string path = scratch.write("wrong.scene", "load part.obj\n" + line + "\n");
         try {
             const Scene scene = load({path});
-            instance_edits(scene, {});
+            scene_edits(scene, {});
         } catch (const Error& e) {
             return e.what();
         }
@@ -220,6 +257,7 @@ TEST_F(SceneTextTest, WrongEditsAreRefusedWithTheirPlace) {
     for (const auto& [line, expected] : std::vector<std::pair<std::string, std::string>>{
              {"edit instance 1 translate 1 2 3", "wrong.scene:2:1: `instance.1.translate`: there are 1 instances"},
              {"edit material 3 color 1", "there are 1 materials"},
+             {"edit material 0 color_map wood", "wrong.scene:2:1: material.0.color_map"},
              {"edit light 3 off", "wrong.scene:2:1: light.3"},
              {"edit instance 0 radius 3", "wrong.scene:2:17: unknown key `radius`"},
              {"edit instance 0.5 hidden 1", "whole number"},

@@ -1,0 +1,202 @@
+#include "ui/threads/preview_thread.hpp"
+
+#include <chrono>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "render/settings/accel_choice.hpp"
+#include "render/view/view_optics.hpp"
+#include "ui/threads/preview_scene.hpp"
+#include "ui/threads/thread_priority.hpp"
+
+namespace clarity::ui {
+namespace {
+
+constexpr unsigned kSamples = 64;
+constexpr const char* kAccel = "bvh2";
+constexpr auto kWaitWhileBusy = std::chrono::milliseconds(250);
+
+bool same_values(const MaterialValues& a, const MaterialValues& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+bool is_power_of_two(unsigned n) {
+    return (n & (n - 1)) == 0;
+}
+
+}  // namespace
+
+PreviewThread::Ball::Ball(const PreviewJob& job)
+    : loaded(job.ready->loaded), maps(job.ready->request.maps), material(job.material) {}
+
+bool PreviewThread::Ball::operator==(const Ball& b) const {
+    const auto scene = loaded.lock();
+    return scene && scene == b.loaded.lock() && maps == b.maps && material == b.material;
+}
+
+// Whether the picture of one serves for the other.
+bool PreviewThread::is_same(const PreviewJob& a, const PreviewJob& b) {
+    return Ball(a) == Ball(b) && a.size == b.size && same_values(a.values, b.values) && !a.ready->main.loan->withdrawn() &&
+           a.ready->main.devices_text() == b.ready->main.devices_text() &&
+           a.ready->request.kernel_revision == b.ready->request.kernel_revision;
+}
+
+PreviewThread::PreviewThread(const PluginRegistry& plugins, std::function<void()> wake)
+    : plugins_(plugins), wake_(std::move(wake)), thread_([this] { run(); }) {}
+
+PreviewThread::~PreviewThread() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stop_ = true;
+        if (progress_) progress_->cancel();
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void PreviewThread::show(const PreviewJob& job) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        const bool is_known = job_ && is_same(*job_, job);
+        if (is_known) job_->ready = job.ready;  // a newer pose
+        if (is_known) return;
+        // What is being compiled goes on: kernels serve other balls, too, and whoever clicks around would never see one.
+        if (!job_ || !(Ball(*job_) == Ball(job))) latest_.reset();
+        job_ = job;
+        begun_.reset();
+    }
+    changed_.notify_all();
+}
+
+void PreviewThread::hide() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!job_) return;
+    if (progress_) progress_->cancel();
+    job_.reset();
+    latest_.reset();
+    begun_.reset();
+}
+
+void PreviewThread::set_busy(bool busy) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (busy_ == busy) return;
+        busy_ = busy;
+    }
+    changed_.notify_all();
+}
+
+std::shared_ptr<const Preview> PreviewThread::latest() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return latest_;
+}
+
+void PreviewThread::release() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    released_ = true;
+    if (progress_) progress_->cancel();
+    stopped_.wait(lock, [this] { return !running_; });
+    tracer_ = {};
+}
+
+void PreviewThread::resume() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        released_ = false;
+    }
+    changed_.notify_all();
+}
+
+void PreviewThread::run() {
+    yield_to_window();
+    const auto wants_work = [this] { return stop_ || (!released_ && job_ && !(begun_ && begun_->done)); };
+    for (;;) {
+        PreviewJob job;
+        std::shared_ptr<Progress> progress;
+        auto preview = std::make_shared<Preview>();
+        {
+            std::unique_lock<std::mutex> lock(mutex_);
+            running_ = false;
+            progress_.reset();
+            stopped_.notify_all();
+            changed_.wait(lock, wants_work);
+            if (!stop_ && busy_) changed_.wait_for(lock, kWaitWhileBusy, [this] { return stop_ || released_ || !busy_; });
+            if (stop_) return;
+            if (!wants_work()) continue;
+            job = *job_;
+            if (begun_) *preview = *begun_;
+            progress = progress_ = std::make_shared<Progress>();
+            running_ = true;
+        }
+        preview->material = job.material;
+        try {
+            trace(job, preview->samples, *preview, *progress);
+        } catch (const Cancelled&) {
+            continue;
+        } catch (const std::exception& error) {
+            preview->failure = error.what();
+        }
+        preview->done = !preview->failure.empty() || preview->samples >= kSamples;
+        const Ball ball(job);
+        job.ready.reset();  // here, and not under the lock
+        bool is_news = false;
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            // A sample of numbers that have changed since is shown, but not added to.
+            if (progress->cancelled() || !job_ || !(Ball(*job_) == ball)) continue;
+            const bool is_current = same_values(job_->values, job.values) && job_->size == job.size;
+            if (is_current) begun_ = preview;
+            is_news = preview->done || is_power_of_two(preview->samples);
+            if (is_news) latest_ = preview;
+        }
+        if (is_news) wake_();
+    }
+}
+
+void PreviewThread::prepare(const PreviewJob& job, const View& view, Progress& progress) {
+    Settings settings = tracer_.prepared ? tracer_.prepared->settings : Settings();
+    settings.width = settings.height = static_cast<int>(job.size);
+    settings.tracer = "path";
+    settings.depth = 12;
+    // What compiles fast: few rays are traced.
+    settings.lanes = 1;
+    if (settings.accel.empty())
+        choose_accel(plugins_, plugins_.accel(kAccel) ? kAccel : plugins_.accels().front()->id, settings);
+    settings.optics = settings.optics | optics_of(*scene_, view, settings);
+    tracer_.prepared = tracer_.preparer->prepare(scene_, settings, progress);
+    kernel_revision_ = job.ready->request.kernel_revision;
+}
+
+void PreviewThread::trace(const PreviewJob& job, unsigned sample, Preview& preview, Progress& progress) {
+    const std::shared_ptr<const OnDevices> lent = job.ready->main.loan->get();
+    if (!lent) throw Error(Exit::no_device, "the device is being opened anew");  // another job follows
+    const std::shared_ptr<Device>& device = lent->prepared->parts.front().device;
+    if (tracer_.of != device) {
+        tracer_ = {};
+        tracer_.of = device;
+        tracer_.device = device->with_own_queue();
+        tracer_.preparer = std::make_unique<Preparer>(plugins_, tracer_.device);
+        tracer_.frames = std::make_unique<FrameRenderer>(tracer_.device);
+    }
+    if (!scene_ || !(scene_of_ == Ball(job))) {
+        scene_ = std::make_shared<const Scene>(preview_scene(*job.ready->scene, job.material));
+        scene_of_ = Ball(job);
+    }
+    View view = make_view(*scene_, 1);
+    for (const Material& material : scene_->materials) view.materials.push_back(material.values);
+    const rt_u32 texture = view.materials[kPreviewMaterial].texture;
+    view.materials[kPreviewMaterial] = job.values;
+    view.materials[kPreviewMaterial].texture = texture;
+    const std::shared_ptr<const Prepared>& prepared = tracer_.prepared;
+    if (!prepared || prepared->scene != scene_ || kernel_revision_ != job.ready->request.kernel_revision ||
+        !prepared->knows(view))
+        prepare(job, view, progress);
+    Settings settings = prepared->settings;
+    settings.width = settings.height = static_cast<int>(job.size);
+    settings.spp = kSamples;
+    tracer_.frames->trace(*prepared, settings, view, {sample, 1}, false, progress);
+    preview.samples = sample + 1;
+    if (is_power_of_two(preview.samples) || preview.samples == kSamples) preview.image = tracer_.frames->read_display(settings);
+}
+
+}  // namespace clarity::ui
