@@ -87,6 +87,32 @@ wait idle 300
 screenshot $out/window_timeline.png
 COMMANDS
 
+# Why a pixel in a caustic is noisy.
+scene=$work/caustic.scene
+cat >"$scene" <<CAUSTIC
+background .02 .03 .05
+camera main eye 1.2 2.6 6 target 0 .7 0 fov 40
+light sphere center 0 6 -2 radius .2 radiance 300 name bulb
+material floor model lambert color .7 .68 .62
+material clear model dielectric color 1 ior 1.5
+material gold model conductor color 1 .77 .34 roughness .25
+plane normal 0 1 0 offset 0 material floor
+sphere center 0 1.2 -.4 radius 1 material clear
+sphere center 2 .6 .2 radius .6 material gold
+CAUSTIC
+shoot 1280x1000 1 856x748 <<COMMANDS
+set tracer path
+set spp 256
+wait idle 300
+tab Inspect
+inspect 429 476
+wait idle 300
+why 429 476
+wait idle 300
+wait idle 300
+screenshot $out/window_noise.png
+COMMANDS
+
 # stb writes quickly, not tightly.
 if command -v convert >/dev/null; then
     for picture in "$out"/window*.png; do
