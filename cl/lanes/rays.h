@@ -35,6 +35,9 @@ typedef struct rt_hits {
     vint leaf;         /* position in leaf order; -1: none; -2 - i: plane i */
     vint prim;         /* the primitive's number; the lower of two at the same t is the hit, whatever the order of visits */
     vint instance;     /* -1: none */
+#ifdef RT_ALL_HITS
+    rt_hit_list *list; /* takes all hits; u to instance have no value */
+#endif
 #ifdef RT_COUNT_STEPS
     uint steps, leaf_tests, lane_steps; /* sums over all lanes, see rt_hit */
 #endif
@@ -187,11 +190,15 @@ RT_INLINE int rt_incoherent(const rt_rays *r, vfloat area, uint bits)
 #endif
 }
 
-/* Lanes in which a primitive at distance t is the nearest hit so far. Of two primitives at one distance the lower number
- * wins. */
+/* Lanes in which a primitive at distance t is the nearest hit so far, or one that a list of hits wants. Of two primitives at one
+ * distance the lower number wins. */
 RT_INLINE vmask rt_closer(const rt_rays *r, const rt_hits *h, vfloat t, uint prim)
 {
+#ifdef RT_ALL_HITS
+    return RT_MASK(t >= r->t_min) & RT_MASK(t <= h->t) & rt_list_wants(h->list, t, prim);
+#else
     return RT_MASK(t >= r->t_min) & (RT_MASK(t < h->t) | (RT_MASK(t == h->t) & RT_MASK(rt_vint((int)prim) < h->prim)));
+#endif
 }
 
 /* The last step of a slab test (Kay, Kajiya 1986, "Ray Tracing Complex Scenes"). Given the distances at which a ray meets the

@@ -36,7 +36,15 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
     const vint before = h->prim, first = rt_vint((int)instance->first_prim);
     h->t = rt_select(enters, t, rt_vfloat(-1.0f));
     h->prim = before - first;
+#ifdef RT_ALL_HITS
+    h->list->first_prim = (int)instance->first_prim;
+    h->list->inside = (int)index;
+#endif
     RT_FN(rt_mesh)(ctx, instance->root, &inner, h);
+#ifdef RT_ALL_HITS
+    h->list->first_prim = 0;
+    h->list->inside = -1;
+#endif
     h->t = rt_select(enters, h->t, t);
     h->prim += first;
     h->instance = rt_select(RT_MASK(h->prim != before), rt_vint((int)index), h->instance);

@@ -93,7 +93,14 @@ void add_rays(CLI::App& app, TraceCommand& command) {
     single(app.add_option("-o,--output", command.output, "Where to write t, prim, instance, u, v of each hit; - is stdout"))
         ->type_name("HITS")
         ->required();
-    app.add_flag("--any", command.any_hit, "Ask only whether something is hit between t_min and t_max: 1 or 0 a ray");
+    CLI::Option* const any =
+        app.add_flag("--any", command.any_hit, "Ask only whether something is hit between t_min and t_max: 1 or 0 a ray");
+    CLI::Option* const all =
+        app.add_flag("--all", command.all,
+                     "Write all hits of each ray in their order: the ray's number from 0, then what -o says, a line a hit");
+    CLI::Option* const count = app.add_flag("--count", command.count, "Write how many hits each ray has, a number a ray");
+    any->excludes(all)->excludes(count);
+    all->excludes(count);
 }
 
 void add_compare(CLI::App& app, CompareCommand& command) {

@@ -90,6 +90,8 @@ struct TraceCommand {
     std::string rays_file;  // "-": stdin
     std::string output;     // "-": stdout
     bool any_hit = false;   // only whether something is hit between t_min and t_max
+    bool all = false;       // all hits, not only the nearest
+    bool count = false;     // how many
     bool quiet = false;
 };
 int run_trace(const PluginRegistry& plugins, const TraceCommand& command);
