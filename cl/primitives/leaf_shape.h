@@ -5,8 +5,9 @@
  * have the precision of near ones.
  *
  * Plugins give the nearest hit. All hits are found by asking again behind each, until there is none. A test that is not exact may find
- * the same place again just behind it, so the next question starts 1 / 4096 of the box's diagonal farther on. Hits of one shape that
- * are nearer to each other count as one. */
+ * the same place again just behind it: 1e-6 of the box's diagonal behind, one ray in 20,000 met a torus five times, and 1e-7 behind,
+ * twelve did. So the next question starts 1 / 16384 of the diagonal farther on, and hits of one shape that are nearer to each other
+ * count as one. */
 RT_INLINE void RT_FN(rt_hit_shape)(const rt_ctx *ctx, const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
     vfloat entry;
@@ -30,7 +31,7 @@ RT_INLINE void RT_FN(rt_hit_shape)(const rt_ctx *ctx, const global rt_packed_pri
 #ifdef RT_ALL_HITS
     inner.t_max = RT_INFINITY; /* a list's length must not change what a test computes */
     const rt_vec box = rt_splat(leaf->b[0] - leaf->a[0], leaf->b[1] - leaf->a[1], leaf->b[2] - leaf->a[2]);
-    const vfloat step = sqrt(rt_dot(box, box) / fma(r->dx, r->dx, fma(r->dy, r->dy, r->dz * r->dz))) * rt_vfloat(1.0f / 4096.0f);
+    const vfloat step = sqrt(rt_dot(box, box) / fma(r->dx, r->dx, fma(r->dy, r->dy, r->dz * r->dz))) * rt_vfloat(1.0f / 16384.0f);
     vmask asking = enters;
     while (rt_any(asking)) {
         vfloat at_u = rt_vfloat(0.0f), at_v = at_u;
