@@ -22,6 +22,9 @@ typedef struct rt_rays {
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
     vint axis_x, axis_y, axis_z;   /* they differ by lane, and only then are these filled in */
+#if RT_HAS_MASKS
+    vint mask;                     /* what instances must have a bit of: RT_SEEN_BY_*; set by RT_SEEN_BY */
+#endif
     vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
 } rt_rays;
@@ -48,6 +51,13 @@ typedef struct rt_hits {
     int step_budget; /* steps that the traversal may still take; negative: it was stopped */
 #endif
 } rt_hits;
+
+/* Says of which kind rays are, RT_SEEN_BY_* as a vint. Nothing where no instance has a mask. */
+#if RT_HAS_MASKS
+#define RT_SEEN_BY(ray, kind) (ray)->mask = (kind);
+#else
+#define RT_SEEN_BY(ray, kind)
+#endif
 
 /* For programs that count; see CONTRACT.md. Other programs do not pay: code that only feeds these macros is dead there. */
 #ifdef RT_COUNT_STEPS

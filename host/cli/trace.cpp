@@ -59,12 +59,13 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     RayQueries queries(device);
     std::string text;
     if (command.all || command.count) {
-        const AllHits hits = queries.trace_all(*prepared, rays, {command.count, false}, progress);
+        const AllHits hits = queries.trace_all(*prepared, rays, {command.count, false, command.mask}, progress);
         text = command.count ? counts_text(hits) : all_hits_text(hits);
     } else {
         std::vector<rt_hit> hits;
         RayQuery query;
         query.any_hit = command.any_hit;
+        query.mask = command.mask;
         queries.trace(*prepared, RayBlocks(rays, prepared->layout.lanes), query, &hits);
         text = hits_text(hits, command.any_hit);
     }

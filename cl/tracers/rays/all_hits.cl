@@ -15,7 +15,7 @@ trace_all_hits(const constant rt_frame *frame, const uint first_group, const uin
             rt_hits hit;
             rt_hit_list list;
             vfloat t_max;
-            rt_load_ray_block(rays, b, &ray, &t_max);
+            rt_load_ray_block(frame, rays, b, &ray, &t_max);
             const vmask active = RT_MASK(t_max >= rt_vfloat(0.0f));
             const global vfloat *last = (const global vfloat *)after + 2u * (size_t)b;
             rt_clear_hits(&hit, active);

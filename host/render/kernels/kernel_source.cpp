@@ -26,6 +26,7 @@ void write_numbers(SourceWriter& out) {
 
 void write_features(SourceWriter& out, const SceneFeatures& features, const Settings& settings, const KernelRow& row) {
     out.define_int("RT_HAS_INSTANCES", features.instances);
+    if (features.masks) out.define_int("RT_HAS_MASKS", 1);
     out.define_int("RT_HAS_SPHERES", features.spheres);
     out.define_int("RT_HAS_POLYGONS", features.polygons);
     out.define_int("RT_HAS_PLANES", features.planes);

@@ -87,8 +87,9 @@ AllHits RayQueries::trace_all(const Prepared& prepared, const std::vector<rt_ray
         last_ = {};
         launchers_.clear();
         const auto program = tried_program(programs_, prepared, all_hits(), progress);
-        view_.write(device_->queue(), *prepared.scene, *prepared.on_device,
-                    {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
+        rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
+        frame.ray_mask = query.mask;
+        view_.write(device_->queue(), *prepared.scene, *prepared.on_device, {frame}, View());
         for (size_t begin = 0; begin < rays.size(); begin += kRaysAtOnce) {
             const size_t count = std::min(kRaysAtOnce, rays.size() - begin);
             std::vector<std::vector<rt_hit>> found(query.count_only ? 0 : count);

@@ -17,12 +17,15 @@ struct RayQuery {
     bool brief = false;
     // Full stacks of a debug program are counted and not logged: the caller expects them.
     bool quiet = false;
+    // Of the rays: they pass instances whose mask has no bit of it. RT_SEEN_BY_*, and bits of the caller's own.
+    rt_u32 mask = RT_SEEN_BY_ALL;
 };
 
 // What RayQueries::trace_all() computes.
 struct AllHitsQuery {
     bool count_only = false;  // how many hits each ray has, and not which
     bool quiet = false;       // as in RayQuery
+    rt_u32 mask = RT_SEEN_BY_ALL;
 };
 
 // All hits of rays. Those of ray i are hits[first[i]] to hits[first[i + 1] - 1], ordered by t, and at one t by prim. Counts of
