@@ -32,8 +32,15 @@ typedef struct rt_instance {
     rt_u32 root;       /* root of the mesh's tree, as the builder reported it */
     rt_u32 first_prim; /* number of the instance's first triangle */
     rt_u32 material;   /* of the whole instance; RT_NONE: each triangle has its own */
-    rt_u32 hidden;     /* not 0: no ray hits it */
+    rt_u32 hidden;     /* bits of the kinds of rays that pass it, RT_SEEN_BY_*; RT_NONE: all rays. Kernels of scenes without masks only
+                        * ask whether it is 0 */
 } rt_instance;
+/* Kinds of rays, as bits of a mask. A ray hits an instance if it has a bit that the instance's mask has. The bits above are for rays of
+ * the user's own. */
+#define RT_SEEN_BY_CAMERA 1u
+#define RT_SEEN_BY_SHADOW 2u
+#define RT_SEEN_BY_MIRROR 4u /* all other rays of pictures: mirrored, refracted, scattered */
+#define RT_SEEN_BY_ALL 255u
 
 /* A surface. Colours are linear RGB. Whitted's share 1 - reflect - refract is diffuse. 96 B. */
 typedef struct rt_material {
@@ -200,7 +207,7 @@ typedef struct rt_map {
 
 #define RT_MOST_NUMBERS 16
 
-/* Values that may change from frame to frame while program and scene stay the same. 288 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 304 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
     rt_f32 pixel_x;  /* 1 / width of the whole picture. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
@@ -236,6 +243,8 @@ typedef struct rt_frame {
     /* The paths that count (--only-paths); RT_NONE: all. */
     rt_u32 only_by;     /* RT_BY_* */
     rt_u32 only_first;  /* RT_FIRST_*, of the first event */
+    rt_u32 ray_mask;    /* of the rays of a query: RT_SEEN_BY_* and other bits */
+    rt_u32 pad[3];
     rt_u32 numbers[RT_MOST_NUMBERS]; /* settings that kernels read by their keys: RT_SETTING(frame, key) */
 } rt_frame;
 /* How a path came to its light: by a point that was drawn on it, or by the ray of a surface or the camera. */
@@ -271,6 +280,7 @@ typedef struct rt_hit {
 #define RT_ANSWER_NEAREST 2u
 #define RT_ANSWER_HIT 4u
 #define RT_ANSWER_ALL 8u
+#define RT_LIST_FIELDS 5u /* of a place in a list of all hits: t, u, v, prim, instance */
 
 /* One ray of the tree of rays that give a pixel its colour. 96 B. */
 typedef struct rt_ray_record {

@@ -6,11 +6,11 @@
  * element, which compilers keep in registers.
  *
  * Packets enter an instance's tree one by one. Tracing a stream there together was 2 to 10 % slower, because deciding which
- * packets enter the instance costs more than it saves. The inspector, which records ray after ray, has no streams either. */
+ * packets enter the instance costs more than it saves. The inspector, which records ray after ray, and lists of all hits have no streams either. */
 #ifndef RT_PACKET_STREAM_H
 #define RT_PACKET_STREAM_H
 
-#if defined(RT_TRAVERSES_STREAMS) && RT_CPU && RT_LANES > 1 && !defined(RT_INSPECT)
+#if defined(RT_TRAVERSES_STREAMS) && RT_CPU && RT_LANES > 1 && !defined(RT_INSPECT) && !defined(RT_ALL_HITS)
 #define RT_STREAM RT_LANES
 #define RT_STREAM_OF(blocks_left) min(blocks_left, (uint)RT_LANES)
 #define RT_FOR_EACH_PACKET(b, count) for (uint b = 0; b < (count); ++b)

@@ -22,6 +22,9 @@ typedef struct rt_rays {
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
     vint axis_x, axis_y, axis_z;   /* they differ by lane, and only then are these filled in */
+#if RT_HAS_MASKS
+    vint mask;                     /* what instances must have a bit of: RT_SEEN_BY_*; set by RT_SEEN_BY */
+#endif
     vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
 } rt_rays;
@@ -35,6 +38,9 @@ typedef struct rt_hits {
     vint leaf;         /* position in leaf order; -1: none; -2 - i: plane i */
     vint prim;         /* the primitive's number; the lower of two at the same t is the hit, whatever the order of visits */
     vint instance;     /* -1: none */
+#ifdef RT_ALL_HITS
+    rt_hit_list *list; /* takes all hits; u to instance have no value */
+#endif
 #ifdef RT_COUNT_STEPS
     uint steps, leaf_tests, lane_steps; /* sums over all lanes, see rt_hit */
 #endif
@@ -45,6 +51,13 @@ typedef struct rt_hits {
     int step_budget; /* steps that the traversal may still take; negative: it was stopped */
 #endif
 } rt_hits;
+
+/* Says of which kind rays are, RT_SEEN_BY_* as a vint. Nothing where no instance has a mask. */
+#if RT_HAS_MASKS
+#define RT_SEEN_BY(ray, kind) (ray)->mask = (kind);
+#else
+#define RT_SEEN_BY(ray, kind)
+#endif
 
 /* For programs that count; see CONTRACT.md. Other programs do not pay: code that only feeds these macros is dead there. */
 #ifdef RT_COUNT_STEPS
@@ -187,11 +200,15 @@ RT_INLINE int rt_incoherent(const rt_rays *r, vfloat area, uint bits)
 #endif
 }
 
-/* Lanes in which a primitive at distance t is the nearest hit so far. Of two primitives at one distance the lower number
- * wins. */
+/* Lanes in which a primitive at distance t is the nearest hit so far, or one that a list of hits wants. Of two primitives at one
+ * distance the lower number wins. */
 RT_INLINE vmask rt_closer(const rt_rays *r, const rt_hits *h, vfloat t, uint prim)
 {
+#ifdef RT_ALL_HITS
+    return RT_MASK(t >= r->t_min) & RT_MASK(t <= h->t) & rt_list_wants(h->list, t, prim);
+#else
     return RT_MASK(t >= r->t_min) & (RT_MASK(t < h->t) | (RT_MASK(t == h->t) & RT_MASK(rt_vint((int)prim) < h->prim)));
+#endif
 }
 
 /* The last step of a slab test (Kay, Kajiya 1986, "Ray Tracing Complex Scenes"). Given the distances at which a ray meets the

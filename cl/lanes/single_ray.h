@@ -31,6 +31,9 @@ typedef struct rt_single_rays {
 typedef struct rt_single_hits {
     float t[RT_LANES], u[RT_LANES], v[RT_LANES], nx[RT_LANES], ny[RT_LANES], nz[RT_LANES];
     int leaf[RT_LANES], prim[RT_LANES], instance[RT_LANES];
+#ifdef RT_ALL_HITS
+    rt_hit_list *list;
+#endif
 } __attribute__((aligned(64))) rt_single_hits;
 
 RT_INLINE void rt_spread_rays(const rt_rays *from, rt_single_rays *to)
@@ -53,6 +56,9 @@ RT_INLINE void rt_spread_hits(const rt_hits *from, rt_single_hits *to)
     rt_store(from->t, to->t), rt_store(from->u, to->u), rt_store(from->v, to->v);
     rt_store(from->nx, to->nx), rt_store(from->ny, to->ny), rt_store(from->nz, to->nz);
     rt_store(from->leaf, to->leaf), rt_store(from->prim, to->prim), rt_store(from->instance, to->instance);
+#ifdef RT_ALL_HITS
+    to->list = from->list;
+#endif
 }
 
 /* Makes rt_hits of the arrays. The counters of `to` keep their values. */
@@ -61,6 +67,9 @@ RT_INLINE void rt_gather_hits(const rt_single_hits *from, rt_hits *to)
     to->t = rt_load(from->t), to->u = rt_load(from->u), to->v = rt_load(from->v);
     to->nx = rt_load(from->nx), to->ny = rt_load(from->ny), to->nz = rt_load(from->nz);
     to->leaf = rt_load(from->leaf), to->prim = rt_load(from->prim), to->instance = rt_load(from->instance);
+#ifdef RT_ALL_HITS
+    to->list = from->list;
+#endif
 }
 
 #endif

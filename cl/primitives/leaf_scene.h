@@ -14,13 +14,21 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
 {
     const global rt_packed_prim *leaf = ctx->leaves + at;
     vfloat entry;
-    const vmask enters = rt_enter_bounds(rt_vfloat(leaf->a[0]), rt_vfloat(leaf->a[1]), rt_vfloat(leaf->a[2]), rt_vfloat(leaf->b[0]),
+    vmask enters = rt_enter_bounds(rt_vfloat(leaf->a[0]), rt_vfloat(leaf->a[1]), rt_vfloat(leaf->a[2]), rt_vfloat(leaf->b[0]),
                                          rt_vfloat(leaf->b[1]), rt_vfloat(leaf->b[2]), r, h, &entry);
+#if RT_HAS_MASKS
+    const uint index = RT_REF_INDEX(leaf->ref);
+    const global rt_instance *instance = ctx->instances + index;
+    enters &= RT_MASK((r->mask & rt_vint((int)~instance->hidden)) != rt_vint(0));
+    const uint active = rt_bits(enters);
+    if (active == 0u) return;
+#else
     const uint active = rt_bits(enters);
     if (active == 0u) return;
     const uint index = RT_REF_INDEX(leaf->ref);
     const global rt_instance *instance = ctx->instances + index;
     if (instance->hidden) return;
+#endif
     const global float *m = instance->object_from_world;
     rt_rays inner;
     inner.ox = fma(rt_vfloat(m[0]), r->ox, fma(rt_vfloat(m[1]), r->oy, fma(rt_vfloat(m[2]), r->oz, rt_vfloat(m[3]))));
@@ -36,7 +44,15 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
     const vint before = h->prim, first = rt_vint((int)instance->first_prim);
     h->t = rt_select(enters, t, rt_vfloat(-1.0f));
     h->prim = before - first;
+#ifdef RT_ALL_HITS
+    h->list->first_prim = (int)instance->first_prim;
+    h->list->inside = (int)index;
+#endif
     RT_FN(rt_mesh)(ctx, instance->root, &inner, h);
+#ifdef RT_ALL_HITS
+    h->list->first_prim = 0;
+    h->list->inside = -1;
+#endif
     h->t = rt_select(enters, h->t, t);
     h->prim += first;
     h->instance = rt_select(RT_MASK(h->prim != before), rt_vint((int)index), h->instance);

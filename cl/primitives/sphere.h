@@ -22,7 +22,13 @@ RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_packed_prim *leaf, uint at, 
     const vfloat c = fma(fx, fx, fma(fy, fy, fz * fz)) - rt_vfloat(radius * radius);
     const vfloat t_a = rt_select(RT_MASK(q != zero), c / q, zero), t_b = q / a;
     const vfloat t_near = rt_min(t_a, t_b), t_far = rt_max(t_a, t_b);
+#ifdef RT_ALL_HITS /* both sides are hits */
+    const vmask enters = meets & RT_MASK(t_near > zero) & rt_closer(r, h, t_near, leaf->prim);
+    if (rt_any(enters)) RT_FN(rt_record)(h, enters, t_near, zero, zero, zero, zero, zero, (int)at, leaf->prim);
+    const vfloat t = t_far;
+#else
     const vfloat t = rt_select(RT_MASK(t_near >= r->t_min) & RT_MASK(t_near > zero), t_near, t_far);
+#endif
     const vmask closer = meets & RT_MASK(t > zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
     RT_FN(rt_record)(h, closer, t, zero, zero, fma(t, r->dx, fx), fma(t, r->dy, fy), fma(t, r->dz, fz), (int)at, leaf->prim);

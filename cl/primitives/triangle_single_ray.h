@@ -17,7 +17,11 @@ RT_INLINE void RT_FN(rt_hit_triangle_single_ray)(const global rt_packed_prim *le
     const float t = RT_PLANE_DISTANCE(height, facing, RT_MIN3(ta, tb, tc), RT_MAX3(ta, tb, tc));
     /* As rt_closer. */
     if (!(t >= RT_AT(r->t_min, l) && t <= RT_AT(h->t, l))) return;
+#ifdef RT_ALL_HITS
+    if (!rt_list_wants_one(h->list, l, t, leaf->prim)) return;
+#else
     if (t == RT_AT(h->t, l) && (int)leaf->prim >= RT_AT(h->prim, l)) return;
+#endif
 
 #define RT_PROJECT(corner, z, x, y)                                                                                            \
     const float x = RT_SHEARED(sx, z, RT_AT(r->px, l), leaf->corner[kx]), y = RT_SHEARED(sy, z, RT_AT(r->py, l), leaf->corner[ky]);
@@ -35,6 +39,9 @@ RT_INLINE void RT_FN(rt_hit_triangle_single_ray)(const global rt_packed_prim *le
     if (det == 0.0f) return;
 #if RT_ANY_HIT
     RT_AT(h->t, l) = -1.0f;
+#elif defined(RT_ALL_HITS)
+    const float scale = 1.0f / det;
+    RT_AT(h->t, l) = rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim);
 #else
     const float scale = 1.0f / det;
     RT_AT(h->t, l) = t;

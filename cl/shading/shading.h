@@ -98,6 +98,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             shadow->dy = towards.y;
             shadow->dz = towards.z;
             shadow->t_min = zero;
+            RT_SEEN_BY(shadow, rt_vint(RT_SEEN_BY_SHADOW))
             rt_clear_hits(hits + b, lit);
             hits[b].t = rt_select(lit, distance, rt_vfloat(-1.0f));
             if (frame->shadows != 0u && asked[b] != 0u) {

@@ -94,7 +94,16 @@ void add_rays(CLI::App& app, TraceCommand& command) {
     single(app.add_option("-o,--output", command.output, "Where to write t, prim, instance, u, v of each hit; - is stdout"))
         ->type_name("HITS")
         ->required();
-    app.add_flag("--any", command.any_hit, "Ask only whether something is hit between t_min and t_max: 1 or 0 a ray");
+    CLI::Option* const any =
+        app.add_flag("--any", command.any_hit, "Ask only whether something is hit between t_min and t_max: 1 or 0 a ray");
+    CLI::Option* const all =
+        app.add_flag("--all", command.all,
+                     "Write all hits of each ray in their order: the ray's number from 0, then what -o says, a line a hit");
+    CLI::Option* const count = app.add_flag("--count", command.count, "Write how many hits each ray has, a number a ray");
+    single(app.add_option("--mask", command.mask, "Of the rays: they pass instances whose mask has no bit of it, 0 to 255"))
+        ->check(CLI::Range(0u, RT_SEEN_BY_ALL));
+    any->excludes(all)->excludes(count);
+    all->excludes(count);
 }
 
 void add_compare(CLI::App& app, CompareCommand& command) {
@@ -193,7 +202,8 @@ void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("what", bench.what,
-                   "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
+                   "thesis (its six tests, then and now), packets, accel (every structure and peer), zoo (every structure on "
+                   "eight scenes), scale, large (up to 100 M "
                    "triangles), cpu (side by side with the best of each peer), devices (one picture by one, two, ... of "
                    "--device), mpi (one picture by 1, 2, 4 processes that mpirun starts), light (paths of light: errors over "
                    "samples and seconds), moving (refits and rebuilds while "
@@ -229,7 +239,7 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->transform(percent())
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
-    single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suites scale and large"))
+    single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suites scale, large and zoo"))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--ranks", bench.ranks, "Of suite mpi: how many processes share a picture, one number a row; default: 1,2,4")

@@ -90,6 +90,9 @@ struct TraceCommand {
     std::string rays_file;  // "-": stdin
     std::string output;     // "-": stdout
     bool any_hit = false;   // only whether something is hit between t_min and t_max
+    bool all = false;       // all hits, not only the nearest
+    bool count = false;     // how many
+    unsigned mask = RT_SEEN_BY_ALL;
     bool quiet = false;
 };
 int run_trace(const PluginRegistry& plugins, const TraceCommand& command);

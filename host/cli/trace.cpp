@@ -56,14 +56,22 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     const auto accel = std::make_shared<const AccelData>(build_accel(*scene, plugin, params, progress, target));
     const auto prepared = prepare_queries(*device, scene, accel, settings, progress);
     progress.stage("tracing rays");
-    std::vector<rt_hit> hits;
-    RayQuery query;
-    query.any_hit = command.any_hit;
-    RayQueries(device).trace(*prepared, RayBlocks(rays, prepared->layout.lanes), query, &hits);
+    RayQueries queries(device);
+    std::string text;
+    if (command.all || command.count) {
+        const AllHits hits = queries.trace_all(*prepared, rays, {command.count, false, command.mask}, progress);
+        text = command.count ? counts_text(hits) : all_hits_text(hits);
+    } else {
+        std::vector<rt_hit> hits;
+        RayQuery query;
+        query.any_hit = command.any_hit;
+        query.mask = command.mask;
+        queries.trace(*prepared, RayBlocks(rays, prepared->layout.lanes), query, &hits);
+        text = hits_text(hits, command.any_hit);
+    }
     progress.clear();
     if (progress.cancelled()) throw Cancelled();
 
-    const std::string text = hits_text(hits, command.any_hit);
     if (command.output == "-")
         std::fwrite(text.data(), 1, text.size(), stdout);
     else

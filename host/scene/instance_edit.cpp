@@ -43,6 +43,16 @@ void InstanceEdits::hide(rt_u32 instance, bool hide) {
     if (!hide && is) hidden.erase(at);
 }
 
+rt_u32 InstanceEdits::mask_of(rt_u32 instance) const {
+    const auto found = masks.find(instance);
+    return found == masks.end() ? RT_SEEN_BY_ALL : found->second;
+}
+
+void InstanceEdits::set_mask(rt_u32 instance, rt_u32 mask) {
+    masks.erase(instance);
+    if (mask != RT_SEEN_BY_ALL) masks[instance] = mask;
+}
+
 const std::array<float, 3>& MeshMiddles::of(const Scene& scene, rt_u32 mesh) {
     const auto [at, is_new] = known_.emplace(mesh, std::array<float, 3>{});
     if (is_new) {
@@ -88,6 +98,8 @@ Scene with_edits(const Scene& rest, const InstanceEdits& edits, const std::vecto
             scene.instances[i].hidden = true;
             scene.instances[i].visible = false;
         }
+    for (const auto& [i, mask] : edits.masks)
+        if (i < scene.instances.size()) scene.instances[i].mask = mask;
     return scene;
 }
 

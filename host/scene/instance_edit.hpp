@@ -1,4 +1,5 @@
-// instance_edit.hpp -- instances that a user moves, turns, scales and hides, on top of where files and poses have them.
+// instance_edit.hpp -- instances that a user moves, turns, scales and hides, and masks of rays, on top of where files and poses
+// have them.
 #pragma once
 #include <map>
 #include <vector>
@@ -14,17 +15,20 @@ struct InstanceEdits {
         InstanceShift shift;
         bool operator==(const Moved& b) const { return instance == b.instance && shift == b.shift; }
     };
-    std::vector<Moved> moved;    // ascending; each shifts its instance
-    std::vector<rt_u32> hidden;  // ascending
+    std::vector<Moved> moved;        // ascending; each shifts its instance
+    std::vector<rt_u32> hidden;      // ascending
+    std::map<rt_u32, rt_u32> masks;  // kinds of rays that hit an instance: RT_SEEN_BY_*; of those that not all do
 
-    bool empty() const { return moved.empty() && hidden.empty(); }
-    bool operator==(const InstanceEdits& b) const { return moved == b.moved && hidden == b.hidden; }
+    bool empty() const { return moved.empty() && hidden.empty() && masks.empty(); }
+    bool operator==(const InstanceEdits& b) const { return moved == b.moved && hidden == b.hidden && masks == b.masks; }
     bool operator!=(const InstanceEdits& b) const { return !(*this == b); }
     InstanceShift shift_of(rt_u32 instance) const;
     // A shift that does nothing is none.
     void set_shift(rt_u32 instance, const InstanceShift& shift);
     bool is_hidden(rt_u32 instance) const;
     void hide(rt_u32 instance, bool hidden);
+    rt_u32 mask_of(rt_u32 instance) const;
+    void set_mask(rt_u32 instance, rt_u32 mask);
 };
 
 // The middles of meshes, found once each: in O(its vertices).

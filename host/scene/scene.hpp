@@ -59,6 +59,7 @@ struct Instance {
     InstanceShift shift{};
     std::array<float, 3> pivot{};
     std::array<double, 3> rounded_off{};  // for the import only: what rounding took from world_from_object's translation
+    rt_u32 mask = RT_SEEN_BY_ALL;         // kinds of rays that hit it
 };
 
 struct Sphere {

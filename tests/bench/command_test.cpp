@@ -50,7 +50,7 @@ class BenchCommand : public testing::Test {
 TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
     RunOptions nothing;
     nothing.environment["CLARITY_DEVICE"] = "no such device";
-    for (const char* suite : {"thesis", "packets", "accel", "scale", "large", "devices", "quick"}) {
+    for (const char* suite : {"thesis", "packets", "accel", "scale", "large", "devices", "zoo", "quick"}) {
         const ProgramResult result = bench({suite, "--list"}, nothing);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_NE(result.out.find(suite), std::string::npos) << result.out;

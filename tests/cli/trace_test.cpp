@@ -75,6 +75,23 @@ TEST_F(Trace, AnswersRays) {
     EXPECT_EQ(any, (std::vector<std::vector<double>>{{1}, {1}, {0}, {0}}));
 }
 
+TEST_F(Trace, ListsAllHits) {
+    if (run_program({"devices"}).exit_code == 3) GTEST_SKIP() << "no OpenCL device on this machine";
+    const std::string rays = "0 0 5 0 0 0 -1 inf\n0 3 5 0 0 0 -1 inf\n0 0 5 4.5 0 0 -1 inf\n";
+    const auto all = hits(rays, {"--accel", "linear", "--all"});
+    ASSERT_EQ(all.size(), 7u);
+    const double expected[7][3] = {{0, 4, 0}, {0, 6, 0}, {0, 9, 1}, {0, 11, 1}, {2, 6, 0}, {2, 9, 1}, {2, 11, 1}};
+    for (size_t i = 0; i < 7; ++i) {
+        ASSERT_EQ(all[i].size(), 6u);
+        EXPECT_EQ(all[i][0], expected[i][0]) << "the ray of hit " << i;
+        EXPECT_NEAR(all[i][1], expected[i][1], 1e-5) << "t of hit " << i;
+        EXPECT_EQ(all[i][2], expected[i][2]) << "prim of hit " << i;
+    }
+    EXPECT_EQ(hits(rays, {"--accel", "linear", "--count"}), (std::vector<std::vector<double>>{{4}, {0}, {3}}));
+    const ProgramResult both = run_program({"trace", scene_, "--rays", scratch_.path("rays.txt"), "-o", "-", "--all", "--any"});
+    EXPECT_EQ(both.exit_code, 2) << both.err;
+}
+
 TEST_F(Trace, WritesAFile) {
     if (run_program({"devices"}).exit_code == 3) GTEST_SKIP() << "no OpenCL device on this machine";
     const std::string file = scratch_.path("hits.txt");

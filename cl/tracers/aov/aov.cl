@@ -58,6 +58,7 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
             vint in_x, in_y;
             const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
             rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
+            RT_SEEN_BY(rays + b, rt_vint(RT_SEEN_BY_CAMERA))
             rt_prepare(rays + b, rt_bits(active));
             rt_clear_hits(hits + b, active);
         }

@@ -115,6 +115,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                     active[b] = RT_MASK(rt_lane_index() + rt_vint((int)base) < rt_vint((int)count));
                     rt_take(current, base, rays + b, weights + b, pixels_of + b);
                 }
+                RT_SEEN_BY(rays + b, rt_vint(generation == 0u ? RT_SEEN_BY_CAMERA : RT_SEEN_BY_MIRROR))
                 rt_prepare(rays + b, rt_bits(active[b]));
                 RT_USE_AREA(generation, current, base, rays + b, active[b])
                 rt_clear_hits(hits + b, active[b]);

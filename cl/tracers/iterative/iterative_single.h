@@ -26,6 +26,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
      * ray 0 may be in registers; then its element of the array is empty. */
     for (uint generation = 0, at = 0, next_count = 0; count != 0u;) {
         rt_hits hit;
+        RT_SEEN_BY(&ray, generation == 0u ? RT_SEEN_BY_CAMERA : RT_SEEN_BY_MIRROR)
         rt_prepare(&ray, 1u);
         rt_clear_hits(&hit, -1);
         rt_trace_closest(ctx, frame, &ray, &hit);

@@ -159,6 +159,7 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
     ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
     ray.dx = s.towards.x, ray.dy = s.towards.y, ray.dz = s.towards.z;
     ray.t_min = zero;
+    RT_SEEN_BY(&ray, rt_vint(RT_SEEN_BY_SHADOW))
     rt_clear_hits(&hit, asked);
     hit.t = rt_select(asked, s.distance, rt_vfloat(-1.0f));
     if (frame->shadows != 0u) {
@@ -239,6 +240,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     ray.ox = p->origin.x, ray.oy = p->origin.y, ray.oz = p->origin.z;
     ray.dx = p->direction.x, ray.dy = p->direction.y, ray.dz = p->direction.z;
     ray.t_min = rt_vfloat(0.0f);
+    RT_SEEN_BY(&ray, rt_select(RT_MASK(p->event == rt_vint(0)), rt_vint(RT_SEEN_BY_CAMERA), rt_vint(RT_SEEN_BY_MIRROR)))
     rt_prepare(&ray, bits);
 #ifdef RT_SPLITS_INCOHERENT
     ray.incoherent = rt_incoherent(&ray, p->area, bits);

@@ -49,7 +49,7 @@ trace_dynamic_fetch(const constant rt_frame *frame, const uint first, const uint
             index = next + popcount(idle_bits & before_me);
             if (index < next_end) {
                 float t_max;
-                rt_load_ray_block(rays, index, &ray, &t_max);
+                rt_load_ray_block(frame, rays, index, &ray, &t_max);
                 rt_clear_hits(&hit, -1);
                 if (t_max >= 0.0f) {
                     hit.t = t_max;

@@ -32,8 +32,9 @@ RT_INLINE void rt_fetch_ahead(const global float *blocks, uint block, uint last)
 #endif
 }
 
-RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays *ray, vfloat *t_max)
+RT_INLINE void rt_load_ray_block(const constant rt_frame *frame, const global float *blocks, uint block, rt_rays *ray, vfloat *t_max)
 {
+    RT_SEEN_BY(ray, rt_vint((int)frame->ray_mask))
 #if RT_LANES == 1
     const global float4 *in = (const global float4 *)blocks + 2u * (size_t)block; /* 16-byte loads */
     const float4 origin = in[0], direction = in[1];

@@ -18,7 +18,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 rt_fetch_ahead(rays, base + b, blocks - 1u);
                 vfloat t_max;
 #if RT_LANES == 1 /* one load has all fields */
-                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+                rt_load_ray_block(frame, rays, base + b, ray + b, &t_max);
 #else
                 t_max = rt_load_reach(rays, base + b);
 #endif
@@ -28,7 +28,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 RT_CLEAR_OVERFLOW(hit + b)
                 if (!rt_any(active[b])) continue;
 #if RT_LANES > 1
-                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+                rt_load_ray_block(frame, rays, base + b, ray + b, &t_max);
 #endif
                 rt_prepare_for_boxes(ray + b);
                 /* Skips packets that miss the scene: where few rays hit anything, a stream spends most of its time on preparing

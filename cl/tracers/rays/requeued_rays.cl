@@ -20,7 +20,7 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
     rt_rays ray;
     rt_hits hit;
     float t_max;
-    rt_load_ray_block(rays, at, &ray, &t_max);
+    rt_load_ray_block(frame, rays, at, &ray, &t_max);
     rt_clear_hits(&hit, -1);
     if (t_max >= 0.0f) {
         hit.t = t_max;
@@ -54,7 +54,7 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
         rt_rays ray;
         rt_hits hit;
         float t_max;
-        rt_load_ray_block(rays, at, &ray, &t_max);
+        rt_load_ray_block(frame, rays, at, &ray, &t_max);
         rt_prepare(&ray, 1u);
         rt_clear_hits(&hit, -1);
         hit.step_budget = INT_MAX;
@@ -87,7 +87,7 @@ trace_long_any(const constant rt_frame *frame, const uint fields, const global f
         const uint at = list[2u + i];
         rt_rays ray;
         rt_hits hit;
-        rt_load_ray_block(rays, at, &ray, &hit.t);
+        rt_load_ray_block(frame, rays, at, &ray, &hit.t);
         rt_prepare(&ray, 1u);
         hit.step_budget = INT_MAX;
         RT_CLEAR_OVERFLOW(&hit)

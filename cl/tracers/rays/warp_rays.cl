@@ -59,7 +59,7 @@ trace_warps(const constant rt_frame *frame, const uint first_group, const uint c
     RT_FOR_EACH_RAY_OF_ITEM(i) {
         const uint at = first + i * RT_SUBGROUP_SIZE;
         float t_max;
-        rt_load_ray_block(rays, min(at, count - 1u), ray + i, &t_max); /* every work-item must take part in votes */
+        rt_load_ray_block(frame, rays, min(at, count - 1u), ray + i, &t_max); /* every work-item must take part in votes */
         active[i] = at < count && t_max >= 0.0f;
         rt_clear_hits(hit + i, -1);
         hit[i].t = active[i] ? t_max : -1.0f;

@@ -91,6 +91,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
             uint splits = 0u;
             if (bits != 0u) {
                 rt_hits hit;
+                RT_SEEN_BY(&ray, rt_select(RT_MASK(generation == rt_vint(0)), rt_vint(RT_SEEN_BY_CAMERA), rt_vint(RT_SEEN_BY_MIRROR)))
                 rt_prepare(&ray, bits);
                 rt_clear_hits(&hit, active);
                 rt_trace_closest(&ctx, frame, &ray, &hit);

@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/packed_file.hpp"
+#include "bench/suites/zoo_scenes.hpp"
 #include "render/edit/edit.hpp"
 
 namespace clarity::bench {
@@ -167,6 +168,49 @@ std::vector<BenchView> SceneCatalog::views() const {
     return views;
 }
 
+std::vector<BenchScene> SceneCatalog::zoo(uint64_t triangles) const {
+    struct Computed {
+        const char *name, *computed, *with, *camera, *light;
+    };
+    static const Computed kComputed[] = {
+        {"teapot in a stadium", "stadium", "thesis/models/teapot", "7,4.5,9,0.2,1.4,0,40", "10,20,15"},
+        {"hair", "hair", nullptr, "0,0.3,4.2,0,-0.1,0,45", "4,6,5"},
+        {"city", "city", nullptr, "-24,9,20,0,0.5,0,45", "-20,40,30"},
+        {"height field", "height field", nullptr, "-1.9,1.6,2.6,0,-0.1,0,50", "-3,5,1"},
+        {"soup", "soup", nullptr, "1.4,1.1,3.6,0,0,0,45", "3,5,4"},
+    };
+    static const struct {
+        const char* name;
+        bool is_view;  // of views(), else of shared()
+        uint64_t triangles;
+    } kScans[] = {{"bunny", false, 69'451}, {"lucy near", true, 100'000}, {"dragon_871k", false, 871'414}};
+    constexpr uint64_t kUsual = 200'000;
+    std::vector<BenchScene> scenes;
+    for (const Computed& row : kComputed) {
+        BenchScene scene = row.with ? project(row.with) : BenchScene();
+        scene.name = row.name;
+        scene.computed = row.computed;
+        scene.triangles = std::min(triangles, kUsual);
+        scene.camera = row.camera;
+        scene.light = row.light;
+        scenes.push_back(scene);
+    }
+    std::vector<BenchScene> views_too = shared();
+    for (const BenchView& view : views()) views_too.push_back(view.scene);
+    for (const auto& scan : kScans) {
+        const auto found =
+            std::find_if(views_too.begin(), views_too.end(), [&](const BenchScene& s) { return s.name == scan.name; });
+        BenchScene scene = found != views_too.end() ? *found : BenchScene();
+        if (found == views_too.end())
+            scene.missing = std::string(scan.name) + ": CLARITY_SHARED names no such model, so it is left out";
+        if (scan.triangles > triangles)
+            scene.missing =
+                std::string(scan.name) + " has " + std::to_string(scan.triangles) + " triangles: beyond --max-triangles";
+        scenes.push_back(scene);
+    }
+    return scenes;
+}
+
 BenchScene scene_of_file(const std::string& path) {
     BenchScene scene;
     scene.name = fs::path(name_without_gz(path)).stem().string();
@@ -178,8 +222,10 @@ LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, f
                        const import::ImportOptions& options, Progress& progress) {
     LoadedScene loaded;
     const auto begin = std::chrono::steady_clock::now();
-    loaded.scene =
-        std::make_shared<const Scene>(with_scene_edits(import::import_scene(plugins, scene.files, options, progress)));
+    Scene made;
+    if (!scene.files.empty()) made = with_scene_edits(import::import_scene(plugins, scene.files, options, progress));
+    if (!scene.computed.empty()) add_zoo_scene(scene.computed, scene.triangles, made);
+    loaded.scene = std::make_shared<const Scene>(std::move(made));
     loaded.import_ms = ms_since(begin);
     loaded.view = make_view(*loaded.scene, aspect, scene.camera, scene.light);
     return loaded;

@@ -16,6 +16,8 @@ struct BenchScene {
     std::string name;
     std::vector<std::string> files;  // imported together as one scene; .gz files are unpacked first
     std::string camera, light;       // in the syntax of make_view; "": the scene's own
+    std::string computed;            // a name of zoo_scenes.hpp: what is added to the files, of which there may be none
+    uint64_t triangles = 0;          // of what is computed, about
     std::string missing;             // not empty: the scene was not found; where it was sought, and what to do
 };
 
@@ -44,6 +46,8 @@ class SceneCatalog {
     // Models of the project and of the shared folder from near (one triangle covers many pixels) and from far (one pixel covers
     // several triangles). The `missing` of an entry says that its file was not found.
     std::vector<BenchView> views() const;
+    // Eight scenes that are hard in different ways: five that are computed, of about so many triangles, and three scans.
+    std::vector<BenchScene> zoo(uint64_t triangles) const;
 
  private:
     std::string project_, shared_;

@@ -108,6 +108,10 @@ class Planner {
                 if (word == "views" || view.scene.name == word) views.push_back(view);
             return views;
         }
+        if (word == "zoo") {
+            for (const BenchScene& scene : catalog_.zoo(request_.max_triangles)) views.push_back({scene, 0});
+            return views;
+        }
         // One of the shared models; with "+ FILE", under the sky of that scene of the project.
         static const std::vector<std::string> kOfShared = {"dragon_871k", "salle_de_bain + plaster_sky"};
         const bool is_one = std::find(kOfShared.begin(), kOfShared.end(), word) != kOfShared.end();
@@ -253,6 +257,9 @@ class Planner {
         add_cases(scene, {"build", "primary", "shadow", "reflection", "diffuse", "frame"}, every_accel(), kAllQualities);
         if (request_.suites.empty()) dropped(scene);
     }
+
+    // Every structure on scenes that are hard in different ways.
+    void zoo(size_t scene) { add_cases(scene, {"build", "primary", "shadow", "reflection", "diffuse"}, every_tree()); }
 
     void scale(size_t scene) { add_cases(scene, {"build", "primary", "shadow", "diffuse", "frame"}, every_tree(), {"medium"}); }
 
@@ -409,6 +416,7 @@ const std::vector<Planner::Row>& Planner::rows() {
          &Planner::light},
         {"moving", 0, 240, {"thesis/aim_100k", "shared"}, {}, &Planner::moving},
         {"policy", 0, 600, {"thesis/models/skull"}, {}, &Planner::policy},
+        {"zoo", 3600, 450, {"zoo"}, {}, &Planner::zoo},
         {"quick", 55, 0, {"thesis/2_two_spheres", "thesis/6_2406_triangles", "thesis/models/skull"}, {}, &Planner::quick}};
     return rows;
 }

@@ -299,7 +299,7 @@ Truth BruteForce::trace(const rt_ray& given) const {
         if (RT_REF_KIND(ref) != RT_REF_INSTANCE || !may_enter(ray, scene_.prims[i])) continue;
         const rt_u32 index = RT_REF_INDEX(ref);
         const rt_instance& instance = scene_.instances[index];
-        if (instance.hidden) continue;
+        if (instance.hidden == RT_NONE) continue;
         const float* m = instance.object_from_world;
         const auto turned = [&](const Vec& v) {
             return Vec{m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],

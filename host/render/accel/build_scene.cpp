@@ -242,7 +242,7 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
 
 // Which meshes get a tree of their own. A mesh with one instance is flattened: its triangles join the world's tree, because one
 // more tree would only make rays slower. A mirrored mesh is not flattened, because its triangles would turn inside out, and a
-// mesh that moves is not, so that the world's tree stays as it is.
+// mesh that moves is not, so that the world's tree stays as it is. Nor is one that some rays pass: only instances have masks.
 struct Grouping {
     std::vector<Affine> inverse;  // of each instance
     std::vector<bool> built;      // for each instance: it is in the structure. One that is apart may be hidden there
@@ -273,7 +273,7 @@ Grouping group_meshes(const Scene& scene) {
         const bool singular = !invert(instance.world_from_object, out.inverse[i]);
         out.built[i] = instance.visible || (instance.apart && !singular && count > 0);
         if (!out.built[i]) continue;
-        const bool alone = instance.apart || (moves && count >= kLargeMesh);
+        const bool alone = instance.apart || instance.mask != RT_SEEN_BY_ALL || (moves && count >= kLargeMesh);
         const bool together = uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !alone;
         out.flat[i] = together || singular || count == 0;
         if (out.flat[i]) {
@@ -291,6 +291,10 @@ Grouping group_meshes(const Scene& scene) {
 }
 
 }  // namespace
+
+rt_u32 hidden_from(const Instance& instance, bool visible) {
+    return visible ? RT_SEEN_BY_ALL & ~instance.mask : RT_NONE;
+}
 
 bool mirrors(const Affine& m) {
     const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
@@ -411,7 +415,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             std::memcpy(placed.object_from_world, inverse[i].data(), sizeof placed.object_from_world);
             placed.first_prim = next_prim;
             placed.material = instance.material;
-            placed.hidden = instance.visible ? 0 : 1;
+            placed.hidden = hidden_from(instance, instance.visible);
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
             if (group_boxes[group].empty) group_boxes[group] = bounds_of(out, group);
             rt_prim prim = box_of_instance(group_boxes[group], instance.world_from_object, inverse[i], index);

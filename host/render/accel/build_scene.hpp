@@ -56,6 +56,8 @@ rt_prim box_of(const BuildScene& scene, const rt_packed_prim& packed);
 rt_prim box_of_instance(const Bounds& box, const Affine& world_from_object, const Affine& object_from_world, rt_u32 number);
 // Whether a transform contains a reflection (negative determinant): such an instance is never flattened.
 bool mirrors(const Affine& world_from_object);
+// rt_instance::hidden of an instance that is visible, or is not.
+rt_u32 hidden_from(const Instance& instance, bool visible);
 
 // Converts a scene. Throws Error(failed) if it has too many triangles, and Cancelled.
 BuildScene make_build_scene(const Scene& scene, Progress& progress);

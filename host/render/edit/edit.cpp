@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <map>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
@@ -205,15 +206,22 @@ void read_shift(const Scene& scene, InstanceEdits& edits, const std::string& key
     const std::vector<std::string> path = split(key, '.');
     rt_u32 at = 0;
     if (path.size() != 3 || !read_number(path[1], at) ||
-        (path[2] != "translate" && path[2] != "rotate" && path[2] != "scale" && path[2] != "hidden"))
+        (path[2] != "translate" && path[2] != "rotate" && path[2] != "scale" && path[2] != "hidden" && path[2] != "mask"))
         throw Error(Exit::usage,
-                    key + ": expected instance.N.PART with N from 0 and PART one of translate, rotate, scale, hidden");
+                    key + ": expected instance.N.PART with N from 0 and PART one of translate, rotate, scale, hidden, mask");
     if (at >= scene.instances.size())
         throw Error(Exit::usage, key + ": the scene has " + std::to_string(scene.instances.size()) +
                                      " instances, counted from 0; there is no " + std::to_string(at));
     if (path[2] == "hidden") {
         if (value != "0" && value != "1") refuse_value(key, value, "0 or 1");
         return edits.hide(at, value == "1");
+    }
+    if (path[2] == "mask") {
+        rt_u32 mask = 0;
+        if (!read_number(value, mask) || mask > RT_SEEN_BY_ALL)
+            refuse_value(key, value,
+                         "a sum of 1 (camera rays), 2 (shadow rays), 4 (mirrored and other rays) and more bits, up to 255");
+        return edits.set_mask(at, mask);
     }
     InstanceShift shift = edits.shift_of(at);
     const bool scales = path[2] == "scale";
@@ -329,6 +337,11 @@ void add_instance_words(const InstanceEdits& from, const InstanceEdits& to, std:
         add("scale", was.scale, is.scale);
     }
     if (from.hidden != to.hidden) words.push_back({"hide", hidden_text(to.hidden)});
+    std::map<rt_u32, rt_u32> masked = to.masks;
+    masked.insert(from.masks.begin(), from.masks.end());
+    for (const auto& [i, mask] : masked)
+        if (from.mask_of(i) != to.mask_of(i))
+            words.push_back({"instance." + std::to_string(i) + ".mask", std::to_string(to.mask_of(i))});
 }
 
 }  // namespace

@@ -13,7 +13,8 @@
 //   material.N.USE  one of map_uses.hpp, as normal_map: none, or a texture of the scene (find_texture() in map_edit.hpp)
 //   hide         instances that the picture leaves out: 3,5-9
 //   instance.N.M where M is translate (x,y,z), rotate (degrees about x, then y, then z) or scale (x,y,z, or one number): moves
-//                instance N from where its file or pose has it; see instance_edit.hpp. hidden (0 or 1): as in `hide`
+//                instance N from where its file or pose has it; see instance_edit.hpp. hidden (0 or 1): as in `hide`; mask:
+//                kinds of rays that hit it
 #pragma once
 #include <string>
 #include <utility>

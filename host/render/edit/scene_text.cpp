@@ -81,6 +81,7 @@ std::string instance_lines(const InstanceEdits& before, const InstanceEdits& now
     for (const InstanceEdits* edits : {&before, &now}) {
         for (const InstanceEdits::Moved& moved : edits->moved) of_instance[moved.instance];
         for (const rt_u32 i : edits->hidden) of_instance[i];
+        for (const auto& [i, mask] : edits->masks) of_instance[i];
     }
     std::string lines;
     for (auto& [i, text] : of_instance) {
@@ -89,6 +90,7 @@ std::string instance_lines(const InstanceEdits& before, const InstanceEdits& now
         if (was.degrees != is.degrees) text += "  rotate" + spaced(is.degrees);
         if (was.scale != is.scale) text += "  scale" + spaced(is.scale);
         if (before.is_hidden(i) != now.is_hidden(i)) text += now.is_hidden(i) ? "  hidden 1" : "  hidden 0";
+        if (before.mask_of(i) != now.mask_of(i)) text += "  mask " + std::to_string(now.mask_of(i));
         if (!text.empty()) lines += "edit instance " + std::to_string(i) + text + "\n";
     }
     return lines;

@@ -169,7 +169,7 @@ class Collector {
         };
         add_group(0, RT_NONE);
         for (rt_u32 i = 0; i < instances_.size(); ++i)
-            if (!instances_[i].hidden) add_group(build.group_of_instance[i], i);
+            if ((instances_[i].hidden & RT_SEEN_BY_ALL) != RT_SEEN_BY_ALL) add_group(build.group_of_instance[i], i);
         std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.prim < b.prim; });
         for (const Found& f : found) {
             const rt_u32 map = scene_.materials[f.material].maps[RT_MAP_EMISSION];

@@ -21,7 +21,8 @@ enum : unsigned {
     kLayers = 64,         // one launch may trace several samples: rt_layer_of() in cl/tracers/camera.h
     kPicksLights = 128,   // has the table of emitters and the sky: cl/shading/emitters.h
     kSumsSamples = 256,   // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
-    kWhitted = 512        // lights with cl/shading/shading.h
+    kWhitted = 512,       // lights with cl/shading/shading.h
+    kAllHits = 1024       // lists hits instead of looking for the nearest: cl/lanes/hit_list.h
 };
 
 struct KernelRow {

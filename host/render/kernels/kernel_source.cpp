@@ -26,6 +26,7 @@ void write_numbers(SourceWriter& out) {
 
 void write_features(SourceWriter& out, const SceneFeatures& features, const Settings& settings, const KernelRow& row) {
     out.define_int("RT_HAS_INSTANCES", features.instances);
+    if (features.masks) out.define_int("RT_HAS_MASKS", 1);
     out.define_int("RT_HAS_SPHERES", features.spheres);
     out.define_int("RT_HAS_POLYGONS", features.polygons);
     out.define_int("RT_HAS_PLANES", features.planes);
@@ -53,9 +54,10 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Sett
 // Writes the beginning of every kernel: types, lanes, the structure's types, the buffers, and shapes. Returns the names of the
 // buffers as arguments.
 std::string write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel, const Scene& scene,
-                           const SceneFeatures& features, bool picks_lights) {
+                           const SceneFeatures& features, const KernelRow& row) {
     for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h"}) out.include(name);
     if (!layout.cpu) out.include("lanes/subgroup.h");
+    if (row.has(kAllHits)) out.include("lanes/hit_list.h");
     for (const char* name : {"lanes/rays.h", "lanes/ray_space.h", "primitives/loaded_prim.h"}) out.include(name);
     if (layout.cpu)
         for (const char* name : {"lanes/single_ray.h", "primitives/triangle_row.h"}) out.include(name);
@@ -63,7 +65,7 @@ std::string write_preamble(SourceWriter& out, const Layout& layout, const rt_plu
     if (accel.accel->types.text) out.include(accel, accel.accel->types);
     out.include("lanes/packet_stream.h");
     if (features.shapes) out.include("rt_shape.h");
-    const std::string arguments = write_context(out, *accel.accel, features, picks_lights);
+    const std::string arguments = write_context(out, *accel.accel, features, row.has(kPicksLights));
     if (features.shapes) write_shapes(out, scene);
     return arguments;
 }
@@ -108,7 +110,7 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
         if (accel.accel->capabilities & capability.bit) out.line(std::string("#define ") + capability.define);
     for (const auto& [name, value] : data.defines) out.define_uint(name, value);
 
-    source.scene_arguments = write_preamble(out, layout, accel, scene, features, row.has(kPicksLights));
+    source.scene_arguments = write_preamble(out, layout, accel, scene, features, row);
     write_queries(out, row, layout, features, accel);
     for (const char* name : {"lanes/vec.h", "shading/surface.h", "shading/point.h", "tracers/camera.h"}) out.include(name);
     for (const char* name : row.headers) out.include(name);

@@ -11,6 +11,8 @@ static_assert(RT_WRAP_REPEAT == 0 && RT_WRAP_CLAMP == 1 && RT_WRAP_MIRROR == 2, 
 SceneFeatures features_of(const Scene& scene, const BuildScene& build, const Optics& more) {
     SceneFeatures f;
     f.instances = !build.instances.empty();
+    f.masks = f.instances && std::any_of(scene.instances.begin(), scene.instances.end(),
+                                         [](const Instance& i) { return i.mask != RT_SEEN_BY_ALL; });
     f.spheres = !build.spheres.empty();
     f.polygons = !build.polygons.empty();
     f.planes = !build.planes.empty();

@@ -9,6 +9,7 @@ namespace clarity {
 struct SceneFeatures {
     bool instances = false, spheres = false, polygons = false, planes = false, normals = false, uvs = false, textures = false,
          shapes = false;
+    bool masks = false;  // an instance is passed by some kinds of rays
     bool sky_picture = false;
     bool colors = false;    // vertices have colours
     bool maps = false;      // a material has textures besides a plain one of its colour

@@ -242,8 +242,8 @@ void read_animate(Statement& s, Document& document, Diagnostics&) {
 }
 
 void read_instance_edits(Statement& s, const std::string& prefix, Document& document) {
-    enum { kTranslate, kRotate, kScale, kHidden };
-    s.expect_keys({{"translate"}, {"rotate"}, {"scale"}, {"hidden"}});
+    enum { kTranslate, kRotate, kScale, kHidden, kMask };
+    s.expect_keys({{"translate"}, {"rotate"}, {"scale"}, {"hidden"}, {"mask"}});
     const auto add = [&](const char* part, const std::string& value) {
         document.edits.push_back({prefix + part, value, s.position()});
     };
@@ -261,6 +261,13 @@ void read_instance_edits(Statement& s, const std::string& prefix, Document& docu
             case kHidden:
                 add("hidden", s.choice("value of `hidden`", {"0", "1"}) == 1 ? "1" : "0");
                 break;
+            case kMask: {
+                const float mask = s.number_between("`mask` (bits of the rays that hit it)", 0, 255);
+                if (mask != std::floor(mask))
+                    s.fail_at_last("expected a whole number: a sum of 1, 2, 4 and more bits, up to 255");
+                add("mask", std::to_string(static_cast<int>(mask)));
+                break;
+            }
         }
     }
 }

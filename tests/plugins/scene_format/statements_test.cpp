@@ -397,7 +397,7 @@ TEST(SceneFormat, StopsWhenCancelled) {
 
 TEST(SceneFormat, EditsBecomeTheWordsOfTheCommandLine) {
     const Recording r = import_good(
-        "edit instance 3 hidden 1 scale 2 translate 1 -.5 .1 rotate 0 90 0\n"
+        "edit instance 3 hidden 1 scale 2 translate 1 -.5 .1 rotate 0 90 0 mask 3\n"
         "edit material 0 color 1 .5 0 reflect .25 specular .5\n"
         "edit light 1 off\n"
         "edit light 2 directional direction 0 -2 0 color .5\n"
@@ -406,11 +406,13 @@ TEST(SceneFormat, EditsBecomeTheWordsOfTheCommandLine) {
         "edit sky background\n");
     EXPECT_EQ(r.edits,
               (std::vector<std::string>{"instance.3.hidden=1", "instance.3.scale=2,2,2", "instance.3.translate=1,-0.5,0.1",
-                                        "instance.3.rotate=0,90,0", "material.0.color=1,0.5,0", "material.0.reflect=0.25",
-                                        "material.0.specular=0.5,0.5,0.5", "light.1=off",
+                                        "instance.3.rotate=0,90,0", "instance.3.mask=3", "material.0.color=1,0.5,0",
+                                        "material.0.reflect=0.25", "material.0.specular=0.5,0.5,0.5", "light.1=off",
                                         "light.2=directional,0,-1,0,0.5,0.5,0.5", "light.3=point,0,10,0,1,2,3", "sky=gradient",
                                         "sky.visible=false", "sky.horizon=0.5,0.5,0.5", "sky.zenith=1,2,3", "sky=background"}));
     EXPECT_NE(import_text("edit instance 1 radius 3\n").why, "");
+    EXPECT_NE(import_text("edit instance 1 mask 256\n").why, "");
+    EXPECT_NE(import_text("edit instance 1 mask 1.5\n").why, "");
     EXPECT_NE(import_text("edit material 1 ior 0\n").why, "");
     EXPECT_NE(import_text("edit camera 1\n").why, "");
     EXPECT_NE(import_text("edit sky constant zenith 1\n").why, "");

@@ -56,6 +56,7 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
     view.materials[1].color[2] = 0.123456789f;
     edited.instances.hidden = {0, 2};
     edited.instances.set_shift(1, {{1, 2, 0.1f}, {0, 90, 0}, {2, 2, 0.3f}});
+    edited.instances.set_mask(1, RT_SEEN_BY_SHADOW);
     // The float in radians is restored, whatever angle it was made from.
     for (const float fov : {0.7853982f, 0.1f, 1.234567f, 3.0f, 0.9999999f}) {
         view.camera.fov_y_rad = fov;

@@ -24,7 +24,7 @@ Settings one_pixel() {
 
 // The kernels of all settings that choose one.
 std::set<const KernelRow*> all_rows() {
-    std::set<const KernelRow*> rows{&plain_rays(), &counted_rays()};
+    std::set<const KernelRow*> rows{&plain_rays(), &counted_rays(), &all_hits()};
     rows.insert(ray_kernels_of_structures().begin(), ray_kernels_of_structures().end());
     for (const TracerChoice& choice : tracer_choices())
         for (const Aov& aov : aov_table())
@@ -51,7 +51,7 @@ TEST(KernelTable, EveryRowNamesExistingFiles) {
 TEST(KernelTable, FilesLieInTheFolderOfTheirTracer) {
     for (const Tracer* tracer : tracers()) EXPECT_TRUE(tracer->kernel || tracer->smoke) << tracer->id;
     for (const KernelRow* row : all_rows()) {
-        const std::string id = row->tracer, folder = id == "counted_rays" ? "rays" : id;
+        const std::string id = row->tracer, folder = id == "counted_rays" || id == "all_hits" ? "rays" : id;
         EXPECT_EQ(std::string(row->file).rfind("tracers/" + folder + "/", 0), 0u) << row->file;
     }
 }

@@ -130,7 +130,7 @@ Problem DeviceMover::place(const Pose& pose) {
         instances_[i].world_from_object = pose.instances[i].world_from_object;
         instances_[i].visible = pose.instances[i].visible;
         if (number == RT_NONE) continue;
-        placements_[number].hidden = instances_[i].visible ? 0 : 1;
+        placements_[number].hidden = hidden_from(scene_->instances[i], instances_[i].visible);
         if (instances_[i].visible) {  // else its box stays where it was
             std::copy_n(instances_[i].world_from_object.begin(), 12, placements_[number].world_from_object);
             std::copy_n(moved_.inverses[k].begin(), 12, placements_[number].object_from_world);

@@ -158,7 +158,7 @@ Problem HostMover::place(const Pose& pose) {
         if ((!visible && !was_visible) || scene_->meshes[mesh].triangle_count == 0) continue;
         version_[0] = moves_ + 1;
         if (number != RT_NONE) {
-            hidden_[number] = visible ? 0 : 1;
+            hidden_[number] = hidden_from(scene_->instances[i], visible);
             if (!visible) continue;  // its box stays where it was
             world_from_object_[number] = instances_[i].world_from_object;
             object_from_world_[number] = moved_.inverses[k];

@@ -43,6 +43,17 @@ const KernelRow& counted_rays() {
     return row;
 }
 
+const KernelRow& all_hits() {
+    static const KernelRow row = [] {
+        KernelRow r =
+            row_of("tracers/rays/all_hits.cl", "trace_all_hits", {"RT_ALL_HITS " + std::to_string(kHitsAtOnce) + "u"});
+        r.tracer = "all_hits";
+        r.traits = kNearestOnly | kAllHits;
+        return r;
+    }();
+    return row;
+}
+
 const KernelRow& requeued_rays() {
     static const KernelRow row = [] {
         KernelRow r = row_of(

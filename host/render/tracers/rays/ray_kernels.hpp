@@ -9,6 +9,9 @@ constexpr unsigned kRequeueItems = 32;  // work-items that trace one long ray to
 // One block of lanes after the other; with counters of steps and leaf tests.
 const KernelRow& plain_rays();
 const KernelRow& counted_rays();
+// All hits of each ray, kHitsAtOnce of them in a launch.
+constexpr unsigned kHitsAtOnce = 8;
+const KernelRow& all_hits();
 // Of one lane, in two launches: long rays are traced again by many work-items.
 const KernelRow& requeued_rays();
 // Of one lane: a work-item that is done fetches another ray. Nearest hits only.

@@ -61,8 +61,9 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
         tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
         Queue& queue = device_->queue();
-        view_.write(queue, *prepared.scene, *prepared.on_device,
-                    {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
+        rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
+        frame.ray_mask = query.mask;
+        view_.write(queue, *prepared.scene, *prepared.on_device, {frame}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
         const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
         // We upload before every run, even if the rays are unchanged. A CPU's caches are then equally warm each time.

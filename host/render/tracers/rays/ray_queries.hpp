@@ -29,9 +29,14 @@ class RayQueries {
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
     // The same, and packs the rays. Rays that are traced repeatedly are better packed once.
     std::vector<rt_hit> trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query = {});
+    // All hits of each ray with t_min <= t < t_max, not only the nearest. A triangle, a polygon or a plane is hit once, a
+    // sphere at both sides, a shape wherever its plugin finds another hit behind one (cl/primitives/leaf_shape.h). A primitive
+    // that a structure names several times counts once. Rays with more hits than a launch lists are traced again behind the
+    // last one that is known, so none is lost. Throws Error(failed) and Cancelled.
+    AllHits trace_all(const Prepared& prepared, const std::vector<rt_ray>& rays, AllHitsQuery query, Progress& progress);
     // How the last trace() ran.
     RayTuning tuning() const { return tuning_; }
-    // How many traversal stacks were full in the last trace(). 0 for programs that are not for debugging.
+    // How many traversal stacks were full in the last trace() or trace_all(). 0 for programs that are not for debugging.
     uint64_t overflows() const { return overflowed_; }
 
  private:
@@ -52,6 +57,9 @@ class RayQueries {
         void take(Queue& queue, const std::function<void(cl_uint parity)>& enqueue);
     };
     KernelArguments kernel_of(const Launch& launch, const char* entry = nullptr) const;
+    // One launch for all hits behind those that are known. Returns the lists of all blocks (cl/tracers/rays/all_hits.cl).
+    std::vector<float> list_hits(const Prepared& prepared, const TraceProgram& program, const RayBlocks& rays,
+                                 const std::vector<float>& after);
     LaunchTimes trace(const Launch& launch);
     LaunchTimes trace_at_once(const Launch& launch);
     // Two launches: the first stops rays that exceed a step budget and lists them; the second traces each of these with several
@@ -85,7 +93,7 @@ class RayQueries {
     RayTuning tuning_;
     uint64_t overflowed_ = 0;
     OverflowCounter overflows_;  // used for debug programs
-    GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
+    GrowingBuffer in_{CL_MEM_READ_ONLY}, after_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };
 
 }  // namespace clarity

@@ -1,6 +1,11 @@
 // ray_query.hpp -- what a query of the caller's own rays asks for, and how it ran.
 #pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 #include "base/progress.hpp"
+#include "rt_types.h"
 
 namespace clarity {
 
@@ -13,7 +18,24 @@ struct RayQuery {
     bool brief = false;
     // Full stacks of a debug program are counted and not logged: the caller expects them.
     bool quiet = false;
+    // Of the rays: they pass instances whose mask has no bit of it. RT_SEEN_BY_*, and bits of the caller's own.
+    rt_u32 mask = RT_SEEN_BY_ALL;
     Progress* progress = nullptr;  // a cancel ends the compilation of the kernels; null: nobody cancels
+};
+
+// What RayQueries::trace_all() computes.
+struct AllHitsQuery {
+    bool count_only = false;  // how many hits each ray has, and not which
+    bool quiet = false;       // as in RayQuery
+    rt_u32 mask = RT_SEEN_BY_ALL;
+};
+
+// All hits of rays. Those of ray i are hits[first[i]] to hits[first[i + 1] - 1], ordered by t, and at one t by prim. Counts of
+// steps are 0.
+struct AllHits {
+    std::vector<uint64_t> first;  // one more than there are rays
+    std::vector<rt_hit> hits;     // empty if they were only counted
+    uint64_t count(size_t ray) const { return first[ray + 1] - first[ray]; }
 };
 
 // How the last RayQueries::trace() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.

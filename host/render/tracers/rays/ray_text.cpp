@@ -66,6 +66,11 @@ class Line {
     size_t number_, at_ = 0, begin_ = 0;
 };
 
+std::string hit_text(const rt_hit& hit) {
+    return exact_text(hit.t) + ' ' + std::to_string(hit.prim) + ' ' + std::to_string(hit.instance) + ' ' + exact_text(hit.u) +
+           ' ' + exact_text(hit.v) + '\n';
+}
+
 }  // namespace
 
 std::vector<rt_ray> parse_rays(std::string_view text, const std::string& file, RayOrigins* origins) {
@@ -107,9 +112,22 @@ std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit) {
             text += hit.t == 0 ? "1\n" : "0\n";
             continue;
         }
-        text += exact_text(hit.t) + ' ' + std::to_string(hit.prim) + ' ' + std::to_string(hit.instance) + ' ' +
-                exact_text(hit.u) + ' ' + exact_text(hit.v) + '\n';
+        text += hit_text(hit);
     }
+    return text;
+}
+
+std::string all_hits_text(const AllHits& all) {
+    std::string text = "# ray t prim instance u v\n";
+    for (size_t ray = 0; ray + 1 < all.first.size(); ++ray)
+        for (uint64_t i = all.first[ray]; i < all.first[ray + 1]; ++i)
+            text += std::to_string(ray) + ' ' + hit_text(all.hits[i]);
+    return text;
+}
+
+std::string counts_text(const AllHits& all) {
+    std::string text = "# hits\n";
+    for (size_t ray = 0; ray + 1 < all.first.size(); ++ray) text += std::to_string(all.count(ray)) + '\n';
     return text;
 }
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "rt_types.h"
+#include "render/tracers/rays/ray_query.hpp"
 
 namespace clarity {
 
@@ -23,5 +23,8 @@ std::string ray_text(const rt_ray& ray);
 
 // A line a hit, after a line with the names of the columns: t, prim, instance, u, v; for any-hit queries: occluded, 1 or 0.
 std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit);
+// The same for all hits, with the number of the ray in front, from 0 on; and a number a ray: how many hits it has.
+std::string all_hits_text(const AllHits& all);
+std::string counts_text(const AllHits& all);
 
 }  // namespace clarity

@@ -53,6 +53,17 @@ void smoke_rays(const Smoke& smoke, bool counted) {
     }
 }
 
+void smoke_all_hits(const Smoke& smoke) {
+    const double limit_s = compile_first(smoke, all_hits());
+    const std::vector<rt_ray> rays = trial_rays();
+    const std::string what = "traced " + std::to_string(rays.size()) + " rays for all their hits";
+    smoke.say_step("they " + what, limit_s);
+    RayQueries queries(smoke.device);
+    Progress never_cancelled;
+    queries.trace_all(smoke.prepared, rays, {}, never_cancelled);
+    expect_room_on_stacks(queries.overflows(), what);
+}
+
 Tracer tracer_with(const char* id, void (*smoke)(const Smoke&)) {
     Tracer tracer;
     tracer.id = id;
@@ -69,6 +80,11 @@ const Tracer& rays_tracer() {
 
 const Tracer& counted_rays_tracer() {
     static const Tracer tracer = tracer_with("counted_rays", [](const Smoke& smoke) { smoke_rays(smoke, true); });
+    return tracer;
+}
+
+const Tracer& all_hits_tracer() {
+    static const Tracer tracer = tracer_with("all_hits", smoke_all_hits);
     return tracer;
 }
 

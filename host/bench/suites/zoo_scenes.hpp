@@ -1,0 +1,19 @@
+// zoo_scenes.hpp -- scenes of the suite zoo that are computed: what is hard for one structure is easy for another.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace clarity::bench {
+
+// Adds to a scene, which may be empty, about so many triangles. The same on all machines.
+//   stadium       tiers and a field around what is there, 200 times as wide: a little detail in much space
+//   hair          strands on a ball, each 400 times as long as wide, in all directions
+//   city          four kinds of houses, placed in 40 x 40 lots as instances
+//   height field  a square of hills, one height for each of k x k points
+//   soup          triangles of all directions, at random in a cube, which overlap
+// Throws std::out_of_range for another name.
+void add_zoo_scene(const std::string& name, uint64_t triangles, Scene& scene);
+
+}  // namespace clarity::bench
