@@ -16,26 +16,6 @@ typedef struct rt_recorder {
     rt_vec weight;        /* for each lane's ray */
 } rt_recorder;
 
-/* One lane of a vector, through memory. */
-RT_INLINE float rt_lane(vfloat v, uint l)
-{
-    float values[RT_LANES];
-    rt_store(v, values);
-    return values[l];
-}
-RT_INLINE int rt_lane_int(vint v, uint l)
-{
-    int values[RT_LANES];
-    rt_store(v, values);
-    return values[l];
-}
-RT_INLINE void rt_lane_vec(rt_vec v, uint l, global float *out)
-{
-    out[0] = rt_lane(v.x, l);
-    out[1] = rt_lane(v.y, l);
-    out[2] = rt_lane(v.z, l);
-}
-
 /* Adds a record with what is known when a ray begins. Returns its index, or -1 if there is no room. */
 RT_INLINE int rt_begin_record(rt_recorder *rec, uint kind, uint fate, int parent, uint generation, uint lane, rt_vec origin,
                               rt_vec direction, rt_vec weight)

@@ -20,25 +20,6 @@ typedef struct rt_path_recorder {
     rt_noted noted;
 } rt_path_recorder;
 
-RT_INLINE float rt_lane(vfloat v, uint l)
-{
-    float values[RT_LANES];
-    rt_store(v, values);
-    return values[l];
-}
-RT_INLINE int rt_lane_int(vint v, uint l)
-{
-    int values[RT_LANES];
-    rt_store(v, values);
-    return values[l];
-}
-RT_INLINE void rt_lane_vec(rt_vec v, uint l, global float *out)
-{
-    out[0] = rt_lane(v.x, l);
-    out[1] = rt_lane(v.y, l);
-    out[2] = rt_lane(v.z, l);
-}
-
 /* Adds a record of a lane, empty but for its kind and bounce. There is room for all: RT_MOST_PATH_RECORDS. */
 RT_INLINE global rt_path_record *rt_add_record(rt_path_recorder *rec, uint l, uint kind, int bounce)
 {

@@ -42,7 +42,7 @@ const KernelRow& kernel(const Settings& settings, const Layout& layout) {
 std::vector<const char*> headers_by_generations(bool recorded) {
     std::vector<const char*> headers = material_headers();
     headers.emplace_back("tracers/iterative/ray_queue.h");
-    if (recorded) headers.emplace_back("tracers/inspect/recorder.h");
+    if (recorded) headers.insert(headers.end(), {"tracers/inspect/one_lane.h", "tracers/inspect/recorder.h"});
     headers.insert(headers.end(), {"shading/power.h", "shading/shading.h"});
     if (recorded) headers.emplace_back("tracers/inspect/record_hits.h");
     headers.emplace_back("tracers/iterative/generations.h");

@@ -24,7 +24,8 @@ const KernelRow& replay_row() {
         r.what = "replay of paths";
         r.file = "tracers/replay/replay.cl";
         r.entry = "replay_samples";
-        r.headers = path_headers({"tracers/replay/path_record.h", "tracers/replay/path_recorder.h"});
+        r.headers =
+            path_headers({"tracers/inspect/one_lane.h", "tracers/replay/path_record.h", "tracers/replay/path_recorder.h"});
         r.defines = {"RT_INSPECT"};
         r.traits = kPicksLights;
         return r;
