@@ -27,6 +27,14 @@ bool lies_plainly(const rt_map& map) {
     return std::equal(identity, identity + 6, map.matrix);
 }
 
+// What its importer did not understand of it: importers have one warning for each such material.
+std::string left_out_of(const Scene& scene, const Material& material) {
+    const std::string begin = "material '" + material.name + "': left out ";
+    for (const std::string& warning : scene.warnings)
+        if (const size_t at = warning.find(begin); at != std::string::npos) return warning.substr(at + begin.size());
+    return {};
+}
+
 std::string model_of(const MaterialValues& values) {
     const Key& model = material_key("model");
     return value_text(model, value_of(model, &values), " ");
@@ -53,6 +61,7 @@ nlohmann::ordered_json material_json(const Scene& scene, const Material& materia
         if (!lies_plainly(map))
             for (const float number : map.matrix) json[use.name]["matrix"].push_back(short_double(number));
     });
+    if (const std::string left_out = left_out_of(scene, material); !left_out.empty()) json["left_out"] = left_out;
     return json;
 }
 
@@ -67,6 +76,8 @@ std::string material_text(const Scene& scene, const Material& material) {
         text += std::string(", ") + use.name + named(map.texture);
         if (map.set != 0) text += " (uv " + std::to_string(map.set) + ")";
     });
+    if (const std::string left_out = left_out_of(scene, material); !left_out.empty())
+        text += "; left out: " + printable_line(left_out);
     return text;
 }
 

@@ -661,7 +661,7 @@ typedef struct rt_scene_sink {
     int32_t (*vertex_frames)(void *ctx, const rt_vertex_frames *);
     /* Appended. A change of what the file holds together with the files that it loads, in the words of `clarity render --set`:
      * "instance.3.translate" and "1,0,0". Keys are instance.N..., material.N..., light.N and sky..., counted as `clarity info` counts them.
-     * The value of a map's use, as material.3.normal_map, is "none", a number that `texture` returned, or the name of a texture.
+     * The value of a map's use, as material.3.normal_map, is "none", "#7" for the 7 that `texture` returned, or the name of a texture.
      * where: "FILE:LINE:COLUMN" of the statement, or NULL. Returns RT_OK, or RT_FAILED with the error recorded. */
     int32_t (*edit)(void *ctx, const char *key, const char *value, const char *where);
     /* Appended. The keys of lights of a kind: RT_LIGHT_POINT, ...; NULL: there is no such kind. And those of materials. */

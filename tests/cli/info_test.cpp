@@ -104,6 +104,20 @@ TEST(Info, ListsMaterials) {
     EXPECT_NE(text.find("steel: gltf, roughness 0.25, metallic 1, sheen_color 0 0.5 0\n"), std::string::npos) << text;
 }
 
+// With each material what its importer did not understand.
+TEST(Info, SaysWhatIsLeftOutOfAMaterial) {
+    const Scratch scratch;
+    scratch.write("a.mtl", "newmtl known\nKd 1 0 0\nnewmtl strange\nKd 0 1 0\nfresnel_sheen 3\n");
+    const std::string file =
+        scratch.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl known\nf 1 2 3\nusemtl strange\nf 3 2 1\n");
+    const nlohmann::json list = info_of(file)["material_list"];
+    ASSERT_EQ(list.size(), 3u);
+    EXPECT_FALSE(list[1].contains("left_out")) << list[1];
+    EXPECT_EQ(list[2]["left_out"], "fresnel_sheen");
+    const std::string text = run_program({"info", file}).out;
+    EXPECT_NE(text.find("; left out: fresnel_sheen\n"), std::string::npos) << text;
+}
+
 TEST(Info, SeveralFilesAreOneScene) {
     const Scratch scratch;
     const std::string a = scratch.write("a.obj", kCube), b = scratch.write("b.scene", "sphere center 4 0 0 radius 2\n");

@@ -28,6 +28,10 @@ class PreviewOfMaterials : public FaultyDriverTest {
         std::ofstream(path("balls.scene")) << kBalls;
     }
     std::string path(const std::string& name) const { return folder.path() + "/" + name; }
+    // What compiles fast.
+    std::vector<std::string> quick() const {
+        return {"--size", "160x120", "--accel", "bvh2", "--lanes", "1", path("balls.scene")};
+    }
     static bool is_done(const nlohmann::json& state) { return state.contains("preview") && state["preview"]["done"] == true; }
     // The finished ball of a material.
     Pixels ball(WindowDriver& window, int material) const {
@@ -92,11 +96,11 @@ TEST_F(PreviewOfMaterials, FollowsTheSelectionAndEdits) {
 
 // Whatever becomes of the ball, the window goes on; and it comes when it can.
 TEST_F(PreviewOfMaterials, AFaultOfTheDriverIsSaid) {
-    const auto window = open_on_faulty("", {{"CLARITY_COMPILE", ""}});
+    const auto window = open_on_faulty("", {{"CLARITY_COMPILE", ""}}, quick());
     ASSERT_EQ(window->command("tab Scene"), "");
     const Pixels before = window->picture();
     fault("build-refuses");
-    ASSERT_EQ(window->command("pick 160 120"), "");
+    ASSERT_EQ(window->command("pick 40 60"), "");
     ASSERT_TRUE(window->reaches(is_done, kLongestWait));
     EXPECT_NE(std::string(window->state()["preview"]["failure"]).find("-11"), std::string::npos)
         << window->state()["preview"].dump();
@@ -114,10 +118,10 @@ TEST_F(PreviewOfMaterials, AFaultOfTheDriverIsSaid) {
 
 // The window's own picture is on the device that does not answer: both are opened anew.
 TEST_F(PreviewOfMaterials, AKernelThatNeverEndsIsLeft) {
-    const auto window = open_on_faulty("other,gpu", {{"CLARITY_COMPILE", ""}, {"CLARITY_LAUNCH_LIMIT", "10"}});
+    const auto window = open_on_faulty("other,gpu", {{"CLARITY_COMPILE", ""}, {"CLARITY_LAUNCH_LIMIT", "10"}}, quick());
     ASSERT_EQ(window->command("tab Scene"), "");
     const Pixels before = window->picture();
-    ASSERT_EQ(window->command("pick 160 120"), "");
+    ASSERT_EQ(window->command("pick 40 60"), "");
     const int material = (window->settle(), window->state()["selected"]["material"]);
     ball(*window, material);
     fault("launch-endless=1");

@@ -327,14 +327,18 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     first_camera_.clear();
     first_light_.clear();
     EditedView edited = edited_view(desired);
+    bool refused = false;
     for (const Word& word : std::exchange(first_edits_, {})) {
         try {
             apply_edit(*ready->loaded->scene, edited, word.key, word.value);
         } catch (const Error& error) {
             messages_.report(error.what());
+            refused = true;
         }
     }
     adopt_view(edited);
+    // The other edits are prepared next, which is no reason to take the message away.
+    if (refused) keeps_message_ = !is_posted(desired_request());
     // The numbers in earlier steps hold for more pictures, too: those of the files come first.
     if (pictures_revision_ != ready->loaded->files_revision) history_.forget();
 }

@@ -184,7 +184,7 @@ class Session {
     bool told_silent_ = false;                          // the user knows that tracing gives no sign of life
     std::shared_ptr<const Picture> picture_when_lost_;  // the newest then
     bool lost_again_ = false;                           // while they were opened anew; nothing was tried since
-    bool keeps_message_ = false;                        // of the loss, while the device is opened anew
+    bool keeps_message_ = false;                        // while what follows from it is prepared: it is not settled by that
     Messages messages_;
     History history_;
     Sequence sequence_;

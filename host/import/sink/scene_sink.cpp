@@ -440,9 +440,10 @@ int32_t SceneSink::edit(const char* key, const char* value, const char* where) {
              "`; there are instance.N, material.N, light.N, sky");
         return RT_FAILED;
     }
-    if (find_map_use(edit.key.substr(edit.key.find_last_of('.') + 1)) != RT_NONE && read_number(edit.value, id)) {
+    if (find_map_use(edit.key.substr(edit.key.find_last_of('.') + 1)) != RT_NONE && edit.value.rfind("#", 0) == 0 &&
+        read_number(edit.value.substr(1), id)) {
         if (id >= textures_.size()) {
-            fail(edit.where + ": `" + edit.key + "`: texture id " + edit.value +
+            fail(edit.where + ": `" + edit.key + "`: texture id " + edit.value.substr(1) +
                  " is unknown: pass an id that the sink returned");
             return RT_FAILED;
         }

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <map>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/edit/sky_edit.hpp"
+#include "render/edit/texture_edit.hpp"
 #include "render/settings/settings.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/light_kinds.hpp"
@@ -166,26 +166,6 @@ std::vector<MaterialValues> scene_materials(const Scene& scene) {
     return all;
 }
 
-std::string map_names() {
-    std::string names;
-    for (const MapUse& use : map_uses()) names += (names.empty() ? "" : ", ") + std::string(use.name);
-    return names;
-}
-
-rt_u32 read_texture(const Scene& scene, rt_u32 use, const std::string& key, const std::string& value) {
-    if (value == "none") return RT_NONE;
-    const rt_u32 texture = find_texture(scene, value, use);
-    if (texture != RT_NONE) return texture;
-    std::string names;
-    constexpr size_t kMostListed = 20;
-    for (size_t i = 0; i < std::min(scene.textures.size(), kMostListed); ++i)
-        names += ", " + texture_name(scene, static_cast<rt_u32>(i));
-    if (scene.textures.size() > kMostListed) names += ", ...";
-    refuse_value(key, value,
-                 "none, a picture's file that can be read, or a texture of the scene" +
-                     (names.empty() ? " (it has none)" : ":" + names.substr(1)));
-}
-
 void read_material(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
     const std::vector<std::string> path = split(key, '.');
     rt_u32 at = 0;
@@ -275,11 +255,6 @@ bool begins(const std::string& text, const char* with) {
     return text.compare(0, std::strlen(with), with) == 0;
 }
 
-// The RT_MAP_ of an edit's key; RT_NONE: it is of another kind.
-rt_u32 map_use_of(const std::string& key) {
-    return begins(key, "material.") ? find_map_use(key.substr(key.find_last_of('.') + 1)) : RT_NONE;
-}
-
 // The words that make a light from nothing.
 void add_light_words(const rt_light& light, size_t number, const std::array<double, 3>& origin, std::vector<Word>& words) {
     const std::string name = "light." + std::to_string(number);
@@ -305,19 +280,6 @@ void add_material_words(const MaterialValues& was, const MaterialValues& is, siz
         if (other || (key.follows_model && differs && is.model != RT_MODEL_WHITTED))
             words.push_back({"material." + std::to_string(number) + "." + key.name, value_text(key, value, ",")});
     }
-}
-
-void add_map_words(const Scene& scene, const MapEdits& from, const MapEdits& to, std::vector<Word>& words) {
-    const auto add = [&](rt_u32 material, rt_u32 use) {
-        const rt_u32 was = from.texture_of(scene, material, use), is = to.texture_of(scene, material, use);
-        if (was != is)
-            words.push_back(
-                {"material." + std::to_string(material) + "." + map_uses()[use].name, texture_word(scene, is, use)});
-    };
-    for (const MapEdits::Given& given : to.given) add(given.material, given.use);
-    for (const MapEdits::Given& given : from.given)
-        if (to.texture_of(scene, given.material, given.use) == MapEdits().texture_of(scene, given.material, given.use))
-            add(given.material, given.use);
 }
 
 // The words that turn `from` into `to`.
@@ -471,23 +433,6 @@ EditedView scene_edits(const Scene& scene, const std::vector<Word>& edits) {
         if (map_use_of(word.key) != RT_NONE) read_material(scene, all, word.key, word.value);
     }
     return all;
-}
-
-PictureFile picture_of(const Word& word) {
-    const rt_u32 use = map_use_of(word.key);
-    std::error_code error;
-    if (use == RT_NONE || word.value == "none" || !std::filesystem::is_regular_file(word.value, error)) return {};
-    return {word.value, map_uses()[use].space};
-}
-
-std::vector<PictureFile> pictures_of(const std::vector<Word>& edits) {
-    std::vector<PictureFile> pictures;
-    for (const Word& word : edits) {
-        PictureFile picture = picture_of(word);
-        if (!picture.path.empty() && std::find(pictures.begin(), pictures.end(), picture) == pictures.end())
-            pictures.push_back(std::move(picture));
-    }
-    return pictures;
 }
 
 }  // namespace clarity

@@ -20,10 +20,10 @@
 #include <utility>
 #include <vector>
 
+#include "render/edit/texture_edit.hpp"
 #include "render/view/camera_path.hpp"
 #include "render/view/view.hpp"
 #include "scene/instance_edit.hpp"
-#include "scene/map_edit.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -64,10 +64,5 @@ EditedView scene_edits(const Scene& scene, const std::vector<Word>& edits);
 inline bool changes_scene(const EditedView& edited) {
     return !edited.instances.empty() || !edited.maps.empty();
 }
-
-// The file that such an edit gives to a material, to be read with the scene. Empty: the edit is of another kind, or the value
-// is no file: then it is a texture of the scene.
-PictureFile picture_of(const Word& word);
-std::vector<PictureFile> pictures_of(const std::vector<Word>& edits);
 
 }  // namespace clarity

@@ -15,7 +15,6 @@
 #include "render/edit/sky_edit.hpp"
 #include "render/view/camera_text.hpp"
 #include "scene/light_kinds.hpp"
-#include "scene/map_uses.hpp"
 
 namespace clarity {
 namespace {
@@ -121,7 +120,7 @@ std::string word_lines(const std::vector<Word>& words, const Scene& scene, const
         std::getline(key, what, '.'), std::getline(key, number, '.'), std::getline(key, part, '.');
         // A light's line has all of its parts.
         if (what != "material" && (what != "light" || !part.empty())) continue;
-        if (find_map_use(part) == RT_NONE)
+        if (map_use_of(word.key) == RT_NONE)
             std::replace(value.begin(), value.end(), ',', ' ');
         else
             value = quoted(statements.count(value) ? statements.at(value) : value, word.key);
@@ -149,7 +148,7 @@ std::string picture_lines(const std::vector<Word>& words, const Scene& scene, co
     std::string lines;
     size_t number = 0;
     for (const Word& word : words) {
-        const bool is_map = find_map_use(word.key.substr(word.key.find_last_of('.') + 1)) != RT_NONE;
+        const bool is_map = map_use_of(word.key) != RT_NONE;
         if (!is_map || !is_picture_name(word.value) || statements.count(word.value)) continue;
         const auto& names = scene.texture_names;
         std::string name;

@@ -183,7 +183,7 @@ bool Emitter::edits() {
         if (const Texture* named = edit.use == RT_NONE ? nullptr : texture_named(edit.value)) {
             const rt_u32 id = texture(*named, space_of(*named, edit.use));
             if (id == RT_NONE) continue;
-            value = std::to_string(id);
+            value = "#" + std::to_string(id);
         }
         if (sink_.edit(sink_.ctx, edit.key.c_str(), value.c_str(), where().c_str()) != RT_OK) return false;
     }

@@ -164,6 +164,25 @@ TEST_F(SceneTextTest, TexturesOfMaterialsAreSaved) {
     expect_saved(saved, {path}, again, "nested.scene");
 }
 
+// Two textures of a file have the same name if they differ in how they are wrapped: the second one is known by its number.
+TEST_F(SceneTextTest, TexturesWithoutANameOfTheirOwnAreSaved) {
+    scratch.write("red.ppm", std::string("P6 1 1 255\n") + "\xff\x10\x10");
+    const std::string path = scratch.write("twice.scene",
+                                           "camera main eye 0 0 5 fov 40\nlight directional direction 0 0 -1\n"
+                                           "material a texture red.ppm\nmaterial b texture red.ppm wrap clamp\nmaterial c\n"
+                                           "sphere radius 1 material c\n");
+    const Scene scene = load({path});
+    ASSERT_EQ(scene.textures.size(), 2u);
+    for (const char* name : {"beside.scene", "twice.scene"})
+        for (const rt_u32 texture : {0u, 1u}) {
+            EditedView edited = first(scene);
+            edited.maps.give(scene, 3, RT_MAP_COLOR, texture);
+            const std::string text = expect_saved(scene, {path}, edited, name);
+            const Scene again = load({scratch.path(name)});
+            EXPECT_TRUE(first(again).maps == edited.maps) << text;
+        }
+}
+
 TEST_F(SceneTextTest, LightsAndModelsOfAllKindsAreSaved) {
     const std::string path = scratch.write("hand.scene", kScene);
     const Scene scene = load({path});

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "support/scratch.hpp"
 #include "window_fixture.hpp"
@@ -22,15 +23,19 @@ class FaultyDriverTest : public WindowTest {
         scratch_.write("next", words);
         std::filesystem::rename(scratch_.path("next"), scratch_.path("fault"));
     }
-    // always: what the driver does from the start. more: further variables.
-    std::unique_ptr<WindowDriver> open_on_faulty(const char* always, const std::map<std::string, std::string>& more) {
+    // always: what the driver does from the start. more: further variables. arguments: for a window on another scene.
+    std::unique_ptr<WindowDriver> open_on_faulty(const char* always, const std::map<std::string, std::string>& more,
+                                                 const std::vector<std::string>& arguments = {}) {
         std::map<std::string, std::string> environment = {{"OCL_ICD_VENDORS", scratch_.path("vendors")},
                                                           {"CLARITY_FAULT", always},
                                                           {"CLARITY_FAULT_FILE", scratch_.path("fault")},
                                                           {"CLARITY_PROGRAM_CACHE", scratch_.path("programs")},
                                                           {"CLARITY_DEVICE", ""}};
         environment.insert(more.begin(), more.end());
-        return open(environment);
+        if (arguments.empty()) return open(environment);
+        auto window = std::make_unique<WindowDriver>(arguments, environment);
+        window->settle();
+        return window;
     }
 
  private:
