@@ -15,9 +15,9 @@ struct InstanceEdits {
         InstanceShift shift;
         bool operator==(const Moved& b) const { return instance == b.instance && shift == b.shift; }
     };
-    std::vector<Moved> moved;        // ascending; each shifts its instance
-    std::vector<rt_u32> hidden;      // ascending
-    std::map<rt_u32, rt_u32> masks;  // kinds of rays that hit an instance: RT_SEEN_BY_*; of those that not all do
+    std::vector<Moved> moved;          // ascending; each shifts its instance
+    std::vector<rt_u32> hidden;        // ascending
+    std::map<rt_u32, rt_u32> masks{};  // kinds of rays that hit an instance: RT_SEEN_BY_*; of those that not all do
 
     bool empty() const { return moved.empty() && hidden.empty() && masks.empty(); }
     bool operator==(const InstanceEdits& b) const { return moved == b.moved && hidden == b.hidden && masks == b.masks; }

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "scene/light_kinds.hpp"
 #include "support/generated.hpp"
 #include "support/planted_faults.hpp"
 #include "support/scenes.hpp"
@@ -101,7 +102,10 @@ ScenePtr over_a_floor(rt_u32 mask, bool visible = true) {
 FloatImage picture(const ScenePtr& scene, const std::vector<std::pair<std::string, std::string>>& how, bool from_above) {
     std::vector<std::pair<std::string, std::string>> words = how;
     words.insert(words.end(), {{"accel", "bvh2"}, {"size", "40x24"}, {"depth", "3"}, {"spp", "1"}});
-    View view = from_above ? view_from({0, 6, 5}, {0, -1, 0.5f}, 60) : view_from({0, 0.1f, 3}, {0, -1, 0.6f}, 40);
+    View view = from_above ? view_from({0, 6, 5}, {0, -1, 0.5f}, 60) : view_from({0, 0.1f, 3}, {0, -1, 1.8f}, 40);
+    view.lights.push_back(whitted_light(RT_LIGHT_DIRECTIONAL, {0, 0.6f, -0.8f}, {1, 1, 1}));
+    view.background = {0.2f, 0.3f, 0.4f};
+    view.ambient = {0.1f, 0.1f, 0.1f};
     return Workbench::get().values(scene, make_settings(words), view);
 }
 
