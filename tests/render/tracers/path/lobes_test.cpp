@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <numeric>
 
 #include "base/angle.hpp"
 #include "reference/path_surface.hpp"
@@ -52,12 +53,55 @@ void expect_reference(const Lobe& lobe, const MaterialValues& material, const Ro
     EXPECT_NEAR(found, wanted, (room.spread > 0.01 ? 0.03 : 0.01) * wanted) << lobe.name;
 }
 
+// Cells of equal solid angle over the sphere of directions.
+constexpr int kUp = 40, kAround = 32, kCells = kUp * kAround;
+
+// The mean density of each of `cells`, by the middles of sub x sub parts of equal solid angle, and the greatest of them.
+struct CellDensity {
+    double mean = 0, greatest = 0;
+};
+std::vector<CellDensity> densities(const Lobe& lobe, double mu, const std::vector<int>& cells, int sub) {
+    auto grid = draws(mu, cells.size() * size_t(sub * sub), 1);
+    size_t at = 0;
+    for (const int c : cells)
+        for (int k = 0; k < sub * sub; ++k, ++at) {
+            const double z = 2 * (c / kAround + (k / sub + 0.5) / sub) / kUp - 1, r = std::sqrt(1 - z * z);
+            const double phi = 2 * kPi * ((c % kAround + (k % sub + 0.5) / sub) / kAround - 0.5);
+            grid[at].wi[0] = float(r * std::cos(phi));
+            grid[at].wi[1] = float(r * std::sin(phi));
+            grid[at].wi[2] = float(z);
+        }
+    const auto answers = ask(lobe, grid);
+    std::vector<CellDensity> found(cells.size());
+    for (size_t i = 0; i < answers.size(); ++i) {
+        CellDensity& cell = found[i / size_t(sub * sub)];
+        cell.mean += double(answers[i].density) / (sub * sub);
+        cell.greatest = std::max(cell.greatest, double(answers[i].density));
+    }
+    return found;
+}
+
+// The mean density of each cell. A lobe that is narrower than a part of a cell is integrated once more, with smaller parts.
+std::vector<double> mean_densities(const Lobe& lobe, double mu) {
+    std::vector<int> cells(kCells), uneven;
+    std::iota(cells.begin(), cells.end(), 0);
+    const auto coarse = densities(lobe, mu, cells, 8);
+    std::vector<double> mean(kCells);
+    for (const int c : cells) {
+        mean[size_t(c)] = coarse[size_t(c)].mean;
+        if (coarse[size_t(c)].greatest > 2 * coarse[size_t(c)].mean) uneven.push_back(c);
+    }
+    if (uneven.empty()) return mean;
+    const auto fine = densities(lobe, mu, uneven, 64);
+    for (size_t i = 0; i < uneven.size(); ++i) mean[size_t(uneven[i])] = fine[i].mean;
+    return mean;
+}
+
 // How far the counts of drawn directions are from what their density says, over cells of equal solid angle.
 double density_misfit(const Lobe& lobe, double mu, unsigned seed) {
-    constexpr int kUp = 40, kAround = 32, kSub = 8;
     constexpr size_t kDraws = 100000;
     const auto drawn = ask(lobe, draws(mu, kDraws, seed));
-    std::vector<double> count(kUp * kAround), expected(kUp * kAround);
+    std::vector<double> count(kCells), expected;
     double deltas = 0, lost = 0;
     for (const LobeAnswer& answer : drawn) {
         if (!answer.valid()) {
@@ -70,21 +114,10 @@ double density_misfit(const Lobe& lobe, double mu, unsigned seed) {
             ++count[size_t(up) * kAround + size_t(std::min(kAround - 1, int(turn * kAround)))];
         }
     }
-    auto grid = draws(mu, size_t(kUp) * kAround * kSub * kSub, 1);
-    size_t at = 0;
-    for (int c = 0; c < kUp * kAround; ++c)
-        for (int k = 0; k < kSub * kSub; ++k, ++at) {
-            const double z = 2 * (c / kAround + (k / kSub + 0.5) / kSub) / kUp - 1, r = std::sqrt(1 - z * z);
-            const double phi = 2 * kPi * ((c % kAround + (k % kSub + 0.5) / kSub) / kAround - 0.5);
-            grid[at].wi[0] = float(r * std::cos(phi));
-            grid[at].wi[1] = float(r * std::sin(phi));
-            grid[at].wi[2] = float(z);
-        }
-    const auto densities = ask(lobe, grid);
     double total = 0;
-    for (size_t i = 0; i < densities.size(); ++i) {
-        const double share = double(densities[i].density) * 4 * kPi / double(densities.size());
-        expected[i / (kSub * kSub)] += share * kDraws;
+    for (const double density : mean_densities(lobe, mu)) {
+        const double share = density * 4 * kPi / kCells;
+        expected.push_back(share * kDraws);
         total += share;
     }
     // Draws without a direction and those of deltas are counts of their own: the density's integral leaves them.
