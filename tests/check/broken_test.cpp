@@ -134,7 +134,7 @@ const Defect kDefects[] = {
     {"random_when_large", "builds.threads", {"another than with one thread"}},
     {"wrong_at_most", "hits.parameters", {"with broken,max_leaf=8", "are wrong"}},
     // Code that one choice, or many primitives, turn on; wrong with several lanes alone.
-    {"wrong_choice", "hits.parameters", {"way=second", "with 4 lanes", "behind the nearest"}, nullptr},
+    {"wrong_choice", "hits.parameters", {"way=second", "with 4 lanes", "are lost when t_max"}, nullptr},
     {"wrong_when_large", "hits.large", {"with 4 lanes", "behind the nearest"}, nullptr},
     {"reads_past_empty", "hits.empty", {"beyond the end of slot broken_nodes", "element 1"}},
     {"cuts_needles", "builds.bounds", {"is in no volume"}},
