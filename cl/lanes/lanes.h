@@ -189,8 +189,8 @@ RT_INLINE float rt_greatest(float16 v)
 #define rt_least_of(mask, v) (-rt_greatest_of(mask, -(v)))
 
 /* 1 if the stack has room for the entry `top`. Debug programs count a full stack instead of overflowing it; see CONTRACT.md. */
-#if defined(RT_DEBUG) && defined(RT_STACK_GRANTED) /* `clarity check`: a traversal gets room so many times, and then no more */
-#define RT_STACK_OK(top, size, hit) ((void)(size), (hit)->overflow++ < RT_STACK_GRANTED && (top) < (size))
+#if defined(RT_DEBUG) && defined(RT_STACK_GRANTED) /* see RT_GRANT_PUSHES */
+#define RT_STACK_OK(top, size, hit) ((hit)->overflow++ < (hit)->granted && (top) < (size))
 #elif defined(RT_DEBUG)
 #define RT_STACK_OK(top, size, hit) ((top) < (size) ? 1 : ((hit)->overflow = 1, 0))
 #else

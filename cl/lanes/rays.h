@@ -46,6 +46,9 @@ typedef struct rt_hits {
 #endif
 #ifdef RT_DEBUG
     uint overflow;
+#ifdef RT_STACK_GRANTED
+    uint granted; /* pushes */
+#endif
 #endif
 #ifdef RT_STEP_BUDGET
     int step_budget; /* steps that the traversal may still take; negative: it was stopped */
@@ -82,6 +85,15 @@ typedef struct rt_hits {
 #define RT_CLEAR_OVERFLOW(hit)
 #define RT_COUNT_OVERFLOW(hit)
 #define RT_TALLY_OVERFLOW(tally, hit)
+#endif
+
+/* `clarity check` counts what rays test if RT_STACK_OK refuses them room. It sends each ray three times in a row: the first gets
+ * room as usual, the second never, the third RT_STACK_GRANTED times. One program does all three. */
+#ifdef RT_STACK_GRANTED
+#define RT_GRANT_PUSHES(hit, number) \
+    (hit)->granted = (number) % 3u == 0u ? UINT_MAX : (number) % 3u == 1u ? 0u : RT_STACK_GRANTED;
+#else
+#define RT_GRANT_PUSHES(hit, number)
 #endif
 
 /* Asked before each step of a traversal's loop; see CONTRACT.md. */

@@ -265,4 +265,12 @@ Scene soup_scene(unsigned count, uint64_t seed) {
     return std::move(make.scene);
 }
 
+Scene large_scene(unsigned count, uint64_t seed) {
+    Maker make(seed);
+    add_faces(make);
+    make.soup({200, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);  // besides the faces, so that rays reach these
+    make.place(make.mesh());
+    return std::move(make.scene);
+}
+
 }  // namespace clarity::check

@@ -63,7 +63,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #ifdef BROKEN_SLABS
         inside = rt_bits(RT_CAT(RT_TRAVERSE, _slabs)(node->box, ray, hit, &entry));
 #endif
-#ifdef BROKEN_CULLS_EAGERLY
+#if defined(BROKEN_CULLS_EAGERLY) || (BROKEN_CHOICE && RT_LANES > 1)
         inside &= rt_bits(RT_MASK(entry <= hit->t * rt_vfloat(0.999f)));
 #endif
 #ifdef BROKEN_CULLS_CLOSELY

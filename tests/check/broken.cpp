@@ -75,7 +75,9 @@ constexpr Macro kMacros[] = {{"octant", "BROKEN_OCTANT"},
                              {"reads_past_empty", "BROKEN_READS_PAST_EMPTY"}};
 constexpr const char* kWithSlabs[] = {"strict_slabs", "divides", "sign_of_d", "rounds_boxes"};  // need BROKEN_SLABS, too
 
-constexpr rt_param kParams[] = {rt::int_param("max_leaf", "Leaf size", "primitives in a leaf, at most", 1, 8, 3)};
+constexpr const char* kWays[] = {"first", "second", "third", nullptr};
+constexpr rt_param kParams[] = {rt::int_param("max_leaf", "Leaf size", "primitives in a leaf, at most", 1, 8, 3),
+                                rt::enum_param("way", "Way", "chooses nothing, but with the defect `wrong_choice`", kWays, 0)};
 
 bool has_refitted = false;  // state that a plugin must not keep
 
@@ -246,6 +248,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     for (const char* defect : kWithSlabs)
         if (is(defect)) rt::define(out, "BROKEN_SLABS", 1);
     if (is("wrong_at_most") && input->params[0] == 8) rt::define(out, "BROKEN_SKIPS_EIGHTH", 1);
+    if (is("wrong_choice")) rt::define(out, "BROKEN_CHOICE", input->params[1] == 1);
+    if (is("wrong_when_large") && builder.refs.size() > 75000) rt::define(out, "BROKEN_CHOICE", 1);
     if (is("defines_lanes")) rt::define(out, "RT_LANES", 4);
     if (is("reads_beyond_slot")) rt::define(out, "BROKEN_NODES", rt_u32(nodes.size()));
     rt::define(out, "BROKEN_STACK",

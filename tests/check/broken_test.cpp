@@ -17,7 +17,9 @@ class Broken : public testing::TestWithParam<Defect> {};
 
 TEST_P(Broken, IsFound) {
     const Defect& defect = GetParam();
-    expect_found(check(defect.library, {"--only", defect.check, "--lanes", defect.lanes}, 1), defect);
+    std::vector<std::string> words = {"--only", defect.check};
+    if (defect.lanes) words.insert(words.end(), {"--lanes", defect.lanes});
+    expect_found(check(defect.library, words, 1), defect);
 }
 
 const Defect kDefects[] = {
@@ -131,6 +133,9 @@ const Defect kDefects[] = {
     {"cut_positions", "hits.large", {"are wrong"}},
     {"random_when_large", "builds.threads", {"another than with one thread"}},
     {"wrong_at_most", "hits.parameters", {"with broken,max_leaf=8", "are wrong"}},
+    // Code that one choice, or many primitives, turn on; wrong with several lanes alone.
+    {"wrong_choice", "hits.parameters", {"way=second", "with 4 lanes", "are lost when t_max"}, nullptr},
+    {"wrong_when_large", "hits.large", {"with 4 lanes", "behind the nearest"}, nullptr},
     {"reads_past_empty", "hits.empty", {"beyond the end of slot broken_nodes", "element 1"}},
     {"cuts_needles", "builds.bounds", {"is in no volume"}},
     // said well

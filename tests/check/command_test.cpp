@@ -37,6 +37,11 @@ TEST(Causes, TheFirstStageThatFailsStandsForTheOthers) {
     EXPECT_EQ(causes[0].results, (std::vector<size_t>{6, 2, 1, 5, 7, 4}));
     EXPECT_EQ(causes[1].results, (std::vector<size_t>{3}));
     EXPECT_EQ(clarity::check::stage_of(results[5]), "nearest hits of several lanes");
+    // Not the pass that is right.
+    const auto listed =
+        result("hits.large", Outcome::failed("nearest hits with 4 lanes: 3 are wrong. Wrong: nearest hits with 4 "
+                                             "lanes. Right: any-hit queries with 4 lanes"));
+    EXPECT_EQ(clarity::check::stage_of(listed), "nearest hits of several lanes");
 }
 
 TEST(Causes, WithoutFailuresThereAreNone) {

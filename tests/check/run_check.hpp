@@ -14,7 +14,7 @@ struct Defect {
     const char* library;
     const char* check;               // that must fail
     std::vector<const char*> words;  // of what it found
-    const char* lanes = "1";         // with which it is tried
+    const char* lanes = "1";         // with which it is tried; nullptr: with those of a quick check
 };
 inline void PrintTo(const Defect& defect, std::ostream* out) {
     *out << defect.library;

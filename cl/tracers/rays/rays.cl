@@ -26,6 +26,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 if (RT_STREAM == 1) rt_clear_hits(hit + b, active[b]); /* a stream answers blocks without rays apart */
                 hit[b].t = rt_vfloat(-1.0f);
                 RT_CLEAR_OVERFLOW(hit + b)
+                RT_GRANT_PUSHES(hit + b, base + b)
                 if (!rt_any(active[b])) continue;
 #if RT_LANES > 1
                 rt_load_ray_block(frame, rays, base + b, ray + b, &t_max);

@@ -14,7 +14,11 @@ std::vector<ParameterValues> parameter_tries(const rt_plugin& plugin, uint64_t s
     ParameterValues least = usual, most = usual;
     for (rt_u32 p = 0; p < plugin.param_count; ++p) {
         const rt_param& param = plugin.params[p];
-        for (const double value : {param.min, param.max}) {
+        // Each choice may be code of its own; of numbers the ends.
+        std::vector<double> values = {param.min, param.max};
+        for (double choice = param.min + 1; param.kind == RT_PARAM_ENUM && choice < param.max; ++choice)
+            values.push_back(choice);
+        for (const double value : values) {
             if (value == param.def) continue;
             tries.push_back(usual);
             tries.back()[p] = value;

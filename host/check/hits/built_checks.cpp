@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <ctime>
 #include <functional>
+#include <iterator>
+#include <memory>
 #include <set>
 
 #include "check/builds/parameter_tries.hpp"
@@ -15,7 +17,7 @@ namespace {
 constexpr size_t kBuiltRays = 400;  // of a set
 // Processor time for the compilation of kernels that differ in a define. What is cut is said.
 constexpr double kQuick_s = 6, kLong_s = 60;
-constexpr unsigned kLarge = 70000, kHuge = (1u << 20) + 4099;  // above 2^16 and 2^20
+constexpr unsigned kLarge = 100000, kHuge = (1u << 20) + 4099;  // above 2^16 and 75000, above 2^20
 
 double processor_s() {
     return double(std::clock()) / CLOCKS_PER_SEC;
@@ -28,49 +30,82 @@ BenchInput few(BenchInput input) {
     return input;
 }
 
+// A define that chooses between pieces of code is a small number. Larger ones are sizes.
+constexpr rt_u32 kMostChoice = 7;
+
+using Defines = std::map<std::string, rt_u32>;
+
+// Adds the choices that are made otherwise than usual, such as "BVH8_SINGLE 1". Returns whether one is new.
+bool add_choices(const Defines& defines, const Defines& usual, std::set<std::pair<std::string, rt_u32>>& choices) {
+    const size_t known = choices.size();
+    for (const auto& [name, value] : defines)
+        if (const auto at = usual.find(name); value <= kMostChoice && (at == usual.end() || at->second != value))
+            choices.insert({name, value});
+    return choices.size() > known;
+}
+
 // Traces the mixed scene as it is built in one way after another, first where the program is there already: that of the default
-// defines, with each number of lanes in turn. Each further set of defines is compiled with one number of lanes, which follows
-// from its values: so all checks compile it once. Quick checks compile for one of the two least numbers, which takes the least
-// time.
+// defines, with each number of lanes in turn. Next are programs of which a define chooses other code than usual: with several
+// lanes and with one, because either may have code of its own. Each further set of defines is compiled with one number of
+// lanes, which follows from its values: so all checks compile it once. Quick checks compile for the two least numbers, which
+// take the least time.
 struct Case {
     std::string what;  // "bvh2,max_leaf=1"
     BuiltAs as;
 };
 Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, const Step& step) {
-    const double begin = processor_s(), most = input.options.quick ? kQuick_s : kLong_s;
-    const auto usual = Bench(few(input)).scene(step).accel()->defines;
+    const double most = input.options.quick ? kQuick_s : kLong_s;
+    Bench usually(few(input));
+    const Defines usual = usually.scene(step).accel()->defines;
+    const size_t all_lanes = usually.options().lanes.size(),
+                 lanes = input.options.quick ? std::min<size_t>(2, all_lanes) : all_lanes;
     struct Tried {
         std::string what;
         std::unique_ptr<Bench> bench;
-        std::map<std::string, rt_u32> defines;
+        Defines defines;
+        size_t turn;
     };
-    std::vector<Tried> left;
+    std::vector<Tried> left, others;
+    std::set<std::pair<std::string, rt_u32>> choices;
+    size_t usual_turn = 0;
     for (const Case& one : cases) {
-        auto bench = std::make_unique<Bench>(few(input), kMixedScene, one.as);
-        auto defines = bench->scene(step).accel()->defines;
-        left.push_back({one.what, std::move(bench), std::move(defines)});
+        const auto add = [&](std::vector<Tried>& list, size_t turn) {
+            auto bench = std::make_unique<Bench>(few(input), kMixedScene, one.as);
+            auto defines = bench->scene(step).accel()->defines;
+            bench->take_turn(turn, step);
+            list.push_back({one.what, std::move(bench), std::move(defines), turn});
+        };
+        const Defines defines = Bench(few(input), kMixedScene, one.as).scene(step).accel()->defines;
+        if (defines == usual) {
+            add(left, usual_turn++ % all_lanes);
+        } else if (add_choices(defines, usual, choices)) {
+            add(left, lanes - 1);
+            if (lanes > 1) add(left, 0);
+        } else {
+            std::string text;
+            for (const auto& [name, value] : defines) text += name + "=" + std::to_string(value) + " ";
+            add(others, std::hash<std::string>()(text) % lanes);
+        }
     }
+    std::move(others.begin(), others.end(), std::back_inserter(left));
+    const std::string all = std::to_string(left.size());
     size_t traced = 0;
-    std::set<std::map<std::string, rt_u32>> programs;
-    const auto turn_of = [](const std::map<std::string, rt_u32>& defines) {
-        std::string text;
-        for (const auto& [name, value] : defines) text += name + "=" + std::to_string(value) + " ";
-        return std::hash<std::string>()(text);
-    };
-    for (; !left.empty() && processor_s() - begin < most; ++traced) {
-        auto next = std::find_if(left.begin(), left.end(),
-                                 [&](const Tried& t) { return t.defines == usual || programs.count(t.defines) > 0; });
+    double spent = 0;  // on programs of their own
+    std::set<std::pair<Defines, size_t>> programs;
+    for (; !left.empty() && spent < most; ++traced) {
+        const double begin = processor_s();
+        auto next = std::find_if(left.begin(), left.end(), [&](const Tried& t) {
+            return t.defines == usual || programs.count({t.defines, t.turn}) > 0;
+        });
         if (next == left.end()) next = left.begin();
-        Bench& bench = *next->bench;
-        programs.insert(next->defines);
-        const size_t turn = turn_of(next->defines);
-        bench.take_turn(next->defines == usual ? traced : input.options.quick ? turn % 2 : turn, step);
+        programs.insert({next->defines, next->turn});
         Outcome outcome =
-            trace_sets(bench, {"hits.random", "hits.instances", "hits.primitives", "hits.nested"}, "with " + next->what, step);
+            trace_sets(*next->bench, {"hits.random", "hits.instances", "hits.primitives", "hits.nested", "hits.close"},
+                       "with " + next->what, step);
         if (outcome.kind == Outcome::Kind::failed) return outcome;
+        if (next->defines != usual) spent += processor_s() - begin;
         left.erase(next);
     }
-    const std::string all = std::to_string(cases.size());
     return Outcome::passed("rays are right in " + (left.empty()
                                                        ? "all " + all + " cases"
                                                        : std::to_string(traced) + " of " + all + " cases: cut after " +
@@ -130,10 +165,11 @@ std::vector<RaySet> rays_at_nothing(const BuildScene&, size_t count, uint64_t se
 }
 const TestScene kEmptyScene{"an empty scene", nothing, rays_at_nothing};
 
-// Rays at the middles of triangles anywhere in a soup.
-std::vector<RaySet> rays_at_soup(const BuildScene& scene, size_t count, uint64_t seed) {
+// Rays at the middles of triangles anywhere, and at close faces.
+std::vector<RaySet> rays_at_many(const BuildScene& scene, size_t count, uint64_t seed) {
     RayMaker make(10, seed);
-    RaySet set{"hits.large", "rays at more than 65536 triangles", {}, false, ""};
+    RaySet set{
+        "hits.large", "rays at 100000 triangles, or as --large says, also at pairs of faces that are close", {}, false, ""};
     for (size_t i = 0; i < count && !scene.triangles.empty(); ++i) {
         const rt_packed_prim& t = scene.triangles[make.below(scene.triangles.size())];
         Point to, from = make.direction();
@@ -143,10 +179,11 @@ std::vector<RaySet> rays_at_soup(const BuildScene& scene, size_t count, uint64_t
         }
         set.rays.push_back(RayMaker::from_to(from, to));
     }
+    if (count > 0) add_close_rays(scene, count / 4, make, set.rays);
     return {set};
 }
-const TestScene kLargeScene{"70000 triangles", [](uint64_t seed) { return soup_scene(kLarge, seed); }, rays_at_soup},
-    kHugeScene{"more than 2^20 triangles", [](uint64_t seed) { return soup_scene(kHuge, seed); }, rays_at_soup, nullptr, 120};
+const TestScene kLargeScene{"100000 triangles", [](uint64_t seed) { return large_scene(kLarge, seed); }, rays_at_many},
+    kHugeScene{"more than 2^20 triangles", [](uint64_t seed) { return large_scene(kHuge, seed); }, rays_at_many, nullptr, 120};
 
 }  // namespace
 
@@ -163,17 +200,18 @@ std::vector<Check> built_checks(const BenchInput& input) {
                           return refits ? refitted(debug, input.options.quick, step)
                                         : Outcome::skipped("the plugin does not offer `refit`");
                       }});
-    // Their programs are their own, because they have no instances: quick checks compile those of one lane.
-    const auto add = [&](const TestScene& test) {
+    // Their programs are their own, because they have no instances: quick checks compile one each. A structure may have code
+    // for what is large, and that of several lanes is what CPUs run.
+    const auto add = [&](const TestScene& test, size_t turn) {
         const auto bench = std::make_shared<Bench>(few(input), test);
         const RaySet set = test.rays(BuildScene(), 0, 0).front();
         checks.push_back({set.name, set.tried, [=](const Step& step) {
-                              if (input.options.quick) bench->take_turn(0, step);
+                              if (input.options.quick) bench->take_turn(turn, step);
                               return trace_set(*bench, set.name, step);
                           }});
     };
-    add(kEmptyScene);
-    add(input.options.large ? kHugeScene : kLargeScene);
+    add(kEmptyScene, 0);
+    add(input.options.large ? kHugeScene : kLargeScene, 1);
     return checks;
 }
 

@@ -37,6 +37,38 @@ void add_view(const Region& at, float away, const Point& d, int side, std::vecto
 
 }  // namespace
 
+void add_close_rays(const BuildScene& scene, size_t count, RayMaker& make, std::vector<rt_ray>& rays) {
+    // The small flat faces are triangles of 0.008; aim at each from both sides, along the axis and nearly so.
+    struct Face {
+        Point middle;
+        int axis;
+    };
+    std::vector<Face> faces;
+    const Point center = region("faces").center;
+    for (const rt_packed_prim& p : scene.triangles) {
+        Point middle;
+        float size = 0, away = 0;
+        for (int k = 0; k < 3; ++k) {
+            middle[k] = (p.a[k] + p.b[k] + p.c[k]) / 3;
+            away = std::max(away, std::fabs(middle[k] - center[k]));
+            size = std::max(size, std::fabs(p.a[k] - p.b[k]));
+        }
+        if (away > 10 || size > 0.05f) continue;
+        for (int k = 0; k < 3; ++k)
+            if (p.a[k] == p.b[k] && p.a[k] == p.c[k]) faces.push_back({middle, k});
+    }
+    const size_t every = (faces.size() / (2 * count) + 1) | 1;  // odd: faces are pairs
+    for (size_t i = 0; i < faces.size(); i += every)
+        for (const float side : {-1.0f, 1.0f}) {
+            const auto& [middle, k] = faces[i];
+            Point from = middle;
+            from[k] += 10 * side;
+            rays.push_back(RayMaker::from_to(from, middle));
+            from[(k + 1) % 3] += 0.3f * (make.any() - 0.5f);
+            rays.push_back(RayMaker::from_to(from, middle));
+        }
+}
+
 std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t seed) {
     std::vector<RaySet> sets;
     RayMaker make(4, seed);
@@ -99,37 +131,8 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t see
             rays.push_back(RayMaker::from_to(from, to));
         }
     });
-    add("hits.close", "rays at pairs of faces whose distances differ by 4 in 10000", [&](std::vector<rt_ray>& rays) {
-        // The small flat faces are triangles of 0.008; aim at each from both sides, along the axis and nearly so.
-        struct Face {
-            Point middle;
-            int axis;
-        };
-        std::vector<Face> faces;
-        const Point center = region("faces").center;
-        for (const rt_packed_prim& p : scene.triangles) {
-            Point middle;
-            float size = 0, away = 0;
-            for (int k = 0; k < 3; ++k) {
-                middle[k] = (p.a[k] + p.b[k] + p.c[k]) / 3;
-                away = std::max(away, std::fabs(middle[k] - center[k]));
-                size = std::max(size, std::fabs(p.a[k] - p.b[k]));
-            }
-            if (away > 10 || size > 0.05f) continue;
-            for (int k = 0; k < 3; ++k)
-                if (p.a[k] == p.b[k] && p.a[k] == p.c[k]) faces.push_back({middle, k});
-        }
-        const size_t every = (faces.size() / (2 * count) + 1) | 1;  // odd: faces are pairs
-        for (size_t i = 0; i < faces.size(); i += every)
-            for (const float side : {-1.0f, 1.0f}) {
-                const auto& [middle, k] = faces[i];
-                Point from = middle;
-                from[k] += 10 * side;
-                rays.push_back(RayMaker::from_to(from, middle));
-                from[(k + 1) % 3] += 0.3f * (make.any() - 0.5f);
-                rays.push_back(RayMaker::from_to(from, middle));
-            }
-    });
+    add("hits.close", "rays at pairs of faces whose distances differ by 4 in 10000",
+        [&](std::vector<rt_ray>& rays) { add_close_rays(scene, count, make, rays); });
     add("hits.scales", "rays at tiny, huge and far-away triangles, and from up to 10^10 away", [&](std::vector<rt_ray>& rays) {
         plain(rays, {"tiny", "far away"}, count / 4);
         for (size_t i = 0; i < count / 4; ++i) {

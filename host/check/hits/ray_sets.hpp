@@ -9,6 +9,8 @@
 
 namespace clarity::check {
 
+class RayMaker;
+
 struct RaySet {
     const char* name;   // of the check: "hits.random"
     const char* tried;  // what these rays are
@@ -19,6 +21,9 @@ struct RaySet {
 
 // count: rays of a set, roughly; 0: sets without rays, for their names. scene: the mixed scene as builders see it.
 std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);
+
+// Rays at the small flat faces of mixed_scene() and large_scene(), from either side.
+void add_close_rays(const BuildScene& scene, size_t count, RayMaker& make, std::vector<rt_ray>& rays);
 
 // Rays into regular_scene() and floor_scene().
 std::vector<RaySet> regular_ray_sets(const BuildScene& scene, size_t count, uint64_t seed = 0);

@@ -28,43 +28,50 @@ struct Effort {
     uint32_t most[2] = {0, 0};   // of one ray; those of nearest hits are whole for that
     uint64_t steps[2] = {0, 0};
     uint32_t most_steps[2] = {0, 0};  // of one ray
-    uint64_t asked = 0;
     // Cells of a space that no plane parts: one holds nearly all primitives, so what is tested says nothing about pushes.
     bool in_one_leaf() const { return steps[0] > 0 && tests[0] > kCrowded * steps[0]; }
     static constexpr uint64_t kCrowded = 64;  // primitives a node
 };
-Effort effort_of(Bench& bench, const std::vector<const char*>& names, const Step& step) {
+// By the room that a ray gets on the stack, in the order of RT_GRANT_PUSHES: as usual, never, kGranted times.
+constexpr rt_u32 kGranted = 12;
+constexpr size_t kRooms = 3;
+struct Efforts {
+    Effort all, none, some;
+    Effort* const rooms[kRooms] = {&all, &none, &some};
+    uint64_t asked = 0;
+};
+
+std::vector<rt_ray> for_each_room(const std::vector<rt_ray>& rays) {
+    std::vector<rt_ray> all;
+    for (const rt_ray& ray : rays) all.insert(all.end(), kRooms, ray);
+    return all;
+}
+
+void add_efforts(Bench& bench, const char* name, const Step& step, Efforts& efforts) {
     const Variant variant{1, true, false};
-    Effort effort;
-    for (const char* name : names) {
-        const RaySet& set = bench.set(name, step);
-        const std::vector<Truth>& truths = bench.truths(set, step);
-        CheckedScene& scene = bench.scene(step);
-        std::vector<rt_ray> ended = set.rays;
-        // What is not certain may lie anywhere: the plane of a triangle along the ray.
-        for (size_t i = 0; i < ended.size(); ++i)
-            if (const Contact* hit = truths[i].nearest_certain()) ended[i].t_max = static_cast<float>(hit->t * 0.99);
-        const auto count = [&](const std::vector<rt_ray>& rays, bool any_hit) {
-            step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(bench.options()));
-            return scene.count(variant, rays, any_hit);
-        };
-        const auto most_of = [](const Traced& traced) {
-            uint32_t most = 0;
-            for (const rt_hit& hit : traced.hits) most = std::max<uint32_t>(most, hit.leaf_tests);
-            return most;
-        };
-        for (const bool any_hit : {false, true}) {
-            const Traced traced = count(ended, any_hit);
-            for (const rt_hit& hit : traced.hits) {
-                effort.tests[any_hit] += hit.leaf_tests;
-                effort.steps[any_hit] += hit.steps;
-                effort.most_steps[any_hit] = std::max<uint32_t>(effort.most_steps[any_hit], hit.steps);
-            }
-            effort.most[any_hit] = std::max(effort.most[any_hit], most_of(any_hit ? traced : count(set.rays, false)));
-            effort.asked += traced.overflows;
+    const RaySet& set = bench.set(name, step);
+    const std::vector<Truth>& truths = bench.truths(set, step);
+    CheckedScene& scene = bench.scene(step);
+    std::vector<rt_ray> ended = set.rays;
+    // What is not certain may lie anywhere: the plane of a triangle along the ray.
+    for (size_t i = 0; i < ended.size(); ++i)
+        if (const Contact* hit = truths[i].nearest_certain()) ended[i].t_max = static_cast<float>(hit->t * 0.99);
+    const auto count = [&](const std::vector<rt_ray>& rays, bool any_hit) {
+        step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(bench.options()));
+        return scene.count(variant, for_each_room(rays), any_hit);
+    };
+    for (const bool any_hit : {false, true}) {
+        const Traced traced = count(ended, any_hit), whole = any_hit ? traced : count(set.rays, false);
+        for (size_t i = 0; i < traced.hits.size(); ++i) {
+            const rt_hit& hit = traced.hits[i];
+            Effort& effort = *efforts.rooms[i % kRooms];
+            effort.tests[any_hit] += hit.leaf_tests;
+            effort.steps[any_hit] += hit.steps;
+            effort.most_steps[any_hit] = std::max<uint32_t>(effort.most_steps[any_hit], hit.steps);
+            effort.most[any_hit] = std::max<uint32_t>(effort.most[any_hit], whole.hits[i].leaf_tests);
         }
+        efforts.asked += traced.overflows;
     }
-    return effort;
 }
 
 BenchInput few_rays(BenchInput input) {
@@ -143,7 +150,7 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     // of a node of four children (bvh4), so twelve grants are up to 37 paths, and 39 of the longest are allowed. Without pushes
     // the longest path of any ray tests kLeast primitives or more. Of 4 primitives a path, 148 is the most that bvh4's nodes
     // can need, and lbvh, which they trace, tests 135. What asks for every other push alone tests 180.
-    constexpr rt_u32 kGranted = 12, kLeast = 4, kLonger = 3;
+    constexpr rt_u32 kLeast = 4, kLonger = 3;
     // Where few rays push, most tests are left, too: in kdtree 0.69 of those in meshes. So the longest ray must visit nearly as
     // many nodes as usual. In kdtree that is 0.44, in a traversal that does not ask 0.91.
     constexpr double kSameWay = 0.75;
@@ -151,10 +158,6 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     const Row rows[] = {{kMixedScene, {"hits.nested", "hits.instances", "hits.random"}, 0.75, "in the mixed scene"},
                         {kRegularScene, {"hits.uneven"}, 0.5, "in meshes with many triangles"},
                         {crowd_of(input, step), {"hits.crowd"}, 0.5, "at many triangles whose boxes overlap"}};
-    const auto effort = [&](const Row& row, const std::map<std::string, rt_u32>& defines) {
-        Bench bench(few_rays(input), row.scene, {{}, 0, defines, Moves::none});
-        return effort_of(bench, row.sets, step);
-    };
     const auto fault = [](const char* when, int any, const Row& row, const std::string& tested) {
         return Outcome::failed(std::string("when RT_STACK_OK refuses ") + when + ", " +
                                (any ? "any-hit queries " : "nearest hits ") + row.where + " still test " + tested +
@@ -162,12 +165,15 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     };
     uint64_t asked = 0, tested = 0, usually = 0;
     uint32_t path = kLeast, longest = 0;
-    std::vector<const Row*> telling;
+    std::vector<std::pair<const Row*, Effort>> with_some;
     for (const Row& row : rows) {
-        const Effort all = effort(row, {}), left = effort(row, {{"RT_STACK_GRANTED", 0}});
-        asked += left.asked;
-        if (!left.in_one_leaf()) telling.push_back(&row);
-        if (left.asked == 0 || left.in_one_leaf()) continue;
+        Bench bench(few_rays(input), row.scene, {{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none});
+        Efforts efforts;
+        for (const char* name : row.sets) add_efforts(bench, name, step, efforts);
+        const Effort &all = efforts.all, &left = efforts.none;
+        asked += efforts.asked;
+        if (!left.in_one_leaf()) with_some.push_back({&row, efforts.some});
+        if (efforts.asked == 0 || left.in_one_leaf()) continue;
         for (const int any : {0, 1}) {
             tested += left.tests[any], usually += all.tests[any];
             path = std::max(path, left.most[any]);
@@ -177,9 +183,8 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
                              std::to_string(left.tests[any]) + " primitives of " + std::to_string(all.tests[any]));
         }
     }
-    for (const Row* row : telling) {
+    for (const auto& [row, some] : with_some) {
         if (asked == 0) break;
-        const Effort some = effort(*row, {{"RT_STACK_GRANTED", kGranted}});
         for (const int any : {0, 1}) {
             longest = std::max(longest, some.most[any]);
             if (some.most[any] > kLonger * (kGranted + 1) * path)
@@ -207,7 +212,9 @@ Outcome crowd_check(const BenchInput& input, const Step& step) {
 }
 
 Outcome counts_check(const BenchInput& input, const Step& step) {
-    Bench mixed(few_rays(input)), regular(few_rays(input), kRegularScene);
+    // The program of hits.pushes is there already.
+    const BuiltAs as{{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none};
+    Bench mixed(few_rays(input), kMixedScene, as), regular(few_rays(input), kRegularScene, as);
     const Variant variant{1, true, false};
     struct Row {
         Bench& bench;
@@ -219,11 +226,12 @@ Outcome counts_check(const BenchInput& input, const Step& step) {
         const RaySet& set = row.bench.set(row.set, step);
         CheckedScene& scene = row.bench.scene(step);
         step(std::string("counting the primitives that rays of ") + row.set + " test", compile_limit_s(input.options));
-        const Traced traced = scene.count(variant, set.rays, false);
+        const Traced traced = scene.count(variant, for_each_room(set.rays), false);
         for (size_t i = 0; i < set.rays.size(); ++i) {
-            if (traced.hits[i].prim < 0) continue;
+            const rt_hit& hit = traced.hits[kRooms * i];
+            if (hit.prim < 0) continue;
             ++hits;
-            if (traced.hits[i].leaf_tests == 0 && untested++ == 0) first = ray_text(set.rays[i]);
+            if (hit.leaf_tests == 0 && untested++ == 0) first = ray_text(set.rays[i]);
         }
     }
     if (untested > 0)
