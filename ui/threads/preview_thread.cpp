@@ -61,7 +61,7 @@ void PreviewThread::show(const PreviewJob& job) {
         if (is_known) job_->ready = job.ready;  // a newer pose
         if (is_known) return;
         // What is being compiled goes on: kernels serve other balls, too, and whoever clicks around would never see one.
-        if (!job_ || !(Ball(*job_) == Ball(job))) latest_.reset();
+        if (!job_ || !(Ball(*job_) == Ball(job)) || (latest_ && !latest_->failure.empty())) latest_.reset();
         job_ = job;
         begun_.reset();
     }
