@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "bench/run/bench.hpp"
+#include "bench/suites/zoo_scenes.hpp"
 #include "support/scenes.hpp"
 
 namespace {
@@ -109,6 +110,26 @@ TEST_F(Catalog, CompressedModelsAreLoaded) {
     write("broken.obj.gz", "no gzip at all");
     const BenchScene broken = scene_of_file((folder_ / "broken.obj.gz").string());
     EXPECT_THROW(load_scene(Workbench::get().plugins(), broken, 1, ImportOptions{}, progress), Error);
+}
+
+// Scenes that are computed have no file that an importer would check.
+TEST(Zoo, ScenesAreSoundAndOfAboutTheirSize) {
+    for (const char* name : {"stadium", "hair", "city", "height field", "soup"})
+        for (const uint64_t triangles : {2'000u, 20'000u}) {
+            Scene scene, again;
+            add_zoo_scene(name, triangles, scene);
+            add_zoo_scene(name, triangles, again);
+            const std::string what = std::string(name) + ", " + std::to_string(triangles);
+            EXPECT_EQ(validate(scene), Problem()) << what;
+            EXPECT_GT(scene.triangle_count(), triangles / 2) << what;
+            EXPECT_LT(scene.triangle_count(), 2 * triangles) << what;
+            EXPECT_FALSE(scene.bounds().empty) << what;
+            EXPECT_TRUE(
+                std::equal(scene.positions.begin(), scene.positions.end(), again.positions.begin(), again.positions.end()))
+                << what << ": the same each time";
+        }
+    Scene none;
+    EXPECT_THROW(add_zoo_scene("none", 1, none), std::out_of_range);
 }
 
 TEST(Suites, AllHaveValidSettings) {

@@ -145,8 +145,6 @@ TEST(Masks, OfPicturesGoByTheKindOfRays) {
 TEST(MasksFaults, AreFound) {
     const PlantedFault faults[] = {
         {"instances have no mask", "primitives/leaf_scene.h", "~instance->hidden)", "0xffffffffu)", "Masks.RaysPass*"},
-        {"a packet has the mask of its first ray", "primitives/leaf_scene.h", "enters &= RT_MASK((r->mask &",
-         "enters = RT_MASK((r->mask &", "Masks.RaysPass*"},
         {"queries have no mask", "tracers/rays/ray_blocks.h", "rt_vint((int)frame->ray_mask)", "rt_vint(255)",
          "Masks.RaysPass*"},
         {"shadow rays are the camera's", "shading/shading.h", "rt_vint(RT_SEEN_BY_SHADOW)", "rt_vint(RT_SEEN_BY_CAMERA)",
