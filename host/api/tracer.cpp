@@ -101,9 +101,11 @@ void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& 
 }
 
 View clarity_tracer::view_of(const clarity_picture& asked, const Words& words) const {
-    if (instance_edits(*imported_, words.edits) != instance_edits(*imported_, {}))
-        throw Error(Exit::usage,
-                    "settings `hide` and `instance.N...`: the structure is built, so instances stay where they are");
+    const EditedView asked_for = scene_edits(*imported_, words.edits), built = scene_edits(*imported_, {});
+    if (asked_for.instances != built.instances || asked_for.maps != built.maps)
+        throw Error(
+            Exit::usage,
+            "settings `hide`, `instance.N...` and textures of materials: the scene is on the device, and stays as it is");
     EditedView edited;
     const float aspect = float(words.settings.whole_width()) / float(words.settings.whole_height());
     edited.view = make_view(*imported_, aspect, text_of(asked.camera), text_of(asked.light));
