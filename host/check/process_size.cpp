@@ -80,15 +80,19 @@ Outcome find_leaks(const std::string& what, unsigned times, const std::function<
         return process_size();
     };
     repeat(20);  // caches fill
-    // Each thread of a pool has memory of its own from the first work that it gets, which may be late where there are many
-    // cores. What is leaked grows every time.
-    constexpr unsigned kLooks = 4;
+    // Each thread of a pool has memory of its own from the first work that it gets, and keeps some of what it frees; on a busy
+    // machine with many cores that goes on for hundreds of builds. What is leaked grows every time. So a small growth is looked
+    // at longer.
+    constexpr unsigned kLooks = 4, kLongLooks = 16;
+    constexpr uint64_t kSmallGrowth = 1024;
     Outcome outcome;
     ProcessSize begin = repeat(0);
-    for (unsigned look = 0; look < kLooks; ++look) {
+    for (unsigned look = 0, looks = kLooks; look < looks; ++look) {
         const ProcessSize middle = repeat(times / 2), end = repeat(times / 2);
         outcome = compare_sizes(what, times, begin, middle, end);
         if (outcome.kind != Outcome::Kind::failed) break;
+        const bool little = end.heap_bytes - begin.heap_bytes < kSmallGrowth * times && end.files == begin.files;
+        looks = little ? kLongLooks : kLooks;
         begin = end;
     }
     return outcome;
