@@ -105,7 +105,7 @@ View clarity_tracer::view_of(const clarity_picture& asked, const Words& words) c
     if (asked_for.instances != built.instances || asked_for.maps != built.maps)
         throw Error(
             Exit::usage,
-            "settings `hide`, `instance.N...` and textures of materials: the scene is on the device, and stays as it is");
+            "settings `hide`, `instance.N...` and textures of materials: the scene is built, so they stay where they are");
     EditedView edited;
     const float aspect = float(words.settings.whole_width()) / float(words.settings.whole_height());
     edited.view = make_view(*imported_, aspect, text_of(asked.camera), text_of(asked.light));
