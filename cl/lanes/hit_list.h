@@ -13,7 +13,8 @@ typedef struct rt_hit_list {
     vint prim[RT_ALL_HITS], instance[RT_ALL_HITS];
     vfloat after_t; /* the hits up to this one are not wanted */
     vint after_prim;
-    int first_prim, inside; /* the instance whose mesh is traversed: the number of its first primitive, its index; 0 and -1 */
+    /* While the mesh of an instance is traversed: the number of its first primitive, and the index of the instance. Else 0 and -1. */
+    int first_prim, inside;
 } rt_hit_list;
 
 /* Whether the hit a comes before the hit b. */
@@ -35,7 +36,7 @@ RT_INLINE void rt_clear_list(rt_hit_list *list, vfloat t_max, vfloat after_t, vi
     list->inside = -1;
 }
 
-/* The lanes whose lists have a place for a hit of a primitive of the group that is traversed. */
+/* The lanes whose lists take a hit at t. prim: the primitive's number within the mesh, or within the world. */
 RT_INLINE vmask rt_list_wants(const rt_hit_list *list, vfloat t, uint prim)
 {
     const vint number = rt_vint(list->first_prim + (int)prim);

@@ -6,7 +6,8 @@
  * element, which compilers keep in registers.
  *
  * Packets enter an instance's tree one by one. Tracing a stream there together was 2 to 10 % slower, because deciding which
- * packets enter the instance costs more than it saves. The inspector, which records ray after ray, and lists of all hits have no streams either. */
+ * packets enter the instance costs more than it saves.
+ * The inspector, which records ray after ray, and lists of all hits have no streams either. */
 #ifndef RT_PACKET_STREAM_H
 #define RT_PACKET_STREAM_H
 

@@ -1,6 +1,5 @@
 /* record.h -- stores a hit in the lanes `closer`, in which a primitive test found the nearest hit so far, or one
- * for the list of all hits. A template, see
- * CONTRACT.md. */
+ * for the list of all hits. A template, see CONTRACT.md. */
 RT_INLINE void RT_FN(rt_record)(rt_hits *h, vmask closer, vfloat t, vfloat u, vfloat v, vfloat nx, vfloat ny, vfloat nz, int leaf,
                                 uint prim)
 {

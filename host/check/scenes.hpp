@@ -39,7 +39,7 @@ std::vector<NamedScene> small_scenes(uint64_t seed = 0);
 Scene sparse_scene(unsigned count, uint64_t seed = 0);
 // `count` triangles of any size in a cube; for tests of time and memory.
 Scene soup_scene(unsigned count, uint64_t seed = 0);
-// The same far from the origin, and the faces of mixed_scene() whose distances hardly differ.
+// The same far from the origin, besides the pairs of close faces of mixed_scene().
 Scene large_scene(unsigned count, uint64_t seed = 0);
 
 }  // namespace clarity::check

@@ -72,7 +72,8 @@ void add_rays(CLI::App& app, TraceCommand& command) {
         app.add_flag("--all", command.all,
                      "Write all hits of each ray in their order: the ray's number from 0, then what -o says, a line a hit");
     CLI::Option* const count = app.add_flag("--count", command.count, "Write how many hits each ray has, a number a ray");
-    single(app.add_option("--mask", command.mask, "Of the rays: they pass instances whose mask has no bit of it, 0 to 255"))
+    single(app.add_option("--mask", command.mask,
+                          "The rays hit only instances that share a bit of this number with their mask, 0 to 255"))
         ->check(CLI::Range(0u, RT_SEEN_BY_ALL));
     any->excludes(all)->excludes(count);
     all->excludes(count);

@@ -8,8 +8,8 @@
 
 namespace clarity {
 
-// The file of the program `clarity`: this process's own, empty if /proc is not mounted. In a library, whose process is another
-// program, it is what set_program_file() was given.
+// The file of the program `clarity`. In the program it is the process's own file, or empty if /proc is not mounted. In the
+// library it is what set_program_file() was given.
 std::filesystem::path program_file();
 // For a library. Workers are started from this file, and plugins are found beside it.
 void set_program_file(const std::filesystem::path& file);

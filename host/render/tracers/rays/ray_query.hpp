@@ -18,7 +18,7 @@ struct RayQuery {
     bool brief = false;
     // Full stacks of a debug program are counted and not logged: the caller expects them.
     bool quiet = false;
-    // Of the rays: they pass instances whose mask has no bit of it. RT_SEEN_BY_*, and bits of the caller's own.
+    // Of the rays: they hit only instances that share a bit of it with their mask. RT_SEEN_BY_*, and bits of the caller's own.
     rt_u32 mask = RT_SEEN_BY_ALL;
     Progress* progress = nullptr;  // a cancel ends the compilation of the kernels; null: nobody cancels
 };
