@@ -121,6 +121,9 @@ typedef struct rt_emitter {
 #define RT_PICKS 16777216
 #define RT_EMITTER_SURFACE 7u
 #define RT_EMITTER_SKY 8u
+/* Numbers of what shines and is no light of the frame. */
+#define RT_LIGHT_OF_SURFACES 0x40000000
+#define RT_LIGHT_OF_SKY 0x40000001
 
 /* What kernels are compiled for besides shapes and attributes, as bits of RT_LIGHTS and RT_LOBES. Lights: 1 << RT_LIGHT_* or
  * 1 << RT_EMITTER_*, and whether some light has RT_LIGHT_FALLOFF. Lobes: how surfaces scatter in `path`, besides diffusely. */

@@ -16,17 +16,15 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
     vfloat entry;
     vmask enters = rt_enter_bounds(rt_vfloat(leaf->a[0]), rt_vfloat(leaf->a[1]), rt_vfloat(leaf->a[2]), rt_vfloat(leaf->b[0]),
                                          rt_vfloat(leaf->b[1]), rt_vfloat(leaf->b[2]), r, h, &entry);
-#if RT_HAS_MASKS
+    uint active = rt_bits(enters);
+    if (active == 0u) return;
     const uint index = RT_REF_INDEX(leaf->ref);
     const global rt_instance *instance = ctx->instances + index;
+#if RT_HAS_MASKS
     enters &= RT_MASK((r->mask & rt_vint((int)~instance->hidden)) != rt_vint(0));
-    const uint active = rt_bits(enters);
+    active = rt_bits(enters);
     if (active == 0u) return;
 #else
-    const uint active = rt_bits(enters);
-    if (active == 0u) return;
-    const uint index = RT_REF_INDEX(leaf->ref);
-    const global rt_instance *instance = ctx->instances + index;
     if (instance->hidden) return;
 #endif
     const global float *m = instance->object_from_world;

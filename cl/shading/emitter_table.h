@@ -7,10 +7,6 @@
 #ifndef RT_EMITTER_TABLE_H
 #define RT_EMITTER_TABLE_H
 
-/* rt_light_sample.light of what is no light of the frame. */
-#define RT_LIGHT_OF_SURFACES 0x40000000
-#define RT_LIGHT_OF_SKY 0x40000001
-
 /* The emitters of all lanes. kind: RT_LIGHT_*, RT_EMITTER_SKY, or RT_EMITTER_SURFACE for a triangle.
  *   point, spot        p = position, radius = range; a spot's axis is u
  *   directional, sun   p = unit vector towards it

@@ -38,7 +38,7 @@ Settings settings_of(const clarity_options& options) {
     read_words(options.settings, words);
     if (!words.edits.empty())
         throw Error(Exit::usage, "setting `" + words.edits.front().key +
-                                     "`: a tracer has no camera, lights or materials; give it " + "to clarity_render()");
+                                     "`: a tracer has no camera, lights or materials; give it to clarity_render()");
     if (const std::string accel = text_of(options.accel); !accel.empty()) choose_accel(plugins(), accel, words.settings);
     return words.settings;
 }

@@ -86,10 +86,6 @@ void write_events(Recorder& r) {
 
 }  // namespace
 
-double now_us() {
-    return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 void record(const std::string& path) {
     Recorder& r = recorder();
     r.file.open(path);
@@ -98,8 +94,8 @@ void record(const std::string& path) {
                                      "; choose a folder that exists and may be written");
     r.path = path;
     r.begin_us = now_us();
-    name_thread("program");
-    r.track("program");
+    name_of_thread() = "program";
+    r.track(name_of_thread());
     detail::recording = true;
 }
 
@@ -142,10 +138,6 @@ void leave_out(size_t count) {
     Recorder& r = recorder();
     const std::lock_guard lock(r.mutex);
     r.left_out += count;
-}
-
-void name_thread(const char* name) {
-    name_of_thread() = name;
 }
 
 }  // namespace clarity::timeline

@@ -2,12 +2,13 @@
 // and chrome://tracing show.
 #pragma once
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <type_traits>
 #include <utility>
+
+#include "base/elapsed.hpp"
 
 namespace clarity::timeline {
 
@@ -31,7 +32,9 @@ void record(const std::string& path);
 // Writes the file, if one is recorded, and ends the recording. Logs a warning if it cannot be written.
 void write();
 
-double now_us();
+inline double now_us() {
+    return 1e6 * now_s();
+}
 // Adds a span to the track of the calling thread, or to a named one. Thread-safe. Beyond a million spans they are only counted.
 void add(Span span);
 void add(const std::string& track, Span span);
@@ -39,8 +42,14 @@ void add(const std::string& track, Span span);
 void before_writing(std::function<void()> more);
 // Says at the end that `count` more spans are left out.
 void leave_out(size_t count);
-// The name of the calling thread's track.
-void name_thread(const char* name);
+// A text, or what a function makes.
+template <class Name>
+std::string text_of(const Name& name) {
+    if constexpr (std::is_invocable_v<Name>)
+        return name();
+    else
+        return name;
+}
 
 // A span from its construction to its end. Costs a load where nothing is recorded. `name` is a text, or a function that makes
 // it.
@@ -49,10 +58,7 @@ class Scope {
     template <class Name>
     Scope(const char* kind, const Name& name) {
         if (!recording()) return;
-        if constexpr (std::is_invocable_v<Name>)
-            span_.name = name();
-        else
-            span_.name = name;
+        span_.name = text_of(name);
         span_.kind = kind;
         span_.begin_us = now_us();
         open_ = true;

@@ -35,6 +35,8 @@ struct TraceWords {
     std::vector<Word> edits;  // of the view, in the order of the command line
     PoseTime pose;            // of the preset
 };
+// How to import the scene for these edits: with the pictures that they give to materials.
+import::ImportOptions import_options(const SceneOptions& scene, const TraceWords& words);
 // Throws Error(usage) for an unknown plugin, key or value.
 TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions& options);
 

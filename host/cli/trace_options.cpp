@@ -36,6 +36,12 @@ TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions&
     return words;
 }
 
+import::ImportOptions import_options(const SceneOptions& scene,
+                                     const TraceWords& words){import::ImportOptions options = scene.import;
+options.pictures = pictures_of(words.edits);
+return options;
+}  // namespace clarity
+
 void check_scene(const PluginRegistry& plugins, const SceneOptions& options) {
     import::parse_importer_choices(plugins, options.import.importers);
     check_scene_files(options.files);

@@ -141,11 +141,7 @@ void print_report(const Replay& replay, const NoiseReport& report, const NoiseNa
     std::printf("\n%-24s %9s\n", "brightest samples", "luminance");
     for (const unsigned s : report.brightest) {
         const ReplayedSample& sample = replay.samples[s];
-        const rt_path_record* most = nullptr;
-        for (unsigned r = 0; r < sample.records; ++r) {
-            const rt_path_record& record = replay.records[sample.first_record + r];
-            if (record.kind == RT_PATH_LIT && (!most || luminance_of(record.light) > luminance_of(most->light))) most = &record;
-        }
+        const rt_path_record* const most = brightest_record(replay, sample);
         const std::string what = most ? light_title(names, most->light_number) + ", " + strategy_name(most->how) + ", by " +
                                             std::to_string(most->bounce) + (most->bounce == 1 ? " event" : " events")
                                       : "no light";
@@ -181,8 +177,8 @@ int run_why(const PluginRegistry& plugins, const WhyCommand& command) {
     ProgressBar progress(command.quiet);
     const CancelOnSignal cancel(progress);
     FrameScene scene(plugins, options, words, progress);
-    scene.take(
-        std::make_shared<const Scene>(import::import_scene(plugins, options.scene.files, options.scene.import, progress)));
+    const import::ImportOptions with_pictures = import_options(options.scene, words);
+    scene.take(std::make_shared<const Scene>(import::import_scene(plugins, options.scene.files, with_pictures, progress)));
     scene.place({});
     const Replay replay = replay_of(plugins, scene, words, pixel, progress);
     progress.clear();

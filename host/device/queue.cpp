@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace clarity {
@@ -82,11 +83,7 @@ void add_all() {
 
 }  // namespace
 
-std::string Queue::kernel_name(const cl::Kernel& kernel) {
-    return timeline::recording() ? kernel.getInfo<CL_KERNEL_FUNCTION_NAME>() : std::string();
-}
-
-void Queue::note(const char* kind, const std::string& name, uint64_t bytes, const cl::Event& event) const {
+void Queue::note(timeline::Span span, const cl::Event& event) const {
     const double queued_us = timeline::now_us();
     const cl::Device device = getInfo<CL_QUEUE_DEVICE>();
     const std::lock_guard lock(devices_mutex);
@@ -95,9 +92,7 @@ void Queue::note(const char* kind, const std::string& name, uint64_t bytes, cons
     const size_t number = commands.number_of_queue.emplace((*this)(), commands.number_of_queue.size() + 1).first->second;
     commands.take_complete();
     Command& command = commands.pending.emplace_back();
-    command.span.name = name;
-    command.span.kind = kind;
-    command.span.bytes = bytes;
+    command.span = std::move(span);
     command.event = event;
     command.queued_us = queued_us;
     command.track = device.getInfo<CL_DEVICE_NAME>() + ", queue " + std::to_string(number);

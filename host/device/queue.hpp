@@ -20,8 +20,9 @@ class Queue : public cl::CommandQueue {
     cl_int enqueueNDRangeKernel(const cl::Kernel& kernel, const cl::NDRange& offset, const cl::NDRange& global,
                                 const cl::NDRange& local = cl::NullRange, const Events* after = nullptr,
                                 cl::Event* done = nullptr) const {
-        return seen("launch", kernel_name(kernel), 0, done,
-                    [&](cl::Event* event) { return Base::enqueueNDRangeKernel(kernel, offset, global, local, after, event); });
+        return seen(
+            "launch", [&] { return kernel.getInfo<CL_KERNEL_FUNCTION_NAME>(); }, 0, done,
+            [&](cl::Event* event) { return Base::enqueueNDRangeKernel(kernel, offset, global, local, after, event); });
     }
     cl_int enqueueReadBuffer(const cl::Buffer& from, cl_bool wait, size_t at, size_t bytes, void* to,
                              const Events* after = nullptr, cl::Event* done = nullptr) const {
@@ -65,17 +66,17 @@ class Queue : public cl::CommandQueue {
 
  private:
     using Base = cl::CommandQueue;
-    template <class Enqueue>
-    cl_int seen(const char* kind, const std::string& name, uint64_t bytes, cl::Event* done, Enqueue enqueue) const {
+    // name: as of timeline::Scope.
+    template <class Name, class Enqueue>
+    cl_int seen(const char* kind, const Name& name, uint64_t bytes, cl::Event* done, Enqueue enqueue) const {
         if (!timeline::recording()) return enqueue(done);
         cl::Event event;
         const cl_int result = enqueue(&event);
-        if (event()) note(kind, name, bytes, event);
+        if (event()) note({timeline::text_of(name), kind, 0, 0, bytes}, event);
         if (done) *done = event;
         return result;
     }
-    static std::string kernel_name(const cl::Kernel& kernel);
-    void note(const char* kind, const std::string& name, uint64_t bytes, const cl::Event& event) const;
+    void note(timeline::Span span, const cl::Event& event) const;
 };
 
 }  // namespace clarity

@@ -53,11 +53,6 @@ rt_map placing(const Scene& scene, const Material& material, rt_u32 use) {
     return map;
 }
 
-bool is_plain(const rt_map& map) {
-    const float identity[6] = {1, 0, 0, 0, 1, 0};
-    return map.set == 0 && std::equal(identity, identity + 6, map.matrix);
-}
-
 template <class T>
 bool same_list(const std::vector<T>& a, const std::vector<T>& b) {
     static_assert(std::is_trivially_copyable_v<T>, "compared byte by byte");
@@ -66,7 +61,7 @@ bool same_list(const std::vector<T>& a, const std::vector<T>& b) {
 
 bool same_place(const Instance& a, const Instance& b) {
     return a.mesh == b.mesh && a.material == b.material && a.world_from_object == b.world_from_object &&
-           a.visible == b.visible && a.apart == b.apart;
+           a.visible == b.visible && a.apart == b.apart && a.mask == b.mask;
 }
 
 }  // namespace
@@ -105,7 +100,7 @@ Scene with_maps(const Scene& scene, const MapEdits& edits) {
         if (edit.use == RT_MAP_COLOR) material.values.texture = RT_NONE;
         if (edit.texture >= result.textures.size()) continue;
         map.texture = in_space(result, edit.texture, map_uses()[edit.use].space);
-        if (edit.use == RT_MAP_COLOR && is_plain(map)) {
+        if (edit.use == RT_MAP_COLOR && map.set == 0 && lies_plainly(map)) {
             material.values.texture = map.texture;
             continue;
         }

@@ -1,5 +1,6 @@
 #include "scene/map_uses.hpp"
 
+#include <algorithm>
 #include <vector>
 
 namespace clarity {
@@ -55,6 +56,11 @@ rt_u32 find_map_use(const std::string& name) {
     for (rt_u32 use = 0; use < RT_MAP_USES; ++use)
         if (name == map_uses()[use].name) return use;
     return RT_NONE;
+}
+
+bool lies_plainly(const rt_map& map) {
+    const float identity[] = {1, 0, 0, 0, 1, 0};
+    return std::equal(identity, identity + 6, map.matrix);
 }
 
 const rt_primitive_kind* map_kind_for_plugins() {

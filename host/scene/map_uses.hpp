@@ -20,6 +20,8 @@ const std::array<MapUse, RT_MAP_USES>& map_uses();
 // The number of a use by its name; RT_NONE: there is no such use.
 rt_u32 find_map_use(const std::string& name);
 const rt_primitive_kind* map_kind_for_plugins();
+// Whether a texture lies as its coordinates say.
+bool lies_plainly(const rt_map& map);
 
 // Calls tell(use, map) for each map of a material.
 template <class Tell>

@@ -1,6 +1,5 @@
 #include "scene/material_text.hpp"
 
-#include <algorithm>
 #include <cstring>
 
 #include "base/numbers.hpp"
@@ -20,11 +19,6 @@ void each_value(const MaterialValues& values, const Tell& tell) {
         const bool is_model = std::strcmp(key.name, "model") == 0;
         if (!key.alias && !follows && !is_model && has_key(values.model, key) && value != key.def) tell(key, value);
     }
-}
-
-bool lies_plainly(const rt_map& map) {
-    const float identity[] = {1, 0, 0, 0, 1, 0};
-    return std::equal(identity, identity + 6, map.matrix);
 }
 
 // What its importer did not understand of it: importers have one warning for each such material.

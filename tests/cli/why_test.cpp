@@ -125,6 +125,12 @@ TEST_F(Why, TracesTheSamplesOfAPicture) {
     }
 }
 
+TEST_F(Why, ReadsThePicturesOfEdits) {
+    const std::string picture = scratch_.write("red.ppm", std::string("P6 1 1 255\n\xff") + std::string(2, '\0'));
+    const Json json = why(kLamp, {"--pixel", "32,24", "--samples", "16", "--set", "material.1.color_map=" + picture});
+    EXPECT_EQ(json["samples"], 16);
+}
+
 TEST_F(Why, WritesTheBrightestPaths) {
     const std::string csv = scratch_.path("paths.csv");
     const Json json = why(kCaustic, {"--pixel", "32,24", "--csv", csv});

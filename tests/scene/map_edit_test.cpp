@@ -76,6 +76,9 @@ TEST(MapEdits, AnotherPictureLiesWhereTheFirstDid) {
     Scene moved = with;
     moved.instances[0].world_from_object[3] = 1;
     EXPECT_FALSE(same_geometry(scene, moved));
+    Scene passed = with;
+    passed.instances[0].mask = RT_SEEN_BY_ALL & ~RT_SEEN_BY_CAMERA;
+    EXPECT_FALSE(same_geometry(scene, passed)) << "a mesh with a mask is not flattened";
 }
 
 TEST(MapEdits, ThePictureIsOfTheColourSpaceOfItsUse) {

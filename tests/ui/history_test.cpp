@@ -73,6 +73,17 @@ TEST(History, UndoDoesNotMoveTheCamera) {
     EXPECT_EQ(desired.camera.eye[2], 3);
 }
 
+TEST(History, AMaskIsAStep) {
+    History history;
+    DesiredState desired;
+    history.observe(desired, false);
+    desired.instances.set_mask(4, RT_SEEN_BY_ALL & ~RT_SEEN_BY_CAMERA);
+    history.observe(desired, false);
+    EXPECT_EQ(history.undo_name(), "Mask");
+    history.undo(desired);
+    EXPECT_TRUE(desired.instances.empty());
+}
+
 TEST(History, ANewChangeDiscardsRedo) {
     History history;
     DesiredState desired;

@@ -91,7 +91,7 @@ void path_rows(const NoiseInspection& noise, UiState& state) {
     for (size_t i = 0; i < noise.report.brightest.size(); ++i) {
         const unsigned s = noise.report.brightest[i];
         const ReplayedSample& sample = noise.replay.samples[s];
-        const rt_path_record* most = nullptr;
+        const rt_path_record* const most = brightest_record(noise.replay, sample);
         std::string lines;
         for (unsigned r = 0; r < sample.records; ++r) {
             const rt_path_record& record = noise.replay.records[sample.first_record + r];
@@ -107,7 +107,6 @@ void path_rows(const NoiseInspection& noise, UiState& state) {
             else
                 continue;
             lines += line;
-            if (record.kind == RT_PATH_LIT && (!most || luminance_of(record.light) > luminance_of(most->light))) most = &record;
         }
         char label[160];
         std::snprintf(

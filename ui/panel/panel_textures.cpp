@@ -75,13 +75,12 @@ void use_row(Session& session, UiState& state, const Scene& scene, rt_u32 materi
 void draw_texture_rows(Session& session, UiState& state, rt_u32 material) {
     const Scene& scene = *session.ready()->loaded->scene;
     const MaterialValues& values = clarity::ui::material(session, material);
-    static std::pair<rt_u32, rt_u32> added = {RT_NONE, RT_NONE};  // the material and the use of an empty row
     std::vector<rt_u32> others;
     ImGui::PushID("textures");
     dim_text("Textures");
     for (rt_u32 use = 0; use < RT_MAP_USES; ++use) {
         const bool has = session.desired.maps.texture_of(scene, material, use) != RT_NONE;
-        if (has || use == RT_MAP_COLOR || added == std::make_pair(material, use))
+        if (has || use == RT_MAP_COLOR || state.empty_texture_row == std::make_pair(material, use))
             use_row(session, state, scene, material, use);
         else if (is_heeded(values, use))
             others.push_back(use);
@@ -89,7 +88,7 @@ void draw_texture_rows(Session& session, UiState& state, rt_u32 material) {
     row_label("More textures", "adds a row for a use that has no texture yet");
     if (ImGui::BeginCombo("##more", "choose a use", ImGuiComboFlags_HeightLarge)) {
         for (const rt_u32 use : others) {
-            if (option(map_uses()[use].label, false)) added = {material, use};
+            if (option(map_uses()[use].label, false)) state.empty_texture_row = {material, use};
             tooltip(map_uses()[use].help);
         }
         ImGui::EndCombo();

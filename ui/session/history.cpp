@@ -36,6 +36,7 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
     if (a.maps != b.maps) names.push_back("Texture");
     if (a.instances.moved != b.instances.moved) names.push_back("Place of objects");
     if (a.instances.hidden != b.instances.hidden) names.push_back("Visibility");
+    if (a.instances.masks != b.instances.masks) names.push_back("Mask");
     if (a.pose.clip != b.pose.clip)
         names.push_back("Clip");
     else if (a.loop != b.loop)

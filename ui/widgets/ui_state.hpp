@@ -45,14 +45,15 @@ struct UiState {
     bool show_rays = true;       // the rays of the inspected pixel are drawn in the scene
     bool browser_open = false;   // whether the file browser is shown
     BrowseFor browse_for = BrowseFor::scene;
-    std::pair<rt_u32, rt_u32> picture_for{};  // the material and the use (RT_MAP_) that get the picture
-    bool keys_open = false;                   // whether the list of keys is shown over the picture
-    std::string pictures_folder = ".";        // folder into which pictures are saved
-    unsigned preview_texture = 0;             // of OpenGL, with the ball of the selected material; 0: there is none yet
-    int selected_ray = -1;       // index of the ray that is marked in the scene, among those of the inspected pixel; -1: none
-    bool show_paths = true;      // the brightest paths of the explained pixel are drawn in the scene
-    int selected_path = -1;      // which of them is marked; -1: none
-    std::string browser_folder;  // the folder that the file browser shows
+    std::pair<rt_u32, rt_u32> empty_texture_row{RT_NONE, RT_NONE};  // its material and use: a use without a texture
+    std::pair<rt_u32, rt_u32> picture_for{};                        // the material and the use (RT_MAP_) that get the picture
+    bool keys_open = false;                                         // whether the list of keys is shown over the picture
+    std::string pictures_folder = ".";                              // folder into which pictures are saved
+    unsigned preview_texture = 0;  // of OpenGL, with the ball of the selected material; 0: there is none yet
+    int selected_ray = -1;         // index of the ray that is marked in the scene, among those of the inspected pixel; -1: none
+    bool show_paths = true;        // the brightest paths of the explained pixel are drawn in the scene
+    int selected_path = -1;        // which of them is marked; -1: none
+    std::string browser_folder;    // the folder that the file browser shows
     std::vector<std::string> recent_files;     // newest first
     std::vector<Bookmark> bookmarks;           // of the open scene
     size_t next_bookmark = 0;                  // which view the next press of N shows, among cameras and bookmarks

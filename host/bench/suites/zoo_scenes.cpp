@@ -4,13 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/angle.hpp"
 #include "bench/suites/ray_sets.hpp"
 #include "scene/vec.hpp"
 
 namespace clarity::bench {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
+constexpr double kTurn = 2 * kPi;
 
 // Numbers from 0 to 1 by a counter.
 class Chance {

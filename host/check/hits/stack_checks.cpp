@@ -1,6 +1,7 @@
 #include "check/hits/stack_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <regex>
 
 #include "check/regular_scenes.hpp"
@@ -32,12 +33,11 @@ struct Effort {
     bool in_one_leaf() const { return steps[0] > 0 && tests[0] > kCrowded * steps[0]; }
     static constexpr uint64_t kCrowded = 64;  // primitives a node
 };
-// By the room that a ray gets on the stack, in the order of RT_GRANT_PUSHES: as usual, never, kGranted times.
+// The room that a ray gets on the stack, in the order of RT_GRANT_PUSHES: as usual, never, kGranted times.
 constexpr rt_u32 kGranted = 12;
-constexpr size_t kRooms = 3;
+enum Room { kUsual, kNone, kSome, kRooms };
 struct Efforts {
-    Effort all, none, some;
-    Effort* const rooms[kRooms] = {&all, &none, &some};
+    std::array<Effort, kRooms> with{};
     uint64_t asked = 0;
 };
 
@@ -64,7 +64,7 @@ void add_efforts(Bench& bench, const char* name, const Step& step, Efforts& effo
         const Traced traced = count(ended, any_hit), whole = any_hit ? traced : count(set.rays, false);
         for (size_t i = 0; i < traced.hits.size(); ++i) {
             const rt_hit& hit = traced.hits[i];
-            Effort& effort = *efforts.rooms[i % kRooms];
+            Effort& effort = efforts.with[i % kRooms];
             effort.tests[any_hit] += hit.leaf_tests;
             effort.steps[any_hit] += hit.steps;
             effort.most_steps[any_hit] = std::max<uint32_t>(effort.most_steps[any_hit], hit.steps);
@@ -170,9 +170,9 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
         Bench bench(few_rays(input), row.scene, {{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none});
         Efforts efforts;
         for (const char* name : row.sets) add_efforts(bench, name, step, efforts);
-        const Effort &all = efforts.all, &left = efforts.none;
+        const Effort &all = efforts.with[kUsual], &left = efforts.with[kNone];
         asked += efforts.asked;
-        if (!left.in_one_leaf()) with_some.push_back({&row, efforts.some});
+        if (!left.in_one_leaf()) with_some.push_back({&row, efforts.with[kSome]});
         if (efforts.asked == 0 || left.in_one_leaf()) continue;
         for (const int any : {0, 1}) {
             tested += left.tests[any], usually += all.tests[any];

@@ -258,9 +258,8 @@ class RenderJob {
     void import(Progress& progress) {
         const auto begin = Clock::now();
         const auto import = [&] {
-            import::ImportOptions with_pictures = options_.scene.import;
-            with_pictures.pictures = pictures_of(words_.edits);
-            Scene scene = import::import_scene(plugins_, options_.scene.files, with_pictures, progress);
+            const import::ImportOptions options = import_options(options_.scene, words_);
+            Scene scene = import::import_scene(plugins_, options_.scene.files, options, progress);
             stats_.import_ms = ms_since(begin);
             return scene;
         };

@@ -252,9 +252,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
     Impl& im = *impl_;
     if (im.device->loss()->lost())
         throw Error(Exit::failed, im.device->info().name + " has failed before: it has to be opened anew");
-    if (!prepared.knows(view))
-        throw Error(Exit::failed, "tracing: the view has kinds of lights or surfaces that the kernels were not compiled for: " +
-                                      std::string("prepare the scene with the view's optics in the settings"));
+    prepared.expect_known(view);
     return wrap_cl_errors(*im.device, "tracing", [&] {
         const timeline::Scope span("frame", "trace samples");
         const Impl::Picture picture{prepared, settings, view, shared, progress};

@@ -28,6 +28,8 @@ struct Prepared {
     bool compile_cached = false;           // the program was compiled for an earlier Prepared
     // Whether the kernels know all lights and surfaces of a view. Else prepare() with optics_of() the view in the settings.
     bool knows(const View& view) const;
+    // Throws Error(failed) if they do not.
+    void expect_known(const View& view) const;
 };
 
 // Returns the source of a kernel. The scene, accel, settings and layout must be set; the program need not.

@@ -16,7 +16,7 @@ struct NoiseShare {
     double of_variance = 0, of_light = 0;
 };
 
-// Samples whose luminance is in [from, to).
+// The samples with a luminance in [from, to).
 struct NoiseBin {
     double from = 0, to = 0;
     unsigned samples = 0;
@@ -32,7 +32,7 @@ struct NoiseReport {
     double luminance = 0;                                     // of the mean
     double variance = 0;                                      // of a sample
     double error() const;                                     // standard error of the mean, of independent samples
-    std::vector<NoiseBin> histogram;                          // from black ones on; then bins whose bounds double
+    std::vector<NoiseBin> histogram;                          // of black samples; then bins, each twice as wide as the last
     std::vector<NoiseShare> by_bounce, by_lobe, by_strategy;  // by their numbers
     std::vector<NoiseShare> by_light;                         // the largest share first
     std::vector<unsigned> brightest;                          // numbers of samples, the brightest first, ten at most
@@ -52,6 +52,9 @@ std::string light_title(const NoiseNames& names, int light_number);
 // "diffuse", "drawn (nee)"...
 const char* lobe_name(rt_u32 first);
 const char* strategy_name(rt_u32 by);
+
+// The light that brought most of a sample; nullptr: none did.
+const rt_path_record* brightest_record(const Replay& replay, const ReplayedSample& sample);
 
 NoiseReport noise_report(const Replay& replay, const NoiseNames& names);
 

@@ -137,28 +137,25 @@ std::string words_of(NoiseCause cause, const std::vector<const Lit*>& records, c
                    ": its edge crosses the pixel; try more samples, which smooth the edge";
         case NoiseCause::caustic:
             return " which reach " + light +
-                   " by a mirror or glass behind a diffuse surface: a caustic, whose paths no strategy draws; try a larger "
-                   "lamp of "
-                   "the same power, rougher mirrors and glass, or many more samples";
+                   " by a mirror or glass behind a diffuse surface: a caustic, which no strategy draws; try a larger "
+                   "lamp of the same power, rougher mirrors and glass, or many more samples";
         case NoiseCause::lamp:
-            return " whose scattered rays happen to find " + light + ": a small bright lamp that few rays meet; try " +
+            return " in which scattered rays happen to find " + light + ": a small bright lamp that few rays meet; try " +
                    (whole.draws
                         ? "a lamp of the scene instead of what shines there, because no point of this can be drawn, or a "
                           "larger one"
                         : "--strategy mis, which draws points of the lamp, too");
         case NoiseCause::lobe:
             return " that draw a point of " + light +
-                   " at a glossy surface: its lobe is narrow, and drawn points seldom lie in it; try --strategy mis, whose "
-                   "rays "
-                   "follow the lobe, too";
+                   " at a glossy surface: its lobe is narrow, and drawn points seldom lie in it; try --strategy mis, which "
+                   "follows the lobe, too";
         case NoiseCause::lights:
             return " which draw the right one of many lights, most of all " + light +
                    ": each event asks only one lamp; try more samples, or fewer lamps that are stronger";
         case NoiseCause::deep:
-            return " whose light comes by " + std::to_string(kDeep) +
-                   " and more events: deep bounces; try more samples, or brighter lamps where light may enter directly; a "
-                   "smaller "
-                   "--depth has less noise and less light";
+            return " with light that was scattered " + std::to_string(kDeep) +
+                   " or more times: deep bounces; try more samples, or brighter lamps where light may enter directly; a "
+                   "smaller --depth has less noise and less light";
         default:
             return "";
     }

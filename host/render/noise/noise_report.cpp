@@ -17,9 +17,6 @@ constexpr int kLeastPower = -6, kMostPower = 24;
 // Deviations below this share of the mean are rounding.
 constexpr double kRounding = 1e-6;
 
-// Numbers of cl/shading/emitter_table.h.
-constexpr int kSurfaces = 0x40000000, kSky = 0x40000001;
-
 NoiseValues values_of(const Replay& replay) {
     NoiseValues values;
     for (const ReplayedSample& sample : replay.samples) {
@@ -135,10 +132,19 @@ NoiseNames noise_names(const Scene& scene, const View& view, const Settings& set
 }
 
 std::string light_title(const NoiseNames& names, int light_number) {
-    if (light_number == kSky) return "the sky";
-    if (light_number == kSurfaces) return "glowing surfaces";
+    if (light_number == RT_LIGHT_OF_SKY) return "the sky";
+    if (light_number == RT_LIGHT_OF_SURFACES) return "glowing surfaces";
     const bool known = light_number >= 0 && size_t(light_number) < names.lights.size();
     return "lamp `" + (known ? names.lights[size_t(light_number)] : std::to_string(light_number)) + "`";
+}
+
+const rt_path_record* brightest_record(const Replay& replay, const ReplayedSample& sample) {
+    const rt_path_record* most = nullptr;
+    for (unsigned r = 0; r < sample.records; ++r) {
+        const rt_path_record& record = replay.records[sample.first_record + r];
+        if (record.kind == RT_PATH_LIT && (!most || luminance_of(record.light) > luminance_of(most->light))) most = &record;
+    }
+    return most;
 }
 
 double NoiseReport::error() const {

@@ -154,6 +154,12 @@ Setting lanes_setting() {
 
 }  // namespace
 
+void check_pixel(const Settings& settings, unsigned x, unsigned y) {
+    if (x >= static_cast<unsigned>(settings.width) || y >= static_cast<unsigned>(settings.height))
+        throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
+                                     std::to_string(settings.width) + "x" + std::to_string(settings.height));
+}
+
 bool blurs(const Settings& settings) {
     return settings.shutter > 0 && settings.spp > 1 && find_aov(settings.aov).adds_samples();
 }

@@ -67,6 +67,8 @@ struct Settings {
     int whole_height() const { return crop.whole_height > 0 ? crop.whole_height : height; }
 };
 
+// Throws Error(usage) for a pixel outside of the picture.
+void check_pixel(const Settings& settings, unsigned x, unsigned y);
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.
 bool blurs(const Settings& settings);
 

@@ -73,6 +73,9 @@ struct Tracer : TracerChoice {
     void (*smoke)(const Smoke& smoke) = nullptr;
 };
 
+// One that makes no frames.
+Tracer tracer_with(const char* id, void (*smoke)(const Smoke& smoke));
+
 // All tracers, in the order of their rows.
 const std::vector<const Tracer*>& tracers();
 // Throws std::out_of_range.

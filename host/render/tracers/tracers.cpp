@@ -10,6 +10,13 @@ namespace clarity {
 #include "render/tracers/tracers.inl"
 #undef ROW
 
+Tracer tracer_with(const char* id, void (*smoke)(const Smoke& smoke)) {
+    Tracer tracer;
+    tracer.id = id;
+    tracer.smoke = smoke;
+    return tracer;
+}
+
 const std::vector<const Tracer*>& tracers() {
 #define ROW(id) &id##_tracer(),
     static const std::vector<const Tracer*> all = {

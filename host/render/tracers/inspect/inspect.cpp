@@ -98,10 +98,7 @@ Inspector::~Inspector() {
 
 RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y) {
     Impl& im = *impl_;
-    const unsigned width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
-    if (x >= width || y >= height)
-        throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
-                                     std::to_string(width) + "x" + std::to_string(height));
+    check_pixel(settings, x, y);
     const Layout& layout = prepared.layout;
     Progress never_cancelled;
     const auto program = tried_program(im.programs, prepared, kernel_row(), never_cancelled);
@@ -111,7 +108,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
                       view);
         const cl::Buffer& records = im.records.fit(context, kMostRecords * sizeof(rt_ray_record));
         const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
-        const PixelPlace place = layout.place_of(x, y, width);
+        const PixelPlace place = layout.place_of(x, y, static_cast<unsigned>(settings.width));
         KernelArguments kernel = program->kernel();
         kernel.set("group", cl_uint(place.group))
             .set("packet_wanted", cl_uint(place.packet))
@@ -138,12 +135,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
 }
 
 const Tracer& inspect_tracer() {
-    static const Tracer tracer = [] {
-        Tracer t;
-        t.id = "inspect";
-        t.smoke = smoke_pixels;
-        return t;
-    }();
+    static const Tracer tracer = tracer_with("inspect", smoke_pixels);
     return tracer;
 }
 

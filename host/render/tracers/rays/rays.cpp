@@ -64,13 +64,6 @@ void smoke_all_hits(const Smoke& smoke) {
     expect_room_on_stacks(queries.overflows(), what);
 }
 
-Tracer tracer_with(const char* id, void (*smoke)(const Smoke&)) {
-    Tracer tracer;
-    tracer.id = id;
-    tracer.smoke = smoke;
-    return tracer;
-}
-
 }  // namespace
 
 const Tracer& rays_tracer() {

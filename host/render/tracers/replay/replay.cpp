@@ -117,14 +117,8 @@ PathReplayer::~PathReplayer() {
 void PathReplayer::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y,
                          unsigned count, Progress& progress, Replay& replay) {
     Impl& im = *impl_;
-    const auto width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
-    if (x >= width || y >= height)
-        throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
-                                     std::to_string(width) + "x" + std::to_string(height));
-    if (!prepared.knows(view))
-        throw Error(Exit::failed,
-                    "the view has kinds of lights or surfaces that the kernels were not compiled for: prepare the "
-                    "scene with the view's optics in the settings");
+    check_pixel(settings, x, y);
+    prepared.expect_known(view);
     const auto program = tried_program(im.programs, prepared, replay_row(), progress);
     const auto first = static_cast<unsigned>(replay.samples.size());
     const size_t of_sample = RT_MOST_PATH_RECORDS(size_t(settings.depth)) * sizeof(rt_path_record);
@@ -140,12 +134,7 @@ void PathReplayer::trace(const Prepared& prepared, const Settings& settings, con
 }
 
 const Tracer& replay_tracer() {
-    static const Tracer tracer = [] {
-        Tracer t;
-        t.id = "replay";
-        t.smoke = smoke_replay;
-        return t;
-    }();
+    static const Tracer tracer = tracer_with("replay", smoke_replay);
     return tracer;
 }
 
