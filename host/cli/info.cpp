@@ -68,7 +68,11 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
     for (const auto& [id, count] : shape_counts(scene)) kinds += ", " + grouped(count) + ' ' + id;
     count_row("shapes", scene.shapes.size(), kinds);
     const uint64_t clear = materials_with_alpha(scene);
-    count_row("materials", scene.materials.size(), clear > 0 ? ", of " + grouped(clear) + " alpha counts" : "");
+    const auto unused = static_cast<uint64_t>(
+        std::count_if(scene.materials.begin(), scene.materials.end(), [](const Material& material) { return !material.used; }));
+    count_row("materials", scene.materials.size(),
+              (unused > 0 ? ", " + grouped(unused) + " of them on no surface" : "") +
+                  (clear > 0 ? ", of " + grouped(clear) + " alpha counts" : ""));
     for (size_t i = 0; i < std::min(scene.materials.size(), kShownMaterials); ++i)
         row("", material_text(scene, scene.materials[i]));
     if (scene.materials.size() > kShownMaterials)

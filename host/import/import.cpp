@@ -28,6 +28,7 @@ Problem complete_scene(const PluginRegistry& plugins, Scene& scene) {
         if (!kind.plugin) return "has shapes of the unknown kind " + kind.id;
     }
     if (const Problem why = validate(scene)) return "is not sound: " + why.text();
+    note_used_materials(scene);
     return {};
 }
 

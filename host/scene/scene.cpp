@@ -140,6 +140,26 @@ double Scene::surface_area() const {
     return sum;
 }
 
+void note_used_materials(Scene& scene) {
+    for (Material& material : scene.materials) material.used = false;
+    std::vector<bool> counted(scene.meshes.size());
+    for (const Instance& instance : scene.instances) {
+        if (instance.material != RT_NONE) {
+            scene.materials[instance.material].used = true;
+            continue;
+        }
+        if (counted[instance.mesh]) continue;
+        counted[instance.mesh] = true;
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        for (rt_u32 i = 0; i < mesh.triangle_count; ++i)
+            scene.materials[scene.triangle_materials[mesh.first_triangle + i]].used = true;
+    }
+    const auto note = [&](const auto& primitives) {
+        for (const auto& primitive : primitives) scene.materials[primitive.material].used = true;
+    };
+    note(scene.spheres), note(scene.polygons), note(scene.planes), note(scene.shapes);
+}
+
 PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
     if (prim < 0) return {};
     uint64_t left = static_cast<uint64_t>(prim);

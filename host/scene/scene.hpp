@@ -113,6 +113,7 @@ struct Material {
     std::string name;
     MaterialValues values{};
     MaterialMaps maps = no_maps();
+    bool used = true;  // false: no primitive of the scene has it, so that kernels need not know it; by note_used_materials()
 };
 struct Light {
     std::string name;
@@ -191,6 +192,10 @@ struct Scene {
     // World-space area of the triangles of all instances, the polygons and the spheres. That of shapes is not known.
     double surface_area() const;
 };
+
+// Notes which materials primitives have, those of hidden objects included. Files name many that none has: those of a model that
+// was loaded with another material, for example.
+void note_used_materials(Scene& scene);
 
 // The next smaller picture of a texture's picture or of one of its smaller ones, which follows it in the texels.
 rt_texture smaller_picture(const rt_texture& picture);

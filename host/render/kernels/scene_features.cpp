@@ -18,9 +18,10 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build, const Opt
     f.planes = !build.planes.empty();
     f.shapes = !build.shapes.empty();
     f.normals = !scene.normals.empty() && !build.attribute_triangle.empty();
-    f.maps = std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.maps != no_maps(); });
-    f.textures = f.maps || std::any_of(scene.materials.begin(), scene.materials.end(),
-                                       [](const Material& m) { return m.values.texture != RT_NONE; });
+    for (const Material& m : scene.materials) {
+        f.maps = f.maps || (m.used && m.maps != no_maps());
+        f.textures = f.textures || f.maps || (m.used && m.values.texture != RT_NONE);
+    }
     f.wraps = f.textures && std::any_of(scene.textures.begin(), scene.textures.end(),
                                         [](const rt_texture& texture) { return texture.wrap != RT_WRAP_REPEAT; });
     f.sky_picture = scene.sky.values.kind == RT_SKY_PICTURE;

@@ -34,7 +34,8 @@ rt_u32 lobes_of_layers(const MaterialValues& m, const MaterialMaps& maps) {
     return lobes;
 }
 
-void add(Optics& optics, const MaterialValues& m, const MaterialMaps& maps) {
+void add(Optics& optics, const MaterialValues& m, const Material& own) {
+    if (!own.used) return;
     if (emits(m)) optics.lights |= 1u << RT_EMITTER_SURFACE;
     rt_u32 lobes = 0;
     switch (m.model) {
@@ -50,7 +51,7 @@ void add(Optics& optics, const MaterialValues& m, const MaterialMaps& maps) {
             if (m.roughness > 0) lobes |= RT_LOBE_FROSTED;
             break;
         case RT_MODEL_GLTF:
-            lobes |= lobes_of_layers(m, maps);
+            lobes |= lobes_of_layers(m, own.maps);
             break;
         case RT_MODEL_UNLIT:
             lobes |= RT_LOBE_UNLIT;
@@ -76,14 +77,14 @@ Optics optics_of(const Scene& scene) {
     Optics optics = optics_of_sky(scene.sky.values, scene.background);
     for (const Light& light : scene.lights) add(optics, light.values);
     if (scene.lights.empty()) optics.lights |= 1u << RT_LIGHT_POINT;  // those that make_view() adds
-    for (const Material& material : scene.materials) add(optics, material.values, material.maps);
+    for (const Material& material : scene.materials) add(optics, material.values, material);
     return optics;
 }
 
 Optics optics_of(const Scene& scene, const View& view, const Settings& settings) {
     Optics optics = optics_of_sky(sky_of(scene, view), view.background);
     for (const rt_light& light : view.lights) add(optics, light);
-    for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i), scene.materials[i].maps);
+    for (size_t i = 0; i < scene.materials.size(); ++i) add(optics, material_of(scene, view, i), scene.materials[i]);
     return seen_by(settings, optics);
 }
 

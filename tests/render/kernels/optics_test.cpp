@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "render/kernels/scene_features.hpp"
 #include "render/settings/tracer_choice.hpp"
 #include "render/view/view_optics.hpp"
 #include "scene/light_kinds.hpp"
@@ -167,6 +168,39 @@ TEST(Optics, PathIsTheSameBitByBit) {
 
 TEST(Optics, WhittedIsTheSameBitByBit) {
     expect_same_pictures("iterative");
+}
+
+// A scene with a material on each kind of primitive, and three on none.
+TEST(Optics, AMaterialThatNothingHasIsUnknown) {
+    Scene scene = room();
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].material = add_material(scene, of_model(RT_MODEL_LAMBERT));
+    scene.spheres[0].material = add_material(scene, of_model(RT_MODEL_DIELECTRIC, 0.5f));
+    const size_t used = scene.materials.size();
+    MaterialValues glowing = of_model(RT_MODEL_CONDUCTOR, 0.4f);
+    glowing.emission[1] = 2;
+    const rt_u32 metal = add_material(scene, glowing);
+    add_material(scene, layered([](rt_layers& l) { l.clearcoat = 1; }));
+    scene.materials.back().values.texture = 0;
+    scene.materials.back().values.alpha = RT_ALPHA_BLEND;
+    note_used_materials(scene);
+    for (size_t i = 0; i < scene.materials.size(); ++i) EXPECT_EQ(scene.materials[i].used, i < used) << i;
+
+    const View view = seen({light(RT_LIGHT_POINT)});
+    const ScenePtr shared = shared_scene(Scene(scene));
+    const Optics known = optics_of(*shared, view, settings_of("path"));
+    EXPECT_EQ(known.lights, 1u << RT_LIGHT_POINT);
+    EXPECT_EQ(known.lobes, rt_u32(RT_LOBE_GLASS | RT_LOBE_FROSTED));
+    EXPECT_EQ(known.cutouts, 0u);
+    EXPECT_FALSE(features_of(*shared, BuildScene()).textures);
+    EXPECT_EQ(differing(picture(shared, view, settings_of("path"), known),
+                        picture(shared, view, settings_of("path"), {RT_LIGHTS_ALL, RT_LOBES_ALL})),
+              0u);
+    scene.instances[1].visible = false;  // it may be shown
+    scene.instances[1].material = metal;
+    note_used_materials(scene);
+    EXPECT_EQ(optics_of(*shared_scene(Scene(scene)), view, settings_of("path")).lobes,
+              rt_u32(RT_LOBE_GLASS | RT_LOBE_FROSTED | RT_LOBE_METAL));
 }
 
 // A view's lights and surfaces that came by an edit.

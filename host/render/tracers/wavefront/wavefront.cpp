@@ -17,12 +17,13 @@ constexpr unsigned kQueueShare = 8;
 constexpr uint64_t kCpuBytes = 64 << 20;
 constexpr uint64_t kMostCounted = 1u << 30;  // a uint counts them, including those that find no room
 
-// Whether a ray may split in two: one sees through some material of the view, or of the scene if the view has none.
+// Whether a ray may split in two: one sees through some surface. materials: those of the view; none: those of the scene.
 bool refracts(const Scene& scene, const std::vector<MaterialValues>& materials) {
-    const auto clear = [](const rt_material& m) { return m.refract > 0 || m.alpha == RT_ALPHA_BLEND; };
-    if (!materials.empty()) return std::any_of(materials.begin(), materials.end(), clear);
-    return std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [&](const Material& material) { return clear(material.values); });
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+        const rt_material& m = materials.empty() ? scene.materials[i].values : materials[i];
+        if (scene.materials[i].used && (m.refract > 0 || m.alpha == RT_ALPHA_BLEND)) return true;
+    }
+    return false;
 }
 
 class Wavefront : public FrameTracer {
