@@ -133,6 +133,27 @@ CLARITY_EXPORT int32_t clarity_any(clarity_tracer* tracer, const clarity_rays* r
     });
 }
 
+CLARITY_EXPORT int32_t clarity_count(clarity_tracer* tracer, const clarity_rays* rays, int64_t* counts,
+                                     const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").count(copy_of(rays, "clarity_rays"), counts, progress);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_all(clarity_tracer* tracer, const clarity_rays* rays, clarity_all_hits* hits,
+                                   const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        copy_of(hits, "clarity_all_hits");  // checks it
+        give_hits(not_null(tracer, "tracer").all(copy_of(rays, "clarity_rays"), progress), *hits);
+    });
+}
+
+CLARITY_EXPORT void clarity_all_hits_free(clarity_all_hits* hits) {
+    if (hits && !is_forked()) take_back_hits(*hits);
+}
+
 CLARITY_EXPORT int32_t clarity_render(clarity_tracer* tracer, clarity_picture* picture, const clarity_watch* watch) {
     return run_call([&] {
         Watched progress = watched(watch);

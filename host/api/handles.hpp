@@ -8,6 +8,7 @@
 
 #include "api/clarity.h"
 #include "api/library.hpp"
+#include "api/ray_arrays.hpp"
 #include "device/device.hpp"
 #include "render/edit/edit.hpp"
 #include "render/frame/frame_renderer.hpp"
@@ -38,12 +39,17 @@ struct clarity_tracer {
     clarity_tracer(const clarity_scene& scene, const clarity_options& options, clarity::Progress& progress);
     void closest(const clarity_rays& rays, const clarity_hits& hits, clarity::Progress& progress);
     void any(const clarity_rays& rays, uint8_t* occluded, clarity::Progress& progress);
+    void count(const clarity_rays& rays, int64_t* counts, clarity::Progress& progress);
+    std::unique_ptr<clarity::api::HitArrays> all(const clarity_rays& rays, clarity::Progress& progress);
     // Writes the members of `picture` that are the call's.
     void render(const clarity_picture& asked, clarity_picture& picture, clarity::Progress& progress);
 
  private:
     template <class Take>
     void trace(const clarity_rays& rays, bool any_hit, clarity::Progress& progress, const Take& take);
+    // take: gets the hits of some rays, and the number of the first one.
+    template <class Take>
+    void trace_all(const clarity_rays& rays, bool count_only, clarity::Progress& progress, const Take& take);
     clarity::View view_of(const clarity_picture& asked, const clarity::api::Words& words) const;
     void trace_samples(const clarity::Prepared& prepared, const clarity::Settings& settings, const clarity::View& view,
                        clarity::Progress& progress);

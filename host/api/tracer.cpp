@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "api/handles.hpp"
-#include "api/ray_arrays.hpp"
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
 #include "render/settings/accel_choice.hpp"
@@ -50,6 +49,10 @@ std::shared_ptr<Device> open_device(const std::string& choice) {
     return std::make_shared<Device>(choose_device(choice));
 }
 
+rt_u32 mask_of(const clarity_rays& rays) {
+    return rays.mask ? rays.mask : RT_SEEN_BY_ALL;
+}
+
 }  // namespace
 }  // namespace clarity::api
 
@@ -76,6 +79,7 @@ void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& pro
     progress.stage("tracing rays");
     RayQuery query;
     query.any_hit = any_hit;
+    query.mask = mask_of(rays);
     query.progress = &progress;
     std::vector<rt_hit> hits;
     for (size_t first = 0; first < rays.count; first += hits.size()) {
@@ -98,6 +102,32 @@ void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits,
 void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& progress) {
     if (rays.count > 0) not_null(occluded, "occluded");
     trace(rays, true, progress, [&](const std::vector<rt_hit>& some, size_t first) { write_occlusion(some, occluded, first); });
+}
+
+template <class Take>
+void clarity_tracer::trace_all(const clarity_rays& rays, bool count_only, Progress& progress, const Take& take) {
+    constexpr size_t kAtOnce = size_t{1} << 16;
+    check_rays(rays);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    progress.stage(count_only ? "counting the hits of rays" : "tracing rays for all their hits");
+    for (size_t first = 0; first < rays.count; first += kAtOnce) {
+        if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
+        const auto some = read_rays(rays, first, std::min(kAtOnce, size_t(rays.count) - first), placed_->origin);
+        take(queries_.trace_all(*prepared_, some, {count_only, false, mask_of(rays)}, progress), first);
+    }
+}
+
+void clarity_tracer::count(const clarity_rays& rays, int64_t* counts, Progress& progress) {
+    if (rays.count > 0) not_null(counts, "counts");
+    trace_all(rays, true, progress, [&](const AllHits& some, size_t first) {
+        for (size_t i = 0; i + 1 < some.first.size(); ++i) counts[first + i] = static_cast<int64_t>(some.count(i));
+    });
+}
+
+std::unique_ptr<HitArrays> clarity_tracer::all(const clarity_rays& rays, Progress& progress) {
+    auto hits = std::make_unique<HitArrays>();
+    trace_all(rays, false, progress, [&](const AllHits& some, size_t) { append_hits(some, *hits); });
+    return hits;
 }
 
 View clarity_tracer::view_of(const clarity_picture& asked, const Words& words) const {

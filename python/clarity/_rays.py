@@ -1,7 +1,11 @@
 """Rays as arrays of numpy, and hits."""
+import ctypes
+import operator
+import weakref
+
 import numpy as np
 
-from ._binding import constants, struct
+from ._binding import constants, library, struct
 from ._errors import UsageError
 
 _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float64): constants["CLARITY_FLOAT64"]}
@@ -20,7 +24,9 @@ def as_array(values, name):
 class Rays:
     """Arrays of rays in one shape. Nothing is copied unless types are mixed, or an array of several axes has to be repeated."""
 
-    def __init__(self, origins, directions, t_min, t_max):
+    def __init__(self, origins, directions, t_min, t_max, mask=None):
+        if mask is not None and not 1 <= operator.index(mask) <= 255:
+            raise UsageError(f"mask: expected a whole number from 1 to 255, found {mask}")
         arrays = {"origins": as_array(origins, "origins"), "directions": as_array(directions, "directions")}
         for name, array in arrays.items():
             if array.ndim < 1 or array.shape[-1] != 3:
@@ -46,7 +52,14 @@ class Rays:
                 values[name + "_step"] = steps[0]
             else:
                 values[name[:-1] + "_steps"] = steps
-        self.struct = struct("clarity_rays", type=_TYPES[self.dtype], count=self.count, **values)
+        self.struct = struct("clarity_rays", type=_TYPES[self.dtype], count=self.count, mask=mask or 0, **values)
+
+    def points(self, t, ray=Ellipsis):
+        """Where rays are at t, in float64. ray: numbers of rays; otherwise t is in their shape with one axis more."""
+        def doubles(array):
+            return (array if ray is Ellipsis else np.broadcast_to(array, self.shape + (3,)).reshape(-1, 3)[ray]).astype(np.float64)
+
+        return doubles(self.origins) + t * doubles(self.directions)
 
     def _flattened(self, array, axes):
         """The array with one axis of rays, and its steps in bytes; `axes` axes behind it belong to a ray."""
@@ -80,8 +93,7 @@ class Hit:
 
     def points(self):
         """Where rays hit, in float64; nan where they hit nothing."""
-        t = np.where(self.mask, self.t, np.nan).astype(np.float64)[..., None]
-        return self._rays.origins.astype(np.float64) + t * self._rays.directions.astype(np.float64)
+        return self._rays.points(np.where(self.mask, self.t, np.nan).astype(np.float64)[..., None])
 
     def __len__(self):
         return len(self.t)
@@ -95,6 +107,63 @@ class Hit:
             check_out(getattr(self, name), rays.shape + ((2,) if name == "uv" else ()), dtype, f"out.{name}")
         self._rays = rays
         return struct("clarity_hits", **{name: getattr(self, name).ctypes.data for name in wanted})
+
+
+class AllHits:
+    """All hits of rays, ordered by ray, then by t, then by primitive: `ray, t, prim = hits`. Arrays that cannot be written.
+
+    ray       int64, number of the ray, counted through all axes of the rays
+    t, prim, instance, uv    as in Hit
+    first     int64, the hits of ray i are first[i] to first[i + 1] - 1
+    """
+
+    def __init__(self, rays, found):
+        self._rays = rays
+        owner = _Owner(found)
+
+        def array(name, dtype, count):
+            return owner.array(getattr(found, name), dtype, count)
+
+        count = found.count
+        self.first = array("first", np.int64, rays.count + 1)
+        self.ray = array("ray", np.int64, count)
+        self.t = array("t", np.float32, count)
+        self.prim = array("prim", np.int32, count)
+        self.instance = array("instance", np.int32, count)
+        self.uv = array("uv", np.float32, 2 * count).reshape(-1, 2)
+
+    def points(self):
+        """Where the hits are, in float64."""
+        return self._rays.points(self.t.astype(np.float64)[:, None], self.ray)
+
+    def __iter__(self):
+        return iter((self.ray, self.t, self.prim))
+
+    def __len__(self):
+        return len(self.t)
+
+    def __repr__(self):
+        return f"<clarity.AllHits: {len(self)} of {self._rays.count} rays>"
+
+
+class _Owner:
+    """Memory of the library that arrays lie in: freed when the last of them goes."""
+
+    def __init__(self, found):
+        weakref.finalize(self, library.clarity_all_hits_free, ctypes.byref(found))
+
+    def array(self, address, dtype, count):
+        if not count:
+            return np.empty(0, dtype)
+        # numpy keeps an object with this attribute as the array's base.
+        view = _View()
+        view.owner = self
+        view.__array_interface__ = {"version": 3, "shape": (count,), "typestr": np.dtype(dtype).str, "data": (address, True)}
+        return np.asarray(view)
+
+
+class _View:
+    pass
 
 
 def check_out(array, shape, dtype, name):
