@@ -125,6 +125,19 @@ CLARITY_EXPORT int32_t clarity_closest(clarity_tracer* tracer, const clarity_ray
     });
 }
 
+CLARITY_EXPORT int32_t clarity_pack(clarity_tracer* tracer, const clarity_rays* rays, const clarity_watch* watch,
+                                    clarity_packed** packed) {
+    return run_call([&] {
+        clarity_packed*& result = not_null(packed, "packed");
+        Watched progress = watched(watch);
+        result = not_null(tracer, "tracer").pack(copy_of(rays, "clarity_rays"), progress).release();
+    });
+}
+
+CLARITY_EXPORT void clarity_packed_free(clarity_packed* packed) {
+    if (!is_forked()) delete packed;
+}
+
 CLARITY_EXPORT int32_t clarity_any(clarity_tracer* tracer, const clarity_rays* rays, uint8_t* occluded,
                                    const clarity_watch* watch) {
     return run_call([&] {

@@ -13,11 +13,10 @@ namespace clarity::api {
 
 // Throws Error(usage) for what cannot be read.
 void check_rays(const clarity_rays& rays);
-// The rays [first, first + count). origin: of the scene, subtracted in double precision.
-std::vector<rt_ray> read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin);
+// Writes the rays [first, first + count) to `to`. origin: of the scene, subtracted in double precision.
+void read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin, rt_ray* to);
 // Writes hits to the elements from `first` on.
-void write_hits(const std::vector<rt_hit>& hits, const clarity_hits& to, size_t first);
-void write_occlusion(const std::vector<rt_hit>& hits, uint8_t* to, size_t first);
+void write_hits(const rt_hit* hits, size_t count, const clarity_hits& to, size_t first);
 
 // All hits, field by field.
 struct HitArrays {

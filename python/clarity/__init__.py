@@ -9,7 +9,7 @@
 """
 from ._binding import library as _library
 from ._errors import Cancelled, DeviceError, Error, ForkError, ImportFailed, KernelError, UsageError
-from ._rays import AllHits, Hit
+from ._rays import AllHits, Hit, Packed
 from ._scene import Scene, Tracer, load
 
 __version__ = _library.clarity_version().decode()
@@ -22,6 +22,7 @@ __all__ = [
     "Hit",
     "ImportFailed",
     "KernelError",
+    "Packed",
     "Scene",
     "Tracer",
     "UsageError",

@@ -195,6 +195,43 @@ static void test_far(void) {
     clarity_tracer_free(tracer);
 }
 
+/* Rays that lie on the device. */
+static void test_packed(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer *tracer = NULL, *other = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    WORKS(clarity_tracer_new(scene, &options, NULL, &other));
+    float origins[] = {0.75f, 0.25f, 4, 3, 3, 4}, t[2], direction[] = {0, 0, -2};
+    clarity_rays arrays = {0}, query = {0};
+    arrays.struct_bytes = query.struct_bytes = sizeof query;
+    arrays.count = query.count = 2;
+    arrays.origins = origins;
+    arrays.directions = direction;
+    arrays.origin_steps[0] = 3 * sizeof(float);
+    arrays.origin_steps[1] = arrays.direction_steps[1] = sizeof(float);
+    clarity_packed* packed = NULL;
+    FAILS(clarity_pack(tracer, &arrays, NULL, NULL), CLARITY_USAGE, "`packed` is null");
+    WORKS(clarity_pack(tracer, &arrays, NULL, &packed));
+    memset(origins, 0, sizeof origins); /* they were read */
+    query.packed = packed;
+    const clarity_hits hits = hits_into(t, NULL, NULL, NULL);
+    uint8_t occluded[2] = {9, 9};
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t[0] == 2 && isinf(t[1]));
+    WORKS(clarity_any(tracer, &query, occluded, NULL));
+    CHECK(occluded[0] == 1 && occluded[1] == 0);
+    FAILS(clarity_closest(other, &query, &hits, NULL), CLARITY_USAGE, "another tracer");
+    query.count = 3;
+    FAILS(clarity_closest(tracer, &query, &hits, NULL), CLARITY_USAGE, "count is 3, and the packed rays are 2");
+    int64_t counts[2];
+    query.count = 2;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "give the arrays");
+    clarity_tracer_free(tracer); /* before its rays */
+    clarity_packed_free(packed);
+    clarity_packed_free(NULL);
+    clarity_tracer_free(other);
+}
+
 /* All hits of two rays, as counts and as lists, and with a struct of the first release. */
 static void test_all_hits(const clarity_scene* scene) {
     const clarity_options options = options_of("bvh2", NULL);
@@ -444,6 +481,7 @@ int main(int argc, char** argv) {
     test_rays(scene, "bvh2", "lanes=1");
     test_rays(scene, "grid", "lanes=8");
     test_all_hits(scene);
+    test_packed(scene);
     test_far();
     test_pictures(scene);
     test_watch(scene);
