@@ -125,12 +125,46 @@ CLARITY_EXPORT int32_t clarity_closest(clarity_tracer* tracer, const clarity_ray
     });
 }
 
+CLARITY_EXPORT int32_t clarity_pack(clarity_tracer* tracer, const clarity_rays* rays, const clarity_watch* watch,
+                                    clarity_packed** packed) {
+    return run_call([&] {
+        clarity_packed*& result = not_null(packed, "packed");
+        Watched progress = watched(watch);
+        result = not_null(tracer, "tracer").pack(copy_of(rays, "clarity_rays"), progress).release();
+    });
+}
+
+CLARITY_EXPORT void clarity_packed_free(clarity_packed* packed) {
+    if (!is_forked()) delete packed;
+}
+
 CLARITY_EXPORT int32_t clarity_any(clarity_tracer* tracer, const clarity_rays* rays, uint8_t* occluded,
                                    const clarity_watch* watch) {
     return run_call([&] {
         Watched progress = watched(watch);
         not_null(tracer, "tracer").any(copy_of(rays, "clarity_rays"), occluded, progress);
     });
+}
+
+CLARITY_EXPORT int32_t clarity_count(clarity_tracer* tracer, const clarity_rays* rays, int64_t* counts,
+                                     const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").count(copy_of(rays, "clarity_rays"), counts, progress);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_all(clarity_tracer* tracer, const clarity_rays* rays, clarity_all_hits* hits,
+                                   const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        copy_of(hits, "clarity_all_hits");  // checks it
+        give_hits(not_null(tracer, "tracer").all(copy_of(rays, "clarity_rays"), progress), *hits);
+    });
+}
+
+CLARITY_EXPORT void clarity_all_hits_free(clarity_all_hits* hits) {
+    if (hits && !is_forked()) take_back_hits(*hits);
 }
 
 CLARITY_EXPORT int32_t clarity_render(clarity_tracer* tracer, clarity_picture* picture, const clarity_watch* watch) {

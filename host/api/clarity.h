@@ -35,6 +35,7 @@ enum { CLARITY_LOG_DEBUG = 0, CLARITY_LOG_INFO = 1, CLARITY_LOG_WARNING = 2, CLA
 
 typedef struct clarity_scene clarity_scene;   /* what files or arrays describe */
 typedef struct clarity_tracer clarity_tracer; /* a scene in a structure on a device; keeps the scene alive */
+typedef struct clarity_packed clarity_packed; /* rays that lie on a device */
 
 /* Of long calls; NULL: nobody watches. */
 typedef struct clarity_watch {
@@ -80,6 +81,9 @@ typedef struct clarity_rays {
     int64_t direction_steps[2];
     int64_t t_min_step;
     int64_t t_max_step;
+    uint32_t mask; /* 1 to 255: the rays hit only instances that share a bit of it with their mask; 0: all instances that rays see */
+    uint32_t unused;
+    const clarity_packed *packed; /* or NULL. Otherwise `count` is its, and no array is read */
 } clarity_rays;
 
 /* Where hits go: arrays of `count` elements without gaps. NULL: not wanted. */
@@ -91,6 +95,21 @@ typedef struct clarity_hits {
     int32_t *instance; /* -1: none, or not known */
     float *uv;         /* two a ray: weights of the triangle's second and third corner */
 } clarity_hits;
+
+/* All hits of rays, ordered by ray, then by t, then by primitive. clarity_all() writes the members behind `unused`; the arrays live
+ * until clarity_all_hits_free(). */
+typedef struct clarity_all_hits {
+    uint32_t struct_bytes;
+    uint32_t unused;
+    uint64_t count;
+    const int64_t *first; /* one more than there are rays: the hits of ray i are first[i] to first[i + 1] - 1 */
+    const int64_t *ray;   /* `count` elements, as of the arrays below */
+    const float *t;
+    const int32_t *prim;
+    const int32_t *instance;
+    const float *uv;
+    void *owner; /* of the arrays */
+} clarity_all_hits;
 
 /* A picture. Rows follow each other without gaps, the top row first. */
 typedef struct clarity_picture {
@@ -130,8 +149,17 @@ int32_t clarity_scene_bounds(const clarity_scene *scene, double lo[3], double hi
 int32_t clarity_tracer_new(const clarity_scene *scene, const clarity_options *options, const clarity_watch *watch, clarity_tracer **tracer);
 void clarity_tracer_free(clarity_tracer *tracer);
 int32_t clarity_closest(clarity_tracer *tracer, const clarity_rays *rays, const clarity_hits *hits, const clarity_watch *watch);
+/* Rays that are traced often: they are read from the arrays once, and stay on the tracer's device, 32 bytes each. They serve
+ * clarity_closest() and clarity_any() of this tracer. */
+int32_t clarity_pack(clarity_tracer *tracer, const clarity_rays *rays, const clarity_watch *watch, clarity_packed **packed);
+void clarity_packed_free(clarity_packed *packed);
 /* 1 for rays that hit anything between t_min and t_max, else 0. */
 int32_t clarity_any(clarity_tracer *tracer, const clarity_rays *rays, uint8_t *occluded, const clarity_watch *watch);
+/* How many hits each ray has with t_min <= t < t_max, not only the nearest: a triangle is hit once, a sphere on both sides. */
+int32_t clarity_count(clarity_tracer *tracer, const clarity_rays *rays, int64_t *counts, const clarity_watch *watch);
+/* Which they are. Rays with many hits need much memory: 40 bytes a hit. */
+int32_t clarity_all(clarity_tracer *tracer, const clarity_rays *rays, clarity_all_hits *hits, const clarity_watch *watch);
+void clarity_all_hits_free(clarity_all_hits *hits); /* sets the members to 0 that clarity_all() has written */
 /* Renders as `clarity render` does; the pixels are those of its .pfm, the top row first. Settings of the tracer hold, too. */
 int32_t clarity_render(clarity_tracer *tracer, clarity_picture *picture, const clarity_watch *watch);
 

@@ -8,6 +8,7 @@
 
 #include "api/clarity.h"
 #include "api/library.hpp"
+#include "api/ray_arrays.hpp"
 #include "device/device.hpp"
 #include "render/edit/edit.hpp"
 #include "render/frame/frame_renderer.hpp"
@@ -32,18 +33,39 @@ void read_words(const char* const* texts, Words& words);
 
 }  // namespace clarity::api
 
+// Rays on a device, in pieces.
+struct clarity_packed {
+    struct Piece {
+        size_t count;
+        cl::Buffer rays;
+        uint64_t packing;  // as RayArrays::packing
+    };
+    uint64_t tracer;  // that packed them
+    std::shared_ptr<clarity::Device> device;
+    std::vector<Piece> pieces;
+    uint64_t count;
+};
+
 // A scene in a structure on a device. Its members are called one at a time.
 struct clarity_tracer {
  public:
     clarity_tracer(const clarity_scene& scene, const clarity_options& options, clarity::Progress& progress);
     void closest(const clarity_rays& rays, const clarity_hits& hits, clarity::Progress& progress);
+    std::unique_ptr<clarity_packed> pack(const clarity_rays& rays, clarity::Progress& progress);
     void any(const clarity_rays& rays, uint8_t* occluded, clarity::Progress& progress);
+    void count(const clarity_rays& rays, int64_t* counts, clarity::Progress& progress);
+    std::unique_ptr<clarity::api::HitArrays> all(const clarity_rays& rays, clarity::Progress& progress);
     // Writes the members of `picture` that are the call's.
     void render(const clarity_picture& asked, clarity_picture& picture, clarity::Progress& progress);
 
  private:
+    // take: gets the number of a first ray, and hits of it and the next ones, on any thread.
+    void trace(const clarity_rays& rays, bool any_hit, clarity::Progress& progress, const clarity::TakeHits& take);
+    // Of the rays from `begin` on.
+    clarity::ReadRays reader(const clarity_rays& rays, size_t begin) const;
+    // take: gets the hits of some rays, and the number of the first one.
     template <class Take>
-    void trace(const clarity_rays& rays, bool any_hit, clarity::Progress& progress, const Take& take);
+    void trace_all(const clarity_rays& rays, bool count_only, clarity::Progress& progress, const Take& take);
     clarity::View view_of(const clarity_picture& asked, const clarity::api::Words& words) const;
     void trace_samples(const clarity::Prepared& prepared, const clarity::Settings& settings, const clarity::View& view,
                        clarity::Progress& progress);
@@ -55,6 +77,7 @@ struct clarity_tracer {
     clarity::Preparer preparer_;
     std::shared_ptr<const clarity::Prepared> prepared_;  // for ray queries
     clarity::RayQueries queries_;
-    size_t batch_;  // rays that are traced in one go
+    uint64_t id_ = clarity::new_packing();  // of this tracer, and of rays that it packs for one call
+    size_t batch_;                          // rays that are traced in one go
     std::optional<clarity::FrameRenderer> frames_;
 };

@@ -1,6 +1,7 @@
 // library.hpp -- what all calls of the library share: its plugins, the program for workers, and how exceptions become codes.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -23,15 +24,22 @@ const PluginRegistry& plugins();
 void set_program(const std::string& path);
 void set_log(void (*log)(void*, int32_t, const char*), void* user);
 
+// Bytes of a struct in the first release that has it. Fields that were appended later are 0 for callers that lack them.
+template <class T>
+constexpr size_t kFirstBytes = sizeof(T);
+template <>
+inline constexpr size_t kFirstBytes<clarity_rays> = offsetof(clarity_rays, mask);
+
 // A copy of a struct of the caller, which may be shorter or longer than ours. name: for messages.
 template <class T>
 T copy_of(const T* given, const char* name) {
     if (!given) throw Error(Exit::usage, std::string("the pointer to ") + name + " is null");
-    if (given->struct_bytes < sizeof(T))  // of the first release
+    if (given->struct_bytes < kFirstBytes<T>)
         throw Error(Exit::usage, std::string(name) + "::struct_bytes is " + std::to_string(given->struct_bytes) +
-                                     ", expected " + std::to_string(sizeof(T)) + " or more: set it to sizeof(" + name + ")");
+                                     ", expected " + std::to_string(kFirstBytes<T>) + " or more: set it to sizeof(" + name +
+                                     ")");
     T copy{};
-    std::memcpy(&copy, given, sizeof(T));
+    std::memcpy(&copy, given, std::min<size_t>(given->struct_bytes, sizeof(T)));
     return copy;
 }
 

@@ -1,24 +1,13 @@
 #include "api/ray_arrays.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
 
 #include "base/error.hpp"
-#include "base/parallel_for.hpp"
 
 namespace clarity::api {
 namespace {
-
-constexpr size_t kChunk = 16384;
-
-template <class Work>
-void for_each_in_chunks(size_t count, const Work& work) {
-    parallel_for(static_cast<uint32_t>((count + kChunk - 1) / kChunk), [&](uint32_t chunk) {
-        for (size_t i = chunk * kChunk, end = std::min(count, (chunk + 1) * kChunk); i < end; ++i) work(i);
-    });
-}
 
 // Arrays need not be aligned.
 template <class Number>
@@ -48,31 +37,59 @@ void check_rays(const clarity_rays& rays) {
     if (rays.type != CLARITY_FLOAT32 && rays.type != CLARITY_FLOAT64)
         throw Error(Exit::usage, "the rays have the unknown type " + std::to_string(rays.type) +
                                      ": CLARITY_FLOAT32 and CLARITY_FLOAT64 are known");
+    if (rays.mask > RT_SEEN_BY_ALL)
+        throw Error(Exit::usage, "the rays have the mask " + std::to_string(rays.mask) + ": expected 0 to 255");
+    if (rays.packed) return;
     if (rays.count > 0 && (!rays.origins || !rays.directions))
         throw Error(Exit::usage, "the rays have no origins or no directions: the pointer is null");
 }
 
-std::vector<rt_ray> read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin) {
-    std::vector<rt_ray> read(count);
-    for_each_in_chunks(count, [&](size_t i) {
+void read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin, rt_ray* to) {
+    for (size_t i = 0; i < count; ++i) {
         const auto at = static_cast<int64_t>(first + i);
-        read[i] = rays.type == CLARITY_FLOAT64 ? ray_at<double>(rays, at, origin) : ray_at<float>(rays, at, origin);
-    });
-    return read;
+        to[i] = rays.type == CLARITY_FLOAT64 ? ray_at<double>(rays, at, origin) : ray_at<float>(rays, at, origin);
+    }
 }
 
-void write_hits(const std::vector<rt_hit>& hits, const clarity_hits& to, size_t first) {
-    for_each_in_chunks(hits.size(), [&](size_t i) {
+void write_hits(const rt_hit* hits, size_t count, const clarity_hits& to, size_t first) {
+    for (size_t i = 0; i < count; ++i) {
         const rt_hit& hit = hits[i];
         if (to.t) to.t[first + i] = hit.t;
         if (to.prim) to.prim[first + i] = hit.prim;
         if (to.instance) to.instance[first + i] = hit.instance;
         if (to.uv) to.uv[2 * (first + i)] = hit.u, to.uv[2 * (first + i) + 1] = hit.v;
-    });
+    }
 }
 
-void write_occlusion(const std::vector<rt_hit>& hits, uint8_t* to, size_t first) {
-    for_each_in_chunks(hits.size(), [&](size_t i) { to[first + i] = hits[i].t == 0; });
+void append_hits(const AllHits& hits, HitArrays& to) {
+    const auto begin = static_cast<int64_t>(to.t.size());
+    for (size_t ray = 0; ray + 1 < hits.first.size(); ++ray) {
+        to.ray.insert(to.ray.end(), hits.count(ray), static_cast<int64_t>(to.first.size() - 1));
+        to.first.push_back(begin + static_cast<int64_t>(hits.first[ray + 1]));
+    }
+    for (const rt_hit& hit : hits.hits) {
+        to.t.push_back(hit.t);
+        to.prim.push_back(hit.prim);
+        to.instance.push_back(hit.instance);
+        to.uv.insert(to.uv.end(), {hit.u, hit.v});
+    }
+}
+
+void give_hits(std::unique_ptr<HitArrays> hits, clarity_all_hits& to) {
+    const HitArrays& from = *hits;
+    to.count = from.t.size();
+    to.first = from.first.data();
+    to.ray = from.ray.data();
+    to.t = from.t.data();
+    to.prim = from.prim.data();
+    to.instance = from.instance.data();
+    to.uv = from.uv.data();
+    to.owner = hits.release();
+}
+
+void take_back_hits(clarity_all_hits& hits) {
+    delete static_cast<HitArrays*>(hits.owner);
+    hits = {hits.struct_bytes, hits.unused, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
 }
 
 }  // namespace clarity::api

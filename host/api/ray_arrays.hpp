@@ -2,19 +2,32 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "api/clarity.h"
+#include "render/tracers/rays/ray_query.hpp"
 #include "rt_types.h"
 
 namespace clarity::api {
 
 // Throws Error(usage) for what cannot be read.
 void check_rays(const clarity_rays& rays);
-// The rays [first, first + count). origin: of the scene, subtracted in double precision.
-std::vector<rt_ray> read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin);
+// Writes the rays [first, first + count) to `to`. origin: of the scene, subtracted in double precision.
+void read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin, rt_ray* to);
 // Writes hits to the elements from `first` on.
-void write_hits(const std::vector<rt_hit>& hits, const clarity_hits& to, size_t first);
-void write_occlusion(const std::vector<rt_hit>& hits, uint8_t* to, size_t first);
+void write_hits(const rt_hit* hits, size_t count, const clarity_hits& to, size_t first);
+
+// All hits, field by field.
+struct HitArrays {
+    std::vector<int64_t> first{0}, ray;
+    std::vector<float> t, uv;
+    std::vector<int32_t> prim, instance;
+};
+// Appends those of more rays.
+void append_hits(const AllHits& hits, HitArrays& to);
+// Between the caller's struct and its owner.
+void give_hits(std::unique_ptr<HitArrays> hits, clarity_all_hits& to);
+void take_back_hits(clarity_all_hits& hits);
 
 }  // namespace clarity::api

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "api/handles.hpp"
-#include "api/ray_arrays.hpp"
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
 #include "render/settings/accel_choice.hpp"
@@ -50,6 +49,10 @@ std::shared_ptr<Device> open_device(const std::string& choice) {
     return std::make_shared<Device>(choose_device(choice));
 }
 
+rt_u32 mask_of(const clarity_rays& rays) {
+    return rays.mask ? rays.mask : RT_SEEN_BY_ALL;
+}
+
 }  // namespace
 }  // namespace clarity::api
 
@@ -68,36 +71,99 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
     prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
 }
 
-// take: gets hits and the number of the first one's ray.
-template <class Take>
-void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& progress, const Take& take) {
+void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& progress, const TakeHits& take) {
     check_rays(rays);
+    if (rays.packed && rays.packed->tracer != id_)
+        throw Error(Exit::usage, "the packed rays are those of another tracer: pack them with this one");
+    if (rays.packed && rays.packed->count != rays.count)
+        throw Error(Exit::usage, "clarity_rays::count is " + std::to_string(rays.count) + ", and the packed rays are " +
+                                     std::to_string(rays.packed->count));
     const std::lock_guard<std::mutex> lock(mutex_);
     progress.stage("tracing rays");
     RayQuery query;
     query.any_hit = any_hit;
+    query.mask = mask_of(rays);
     query.progress = &progress;
-    std::vector<rt_hit> hits;
-    for (size_t first = 0; first < rays.count; first += hits.size()) {
+    size_t first = 0;
+    const auto trace_some = [&](RayArrays some) {
         if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
+        some.take = [&](size_t i, size_t count, const rt_hit* hits) { take(first + i, count, hits); };
+        queries_.trace(*prepared_, some, query);
+        first += some.count;
+    };
+    if (rays.packed) {
+        for (const clarity_packed::Piece& piece : rays.packed->pieces)
+            trace_some({piece.count, piece.packing, piece.rays, {}, {}});
+        return;
+    }
+    while (first < rays.count) {
         const auto begin = std::chrono::steady_clock::now();
         const size_t count = std::min(batch_, size_t(rays.count) - first);
-        const RayBlocks blocks(read_rays(rays, first, count, placed_->origin), prepared_->layout.lanes);
-        queries_.trace(*prepared_, blocks, query, &hits);
-        take(hits, first);
+        trace_some({count, id_, {}, reader(rays, first), {}});
         const double ms = ms_since(begin);
         if (ms > 2 * kBatchMs) batch_ = std::max(batch_ / 2, kFirstBatch / 16);
         if (ms < kBatchMs / 2 && count == batch_) batch_ = std::min(batch_ * 2, kMostBatch);
     }
 }
 
+ReadRays clarity_tracer::reader(const clarity_rays& rays, size_t begin) const {
+    return [&rays, begin, this](size_t first, size_t count, rt_ray* to) {
+        read_rays(rays, begin + first, count, placed_->origin, to);
+    };
+}
+
+std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, Progress& progress) {
+    check_rays(rays);
+    if (rays.packed) throw Error(Exit::usage, "the rays are packed already");
+    const std::lock_guard<std::mutex> lock(mutex_);
+    progress.stage("packing rays");
+    auto packed = std::make_unique<clarity_packed>(clarity_packed{id_, device_, {}, rays.count});
+    for (size_t first = 0; first < rays.count; first += kMostBatch) {
+        if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
+        const size_t count = std::min(kMostBatch, size_t(rays.count) - first);
+        packed->pieces.push_back(
+            {count, queries_.pack_on_device(count, prepared_->layout.lanes, reader(rays, first)), new_packing()});
+    }
+    return packed;
+}
+
 void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {
-    trace(rays, false, progress, [&](const std::vector<rt_hit>& some, size_t first) { write_hits(some, hits, first); });
+    trace(rays, false, progress, [&](size_t first, size_t count, const rt_hit* some) { write_hits(some, count, hits, first); });
 }
 
 void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& progress) {
     if (rays.count > 0) not_null(occluded, "occluded");
-    trace(rays, true, progress, [&](const std::vector<rt_hit>& some, size_t first) { write_occlusion(some, occluded, first); });
+    trace(rays, true, progress, [&](size_t first, size_t count, const rt_hit* some) {
+        for (size_t i = 0; i < count; ++i) occluded[first + i] = some[i].t == 0;
+    });
+}
+
+template <class Take>
+void clarity_tracer::trace_all(const clarity_rays& rays, bool count_only, Progress& progress, const Take& take) {
+    constexpr size_t kAtOnce = size_t{1} << 16;
+    check_rays(rays);
+    if (rays.packed) throw Error(Exit::usage, "packed rays serve clarity_closest() and clarity_any(): give the arrays");
+    const std::lock_guard<std::mutex> lock(mutex_);
+    progress.stage(count_only ? "counting the hits of rays" : "tracing rays for all their hits");
+    for (size_t first = 0; first < rays.count; first += kAtOnce) {
+        if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
+        std::vector<rt_ray> some(std::min(kAtOnce, size_t(rays.count) - first));
+        read_rays(rays, first, some.size(), placed_->origin, some.data());
+        take(queries_.trace_all(*prepared_, some, {count_only, false, mask_of(rays)}, progress), first);
+    }
+}
+
+void clarity_tracer::count(const clarity_rays& rays, int64_t* counts, Progress& progress) {
+    if (rays.count > 0) not_null(counts, "counts");
+    trace_all(rays, true, progress, [&](const AllHits& some, size_t first) {
+        for (size_t i = 0; i + 1 < some.first.size(); ++i) counts[first + i] = static_cast<int64_t>(some.count(i));
+    });
+}
+
+std::unique_ptr<HitArrays> clarity_tracer::all(const clarity_rays& rays, Progress& progress) {
+    auto hits = std::make_unique<HitArrays>();
+    trace_all(rays, false, progress, [&](const AllHits& some, size_t) { append_hits(some, *hits); });
+    return hits;
 }
 
 View clarity_tracer::view_of(const clarity_picture& asked, const Words& words) const {

@@ -107,9 +107,8 @@ constants = header.constants
 
 def struct(name, **values):
     """A struct with its size and these members; all others are 0."""
-    made = header.structs[name](**values)
-    made.struct_bytes = ctypes.sizeof(made)
-    return made
+    kind = header.structs[name]
+    return kind(struct_bytes=ctypes.sizeof(kind), **values)
 
 
 def texts(values):

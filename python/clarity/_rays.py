@@ -1,7 +1,13 @@
 """Rays as arrays of numpy, and hits."""
+import copy
+import ctypes
+import math
+import operator
+import weakref
+
 import numpy as np
 
-from ._binding import constants, struct
+from ._binding import constants, header, library, struct
 from ._errors import UsageError
 
 _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float64): constants["CLARITY_FLOAT64"]}
@@ -10,7 +16,7 @@ _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float6
 def as_array(values, name):
     """float32 stays, everything else becomes float64."""
     array = np.asarray(values)
-    if array.dtype == np.float32 and array.dtype.isnative:
+    if array.dtype in _TYPES:
         return array
     if array.dtype.kind not in "fiub":
         raise UsageError(f"{name}: expected numbers, found an array of {array.dtype}")
@@ -20,41 +26,107 @@ def as_array(values, name):
 class Rays:
     """Arrays of rays in one shape. Nothing is copied unless types are mixed, or an array of several axes has to be repeated."""
 
-    def __init__(self, origins, directions, t_min, t_max):
-        arrays = {"origins": as_array(origins, "origins"), "directions": as_array(directions, "directions")}
-        for name, array in arrays.items():
-            if array.ndim < 1 or array.shape[-1] != 3:
-                raise UsageError(f"{name}: expected an array of shape (..., 3), found {array.shape}")
-        limits = {name: np.asarray(value) for name, value in (("t_min", t_min), ("t_max", t_max)) if value is not None}
-        for name, limit in limits.items():
-            arrays[name] = as_array(limit, name)
-        # A number has no type of its own.
-        doubles = any(array.dtype == np.float64 for array in arrays.values() if array.ndim)
-        self.dtype = np.dtype(np.float64 if doubles else np.float32)
-        arrays = {name: np.asarray(array, dtype=self.dtype) for name, array in arrays.items()}
-        shapes = [array.shape if name in limits else array.shape[:-1] for name, array in arrays.items()]
+    def __init__(self, origins, directions, t_min=None, t_max=None, mask=None):
+        self.origins, self.directions = as_array(origins, "origins"), as_array(directions, "directions")
+        for name in ("origins", "directions"):
+            shape = getattr(self, name).shape
+            if not shape or shape[-1] != 3:
+                raise UsageError(f"{name}: expected an array of shape (..., 3), found {shape}")
+        values = {}
+        if t_min is not None:
+            values["t_min"] = as_array(t_min, "t_min")
+        if t_max is not None:
+            values["t_max"] = as_array(t_max, "t_max")
+        self.dtype = self.origins.dtype
+        if values or self.directions.dtype != self.dtype:
+            # A number has no type of its own.
+            arrays = [self.origins, self.directions] + [limit for limit in values.values() if limit.ndim]
+            self.dtype = max(array.dtype for array in arrays)
+            self.origins, self.directions = np.asarray(self.origins, self.dtype), np.asarray(self.directions, self.dtype)
+            values = {name: np.asarray(limit, self.dtype) for name, limit in values.items()}
+        self.shape = self._common_shape([self.origins.shape[:-1], self.directions.shape[:-1]] + [limit.shape for limit in values.values()])
+        self.count = math.prod(self.shape)
+        self._lent = []
+        for name in tuple(values):
+            values[name], steps = self._flattened(values[name], 0)
+            values[name + "_step"] = steps[0]
+        values["origins"], values["origin_steps"] = self._flattened(self.origins, 1)
+        values["directions"], values["direction_steps"] = self._flattened(self.directions, 1)
+        self.struct = struct("clarity_rays", type=_TYPES[self.dtype], count=self.count, mask=mask_of(mask), **values)
+
+    @staticmethod
+    def _common_shape(shapes):
+        shape = max(shapes, key=len)
+        if all(other == shape or not other for other in shapes):
+            return shape
         try:
-            self.shape = np.broadcast_shapes(*shapes)
+            return np.broadcast_shapes(*shapes)
         except ValueError:
             raise UsageError(f"rays of the shapes {', '.join(map(str, shapes))} do not fit each other") from None
-        self.count = int(np.prod(self.shape, dtype=np.int64))
-        self.origins, self.directions = arrays["origins"], arrays["directions"]
-        self._flat = {name: self._flattened(array, 0 if name in limits else 1) for name, array in arrays.items()}
-        values = {name: flat.ctypes.data for name, (flat, _) in self._flat.items()}
-        for name, (flat, steps) in self._flat.items():
-            if name in limits:
-                values[name + "_step"] = steps[0]
-            else:
-                values[name[:-1] + "_steps"] = steps
-        self.struct = struct("clarity_rays", type=_TYPES[self.dtype], count=self.count, **values)
+
+    def points(self, t, ray=Ellipsis):
+        """Where rays are at t, in float64. ray: numbers of rays; otherwise t is in their shape with one axis more."""
+        def doubles(array):
+            return (array if ray is Ellipsis else np.broadcast_to(array, self.shape + (3,)).reshape(-1, 3)[ray]).astype(np.float64)
+
+        return doubles(self.origins) + t * doubles(self.directions)
 
     def _flattened(self, array, axes):
-        """The array with one axis of rays, and its steps in bytes; `axes` axes behind it belong to a ray."""
-        of_ray = array.shape[array.ndim - axes :]
+        """Where the array with one axis of rays lies, and its steps in bytes; `axes` axes behind it belong to a ray."""
         if array.ndim == axes:
-            return array, (0,) + array.strides
-        flat = np.broadcast_to(array, self.shape + of_ray).reshape((-1,) + of_ray)
-        return flat, flat.strides
+            steps = (0,) + array.strides
+        else:
+            if array.ndim != axes + 1 or len(self.shape) != 1 or len(array) != self.count:
+                of_ray = array.shape[array.ndim - axes :]
+                array = np.broadcast_to(array, self.shape + of_ray).reshape((-1,) + of_ray)
+            steps = array.strides
+        self._lent.append(array)
+        return address_of(array), steps
+
+
+class Packed:
+    """Rays that lie on the device of a tracer: made by Tracer.pack(). Their arrays are needed no more, but for Hit.points()."""
+
+    def __init__(self, rays, handle):
+        self.shape, self.count, self.origins, self.directions = rays.shape, rays.count, rays.origins, rays.directions
+        self.points = rays.points
+        self._handle = handle
+        weakref.finalize(self, library.clarity_packed_free, handle)
+        self.struct = struct("clarity_rays", count=self.count, packed=handle)
+
+    def masked(self, mask):
+        if mask is None:
+            return self
+        other = copy.copy(self)  # the first one frees the rays
+        other._first = self
+        other.struct = struct("clarity_rays", count=self.count, packed=self._handle, mask=mask_of(mask))
+        return other
+
+    def __len__(self):
+        return self.shape[0]
+
+    def __repr__(self):
+        return f"<clarity.Packed: {self.count} rays>"
+
+
+def rays_of(origins, directions, t_min, t_max, mask):
+    if not isinstance(origins, Packed):
+        return Rays(origins, directions, t_min, t_max, mask)
+    if directions is not None or t_min is not None or t_max is not None:
+        raise UsageError("packed rays have their directions and limits: give nothing beside them but a mask")
+    return origins.masked(mask)
+
+
+def mask_of(mask):
+    if mask is None:
+        return 0
+    if not 1 <= operator.index(mask) <= 255:
+        raise UsageError(f"mask: expected a whole number from 1 to 255, found {mask}")
+    return mask
+
+
+def address_of(array):
+    return array.__array_interface__["data"][0]
 
 
 class Hit:
@@ -80,8 +152,7 @@ class Hit:
 
     def points(self):
         """Where rays hit, in float64; nan where they hit nothing."""
-        t = np.where(self.mask, self.t, np.nan).astype(np.float64)[..., None]
-        return self._rays.origins.astype(np.float64) + t * self._rays.directions.astype(np.float64)
+        return self._rays.points(np.where(self.mask, self.t, np.nan).astype(np.float64)[..., None])
 
     def __len__(self):
         return len(self.t)
@@ -89,15 +160,79 @@ class Hit:
     def __repr__(self):
         return f"<clarity.Hit: {np.count_nonzero(self.mask)} of {self.t.size} rays>"
 
+    def _check(self, shape):
+        for name, dtype in _OF_HIT.items():
+            check_out(getattr(self, name), shape + ((2,) if name == "uv" else ()), dtype, f"out.{name}")
+
     def _struct_for(self, rays):
-        wanted = {"t": np.float32, "prim": np.int32, "instance": np.int32, "uv": np.float32}
-        for name, dtype in wanted.items():
-            check_out(getattr(self, name), rays.shape + ((2,) if name == "uv" else ()), dtype, f"out.{name}")
         self._rays = rays
-        return struct("clarity_hits", **{name: getattr(self, name).ctypes.data for name in wanted})
+        places = [address_of(array) for array in (self.t, self.prim, self.instance, self.uv)]
+        return header.structs["clarity_hits"](_HITS_BYTES, 0, *places)
+
+
+_OF_HIT = {"t": np.float32, "prim": np.int32, "instance": np.int32, "uv": np.float32}
+_HITS_BYTES = ctypes.sizeof(header.structs["clarity_hits"])
+
+
+class AllHits:
+    """All hits of rays, ordered by ray, then by t, then by primitive: `ray, t, prim = hits`. Arrays that cannot be written.
+
+    ray       int64, number of the ray, counted through all axes of the rays
+    t, prim, instance, uv    as in Hit
+    first     int64, the hits of ray i are first[i] to first[i + 1] - 1
+    """
+
+    def __init__(self, rays, found):
+        self._rays = rays
+        owner = _Owner(found)
+
+        def array(name, dtype, count):
+            return owner.array(getattr(found, name), dtype, count)
+
+        count = found.count
+        self.first = array("first", np.int64, rays.count + 1)
+        self.ray = array("ray", np.int64, count)
+        self.t = array("t", np.float32, count)
+        self.prim = array("prim", np.int32, count)
+        self.instance = array("instance", np.int32, count)
+        self.uv = array("uv", np.float32, 2 * count).reshape(-1, 2)
+
+    def points(self):
+        """Where the hits are, in float64."""
+        return self._rays.points(self.t.astype(np.float64)[:, None], self.ray)
+
+    def __iter__(self):
+        return iter((self.ray, self.t, self.prim))
+
+    def __len__(self):
+        return len(self.t)
+
+    def __repr__(self):
+        return f"<clarity.AllHits: {len(self)} of {self._rays.count} rays>"
+
+
+class _Owner:
+    """Memory of the library that arrays lie in: freed when the last of them goes."""
+
+    def __init__(self, found):
+        weakref.finalize(self, library.clarity_all_hits_free, ctypes.byref(found))
+
+    def array(self, address, dtype, count):
+        if not count:
+            return np.empty(0, dtype)
+        # numpy keeps an object with this attribute as the array's base.
+        view = _View()
+        view.owner = self
+        view.__array_interface__ = {"version": 3, "shape": (count,), "typestr": np.dtype(dtype).str, "data": (address, True)}
+        return np.asarray(view)
+
+
+class _View:
+    pass
 
 
 def check_out(array, shape, dtype, name):
     good = isinstance(array, np.ndarray) and array.shape == shape and array.dtype == dtype
     if not good or not array.flags.c_contiguous or not array.flags.writeable:
         raise UsageError(f"{name}: expected a writeable array of {np.dtype(dtype)} in the shape {shape} without gaps")
+    return array

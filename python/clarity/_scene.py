@@ -10,7 +10,7 @@ import numpy as np
 from ._binding import constants, library, struct, texts
 from ._calls import call, check, end_log, start_log
 from ._errors import UsageError
-from ._rays import Hit, Rays, as_array, check_out
+from ._rays import AllHits, Hit, Packed, Rays, address_of, as_array, check_out, rays_of
 
 # Rays that are traced before a person waits: no thread is started for them.
 _FEW = 4096
@@ -124,21 +124,55 @@ class Tracer:
             if rays.count:
                 self._warm.add(function.__name__)
 
-    def closest(self, origins, directions, t_min=None, t_max=None, *, out=None, progress=None):
-        """The nearest hits of rays as a Hit. Arrays of float32 or float64 in any strides, broadcast against each other. out: a Hit
-        of the same shape, which is filled and returned."""
-        rays = Rays(origins, directions, t_min, t_max)
-        hit = Hit(rays.shape) if out is None else out
+    def closest(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
+        """The nearest hits of rays as a Hit. Rays of pack(), or arrays of float32 or float64 in any strides, broadcast against each other. mask: the
+        rays hit only instances that share a bit of it with their mask. out: a Hit of the same shape, which is filled and
+        returned."""
+        rays = rays_of(origins, directions, t_min, t_max, mask)
+        if out is None:
+            hit = Hit(rays.shape)
+        else:
+            hit = out
+            hit._check(rays.shape)
         self._trace(library.clarity_closest, rays, ctypes.byref(hit._struct_for(rays)), progress)
         return hit
 
-    def any(self, origins, directions, t_min=None, t_max=None, *, out=None, progress=None):
-        """An array of bool: whether rays hit anything between t_min and t_max."""
+    def pack(self, origins, directions, t_min=None, t_max=None, *, progress=None):
+        """Rays that are traced often: they are read from the arrays once, and stay on the device, 32 bytes each. closest() and
+        any() of this tracer take them instead of origins and directions."""
         rays = Rays(origins, directions, t_min, t_max)
-        occluded = np.empty(rays.shape, bool) if out is None else out
-        check_out(occluded, rays.shape, bool, "out")
-        self._trace(library.clarity_any, rays, occluded.ctypes.data, progress)
+        handle = ctypes.c_void_p()
+
+        def made(watch):
+            return library.clarity_pack(self._handle, ctypes.byref(rays.struct), watch, ctypes.byref(handle))
+
+        try:
+            call(made, progress=progress)
+        except BaseException:
+            library.clarity_packed_free(handle)
+            raise
+        return Packed(rays, handle.value)
+
+    def any(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
+        """An array of bool: whether rays hit anything between t_min and t_max."""
+        rays = rays_of(origins, directions, t_min, t_max, mask)
+        occluded = np.empty(rays.shape, bool) if out is None else check_out(out, rays.shape, bool, "out")
+        self._trace(library.clarity_any, rays, address_of(occluded), progress)
         return occluded
+
+    def count(self, origins, directions, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
+        """An array of int64: how many hits each ray has with t_min <= t < t_max."""
+        rays = rays_of(origins, directions, t_min, t_max, mask)
+        counts = np.empty(rays.shape, np.int64) if out is None else check_out(out, rays.shape, np.int64, "out")
+        call(library.clarity_count, self._handle, ctypes.byref(rays.struct), address_of(counts), progress=progress)
+        return counts
+
+    def all(self, origins, directions, t_min=None, t_max=None, *, mask=None, progress=None):
+        """All hits of each ray, not only the nearest, as an AllHits: ray, t, prim = rt.all(origins, directions)."""
+        rays = rays_of(origins, directions, t_min, t_max, mask)
+        found = struct("clarity_all_hits")
+        call(library.clarity_all, self._handle, ctypes.byref(rays.struct), ctypes.byref(found), progress=progress)
+        return AllHits(rays, found)
 
     def render(self, width, height, *, camera=None, light=None, out=None, progress=None, **settings):
         """A picture as an array of float32, the top row first: (height, width, 3) for colours and vectors, else (height, width).
@@ -148,9 +182,8 @@ class Tracer:
         picture = struct("clarity_picture", settings=words, camera=_numbers(camera), light=_numbers(light))
         check(library.clarity_render(self._handle, ctypes.byref(picture), None))
         shape = (picture.height, picture.width) + ((picture.channels,) if picture.channels > 1 else ())
-        pixels = np.empty(shape, np.float32) if out is None else out
-        check_out(pixels, shape, np.float32, "out")
-        picture.room, picture.pixels = pixels.size, pixels.ctypes.data
+        pixels = np.empty(shape, np.float32) if out is None else check_out(out, shape, np.float32, "out")
+        picture.room, picture.pixels = pixels.size, address_of(pixels)
         call(library.clarity_render, self._handle, ctypes.byref(picture), progress=progress)
         return pixels
 

@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -191,6 +192,90 @@ static void test_far(void) {
     CHECK(t == 0.375f && fabsf(uv[0] - 0.0625f) < 1e-6f && fabsf(uv[1] - 0.0625f) < 1e-6f);
     clarity_scene_free(scene); /* the tracer keeps what it needs */
     WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    clarity_tracer_free(tracer);
+}
+
+/* Rays that lie on the device. */
+static void test_packed(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer *tracer = NULL, *other = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    WORKS(clarity_tracer_new(scene, &options, NULL, &other));
+    float origins[] = {0.75f, 0.25f, 4, 3, 3, 4}, t[2], direction[] = {0, 0, -2};
+    clarity_rays arrays = {0}, query = {0};
+    arrays.struct_bytes = query.struct_bytes = sizeof query;
+    arrays.count = query.count = 2;
+    arrays.origins = origins;
+    arrays.directions = direction;
+    arrays.origin_steps[0] = 3 * sizeof(float);
+    arrays.origin_steps[1] = arrays.direction_steps[1] = sizeof(float);
+    clarity_packed* packed = NULL;
+    FAILS(clarity_pack(tracer, &arrays, NULL, NULL), CLARITY_USAGE, "`packed` is null");
+    WORKS(clarity_pack(tracer, &arrays, NULL, &packed));
+    memset(origins, 0, sizeof origins); /* they were read */
+    query.packed = packed;
+    const clarity_hits hits = hits_into(t, NULL, NULL, NULL);
+    uint8_t occluded[2] = {9, 9};
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t[0] == 2 && isinf(t[1]));
+    WORKS(clarity_any(tracer, &query, occluded, NULL));
+    CHECK(occluded[0] == 1 && occluded[1] == 0);
+    FAILS(clarity_closest(other, &query, &hits, NULL), CLARITY_USAGE, "another tracer");
+    query.count = 3;
+    FAILS(clarity_closest(tracer, &query, &hits, NULL), CLARITY_USAGE, "count is 3, and the packed rays are 2");
+    int64_t counts[2];
+    query.count = 2;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "give the arrays");
+    clarity_tracer_free(tracer); /* before its rays */
+    clarity_packed_free(packed);
+    clarity_packed_free(NULL);
+    clarity_tracer_free(other);
+}
+
+/* All hits of two rays, as counts and as lists, and with a struct of the first release. */
+static void test_all_hits(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer* tracer = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    /* On the common edge of both triangles, past them, and in one of them. */
+    const float origins[] = {0.5f, 0.5f, 4, 3, 3, 4, 0.75f, 0.25f, 4}, direction[] = {0, 0, -2};
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.count = 3;
+    query.origins = origins;
+    query.directions = direction;
+    query.origin_steps[0] = 3 * sizeof(float);
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    int64_t counts[3] = {9, 9, 9};
+    WORKS(clarity_count(tracer, &query, counts, NULL));
+    CHECK(counts[0] == 2 && counts[1] == 0 && counts[2] == 1);
+    clarity_all_hits hits = {0};
+    FAILS(clarity_all(tracer, &query, &hits, NULL), CLARITY_USAGE, "clarity_all_hits::struct_bytes is 0");
+    hits.struct_bytes = sizeof hits;
+    WORKS(clarity_all(tracer, &query, &hits, NULL));
+    CHECK(hits.count == 3 && hits.first[0] == 0 && hits.first[1] == 2 && hits.first[2] == 2 && hits.first[3] == 3);
+    CHECK(hits.ray[1] == 0 && hits.ray[2] == 2 && hits.t[0] == 2 && hits.t[2] == 2 && hits.instance[0] == -1);
+    CHECK(hits.prim[0] == 0 && hits.prim[1] == 1 && hits.prim[2] == 0 && fabsf(hits.uv[4] - 0.5f) < 1e-6f);
+    clarity_all_hits_free(&hits);
+    CHECK(hits.count == 0 && !hits.t && !hits.owner && hits.struct_bytes == sizeof hits);
+    clarity_all_hits_free(&hits);
+    clarity_all_hits_free(NULL);
+
+    query.mask = 256;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "mask 256");
+    query.struct_bytes = offsetof(clarity_rays, mask); /* what lies behind is not read */
+    WORKS(clarity_count(tracer, &query, counts, NULL));
+    query.struct_bytes -= 1;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "clarity_rays::struct_bytes");
+    query.struct_bytes = sizeof query;
+    query.mask = 0;
+    FAILS(clarity_count(tracer, &query, NULL, NULL), CLARITY_USAGE, "`counts` is null");
+    FAILS(clarity_all(tracer, &query, NULL, NULL), CLARITY_USAGE, "clarity_all_hits is null");
+    int32_t cancel = 1;
+    clarity_watch watch = {0};
+    watch.struct_bytes = sizeof watch;
+    watch.cancel = &cancel;
+    CHECK(clarity_all(tracer, &query, &hits, &watch) == CLARITY_CANCELLED && !hits.owner);
     clarity_tracer_free(tracer);
 }
 
@@ -395,6 +480,8 @@ int main(int argc, char** argv) {
     test_options(scene);
     test_rays(scene, "bvh2", "lanes=1");
     test_rays(scene, "grid", "lanes=8");
+    test_all_hits(scene);
+    test_packed(scene);
     test_far();
     test_pictures(scene);
     test_watch(scene);

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import threading
 import time
+import tracemalloc
 import unittest
 
 import numpy as np
@@ -154,6 +155,71 @@ class Hits(Case):
         with self.assertRaisesRegex(clarity.UsageError, "out.t: expected"):
             rt.closest(origins[:7], directions[:7], out=hit)
 
+    def test_of_packed_rays_are_those_of_the_arrays(self):
+        scene = clarity.Scene(self.vertices, self.faces)
+        for settings in ({"lanes": 1}, {"lanes": 16}):
+            rt = scene.on(accel="bvh2", **settings)
+            for count in (1, 17, 20000):
+                origins, directions = some_rays(count, 9)
+                expected = rt.closest(origins, directions, 0.1, 2)
+                rays = rt.pack(origins, directions, 0.1, 2)
+                origins, directions = origins.copy(), directions.copy()
+                hit = clarity.Hit(rays.shape)
+                for _ in range(3):
+                    self.assertIs(rt.closest(rays, out=hit), hit)
+                    self.equal(hit, expected)
+                np.testing.assert_array_equal(hit.points(), expected.points())
+                np.testing.assert_array_equal(rt.any(rays), expected.mask)
+                np.testing.assert_array_equal(rt.closest(rays, mask=255).t, expected.t)
+        self.assertEqual(rt.closest(rt.pack(np.empty((0, 3)), [0, 0, 1])).t.shape, (0,))
+        for words, wrong in (
+            ("another tracer", lambda: scene.on(accel="bvh2").any(rays)),
+            ("nothing beside them", lambda: rt.any(rays, directions)),
+            ("mask: expected", lambda: rt.any(rays, mask=0)),
+            ("out.t: expected", lambda: rt.closest(rays, out=clarity.Hit((7,)))),
+        ):
+            with self.subTest(words=words), self.assertRaisesRegex(clarity.UsageError, words):
+                wrong()
+
+    def test_into_arrays_that_are_there_take_no_memory(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        origins, directions = some_rays(100000, 10)
+        rays = rt.pack(origins, directions)
+        hit, occluded = rt.closest(rays), rt.any(rays)
+        tracemalloc.start()
+        try:
+            rt.closest(rays, out=hit)
+            rt.closest(origins.astype(float)[::2], directions[::2], out=clarity.Hit((50000,)))  # doubles the directions
+            most = tracemalloc.get_traced_memory()[1]
+            self.assertGreater(most, 50000 * 12)  # numpy tells of its arrays
+            tracemalloc.reset_peak()
+            before = tracemalloc.get_traced_memory()[0]
+            rt.closest(rays, out=hit)
+            rt.closest(origins, directions, out=hit)
+            rt.any(origins[:, ::-1], directions[:, ::-1], out=occluded)
+            self.assertLess(tracemalloc.get_traced_memory()[1] - before, 50000)
+        finally:
+            tracemalloc.stop()
+
+    def test_of_one_ray_cost_few_steps_of_python(self):
+        # About 0.3 us each, of which a call may take 15 us over that of C.
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        ray = np.array([0.5, 0.5, 3], np.float32), np.array([0, 0, -1], np.float32)
+        hit, packed = rt.closest(*ray), rt.pack(*ray)
+        for name, trace, limit in (
+            ("new arrays", lambda: rt.closest(*ray), 55),
+            ("into arrays", lambda: rt.closest(*ray, out=hit), 55),
+            ("packed", lambda: rt.closest(packed, out=hit), 35),
+        ):
+            steps = []
+            sys.setprofile(lambda frame, event, what: steps.append(what) if event in ("call", "c_call") else None)
+            try:
+                trace()
+            finally:
+                sys.setprofile(None)
+            with self.subTest(name=name):
+                self.assertTrue(8 < len(steps) < limit, steps)
+
     def test_far_from_the_origin_keep_their_digits(self):
         far = np.array([5e6, -3e6, 7e6])
         scene = clarity.Scene(self.vertices.astype(float) + far, self.faces)
@@ -166,6 +232,125 @@ class Hits(Case):
         self.assertEqual(hit.points().dtype, np.float64)
         np.testing.assert_allclose((hit.points() - far)[both], near.points()[both], rtol=0, atol=2e-6)
         self.assertTrue(np.isnan(hit.points()[~hit.mask]).all())
+
+
+def brute_force(vertices, faces, origins, directions, t_min, t_max):
+    """All (ray, prim) in order of ray, t and prim, each triangle for itself in double precision (Moeller, Trumbore 1997, Fast,
+    Minimum Storage Ray/Triangle Intersection), and which rays pass an edge or an end of their interval so narrowly that rounding
+    decides."""
+    a, b, c = (vertices.astype(float)[faces[:, k]] for k in range(3))
+    d, o = (array.astype(float)[:, None] for array in (directions, origins))
+    across = np.cross(d, c - a)
+    det = np.sum((b - a) * across, -1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = np.sum((o - a) * across, -1) / det
+        q = np.cross(o - a, b - a)
+        v = np.sum(d * q, -1) / det
+        t = np.sum((c - a) * q, -1) / det
+    inside = np.minimum(np.minimum(u, v), 1 - u - v)
+    behind = np.minimum(t - t_min, t_max - t)
+    found = (det != 0) & (inside >= 0) & (behind >= 0)
+    narrow = ((np.abs(inside) < 1e-4) | (np.abs(behind) < 1e-4)) & (inside > -1e-4) & (behind > -1e-4)
+    ray, prim = np.nonzero(found)
+    order = np.lexsort((prim, t[ray, prim], ray))
+    return ray[order], prim[order], t[ray, prim][order], narrow.any(1)
+
+
+class Lists(Case):
+    def expect(self, rt, query, ray, prim, t):
+        hits = rt.all(*query)
+        found = list(hits)
+        np.testing.assert_array_equal(found[0], ray)
+        np.testing.assert_allclose(found[1], t, rtol=1e-4, atol=1e-5)
+        np.testing.assert_array_equal(found[2], prim)
+        rays = len(query[0])
+        counts = np.bincount(ray, minlength=rays)
+        np.testing.assert_array_equal(rt.count(*query), counts)
+        np.testing.assert_array_equal(hits.first, np.concatenate([[0], np.cumsum(counts)]))
+        # The first of each ray is the nearest, bit for bit.
+        hit = rt.closest(*query)
+        first = hits.first[:-1][counts > 0]
+        np.testing.assert_array_equal(hit.mask, counts > 0)
+        np.testing.assert_array_equal(hit.t[hit.mask], hits.t[first])
+        return hits
+
+    def test_are_those_of_brute_force_in_every_structure(self):
+        random = np.random.default_rng(11)
+        vertices, faces = soup(250, 12)
+        vertices[::2] += random.standard_normal((len(vertices[::2]), 3)).astype(np.float32)  # some are large
+        # Beside the soup: squares of two triangles at z = 0, -1, -2, each of them there three times.
+        copies, floors = 3, 3
+        square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) + [16, 0, 0]
+        plates = np.concatenate([square - [0, 0, i // copies] for i in range(copies * floors)]).astype(np.float32)
+        of_plates = np.concatenate([np.array([[0, 1, 2], [0, 2, 3]]) + 4 * i for i in range(copies * floors)])
+        vertices, faces = np.concatenate([vertices, plates]), np.concatenate([faces, of_plates + len(vertices)])
+        origins, directions = some_rays(500, 13)
+        t_min = np.linspace(0, 0.3, 500, dtype=np.float32)
+        t_max = np.where(np.arange(500) % 3 == 0, 1.5, 1e9).astype(np.float32)
+        ray, prim, t, narrow = brute_force(vertices, faces, origins, directions, t_min[:, None], t_max[:, None])
+        self.assertLess(np.count_nonzero(narrow), 50)
+        # Without the narrow rays, whose places in the arrays close up.
+        keep = ~narrow
+        sure = keep[ray]
+        soup_expected = (np.cumsum(keep) - 1)[ray[sure]], prim[sure], t[sure]
+        self.assertGreater(np.bincount(soup_expected[0]).max(), 8)  # more than a launch lists
+        soup_rays = origins[keep], directions[keep], t_min[keep], t_max[keep]
+        # Through a diagonal, one triangle, nothing; of the last ray t_max is at the second floor, and not in the interval.
+        down = np.array([[16.5, 0.5, 1], [16.75, 0.25, 1], [17.5, 0.5, 1], [16.25, 0.75, 1]], np.float32)
+        plate_rays = down, [[0, 0, -1]] * 4, [0] * 4, np.array([9, 9, 9, 2], np.float32)
+        number = np.concatenate([np.arange(18), np.arange(0, 18, 2), np.arange(1, 6, 2)])
+        plates_expected = np.repeat([0, 1, 3], [18, 9, 3]), 250 + number, 1 + number // (2 * copies)
+        structures = STRUCTURES if QUICK else re.findall(r"^accel +(\w+)", self.run_program("plugins"), re.M)
+        for structure in structures:
+            with self.subTest(structure=structure):
+                rt = clarity.Scene(vertices, faces).on(accel=structure)
+                hits = self.expect(rt, soup_rays, *soup_expected)
+                points = soup_rays[0][soup_expected[0]] + soup_expected[2][:, None] * soup_rays[1][soup_expected[0]]
+                np.testing.assert_allclose(hits.points(), points, rtol=0, atol=1e-4)
+                hits = self.expect(rt, plate_rays, *plates_expected)
+                np.testing.assert_array_equal(hits.t, plates_expected[2])
+
+    def test_outlive_the_hits_and_keep_the_shape_of_rays(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        origins, directions = some_rays(70000, 14)  # more than a piece
+        hits = rt.all(origins, directions)
+        counts = rt.count(origins.reshape(100, 700, 3), directions.reshape(100, 700, 3))
+        self.assertEqual(counts.shape, (100, 700))
+        np.testing.assert_array_equal(np.bincount(hits.ray, minlength=70000), counts.ravel())
+        np.testing.assert_array_equal(np.diff(hits.first), counts.ravel())
+        copies = hits.ray.copy(), hits.t.copy(), hits.prim.copy()
+        ray, t, prim = hits
+        self.assertFalse(t.flags.writeable)
+        del hits
+        junk = [rt.all(origins[:100], directions[:100]) for _ in range(20)]
+        for array, copy in zip((ray, t, prim), copies):
+            np.testing.assert_array_equal(array, copy)
+        self.assertEqual(len(rt.all(np.empty((0, 3)), [0, 0, 1])), 0)
+        self.assertGreater(len(junk[0]), 0)
+        out = np.empty(100, np.int64)
+        self.assertIs(rt.count(origins[:100], directions[:100], out=out), out)
+        np.testing.assert_array_equal(out, counts.ravel()[:100])
+        with self.assertRaises(clarity.Cancelled):
+            rt.all(origins, directions, progress=lambda stage, fraction: False)
+
+    def test_of_masked_rays_pass_instances(self):
+        file = os.path.join(self.folder, "masked.scene")
+        with open(file, "w") as stream:
+            stream.write("load soup.obj\nload soup.obj translate 0 0 5\nedit instance 0  mask 8\nedit instance 1  mask 16\n")
+        rt = clarity.load(file).on(accel="bvh2")
+        ray = [0.5, 0.5, 9], [0, 0, -1]
+        per_instance = [np.count_nonzero(rt.all(*ray, mask=24).instance == i) for i in (0, 1)]
+        self.assertEqual(per_instance[0], per_instance[1])
+        self.assertGreater(per_instance[0], 0)
+        for mask, expected in ((8, {0}), (16, {1}), (24, {0, 1}), (4, set()), (None, {0, 1})):
+            hits = rt.all(*ray, mask=mask)
+            self.assertEqual(set(hits.instance), expected)
+            self.assertEqual(rt.count(*ray, mask=mask), len(hits))
+            self.assertEqual(rt.any(*ray, mask=mask), bool(expected))
+            self.assertEqual(rt.closest(*ray, mask=mask).instance, max(expected, default=-1))
+        for mask in (0, 256):
+            with self.assertRaisesRegex(clarity.UsageError, "mask: expected"):
+                rt.any(*ray, mask=mask)
 
 
 class Scenes(Case):

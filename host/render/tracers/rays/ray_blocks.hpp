@@ -3,11 +3,27 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "rt_types.h"
 
 namespace clarity {
+
+// Writes the rays [first, first + count) to `to`. Called for few rays at a time, which stay in a core's cache, from several
+// threads.
+using ReadRays = std::function<void(size_t first, size_t count, rt_ray* to)>;
+// Gets hits of the rays [first, first + count), in the same way.
+using TakeHits = std::function<void(size_t first, size_t count, const rt_hit* hits)>;
+
+// A new id of a set of rays: see RayBlocks::packing().
+uint64_t new_packing();
+// Numbers of the blocks of rays.
+inline size_t block_floats(size_t ray_count, unsigned lanes) {
+    return (ray_count + lanes - 1) / lanes * lanes * RT_RAY_FIELDS;
+}
+// Writes block_floats() numbers, on all threads.
+void pack_rays(size_t ray_count, unsigned lanes, const ReadRays& read, float* blocks);
 
 // Immutable.
 class RayBlocks {
@@ -28,10 +44,9 @@ class RayBlocks {
     std::vector<float> floats_;
 };
 
-// Returns the hits in the order of the rays.
+// Reads answers on all threads.
 // answers: of all blocks, `fields` numbers a ray (RT_ANSWER_*). Members of rt_hit that they do not contain become 0, and -1 for
 // numbers. counted: whether the answers contain counters.
-std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, rt_u32 fields,
-                                bool counted);
+void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, bool counted, const TakeHits& take);
 
 }  // namespace clarity

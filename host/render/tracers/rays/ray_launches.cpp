@@ -50,7 +50,7 @@ LaunchTimes RayQueries::trace_at_once(const Launch& launch) {
     kernel.set(each ? "count" : "blocks", cl_uint(launch.blocks));
     const unsigned in_group = each ? layout.local_size() * each : layout.group_packets() * layout.blocks();
     return launchers_[&launch.program.row].run(*device_, device_->queue(), kernel, (launch.blocks + in_group - 1) / in_group,
-                                               layout.local_size(), [] {});
+                                               layout.local_size(), [&] { launch.go_on(); });
 }
 
 LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
@@ -75,7 +75,7 @@ LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
         return piece;
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launchers_[&launch.program.row].run(*device_, queue, groups, groups, enqueue, [] {});
+    return launchers_[&launch.program.row].run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
 }
 
 LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
@@ -96,7 +96,7 @@ LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launchers_[&launch.program.row].run(*device_, queue, groups, groups, enqueue, [] {});
+    return launchers_[&launch.program.row].run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
 }
 
 }  // namespace clarity

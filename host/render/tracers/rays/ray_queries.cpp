@@ -1,5 +1,7 @@
 #include "render/tracers/rays/ray_queries.hpp"
 
+#include <cstring>
+
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
 #include "render/launch/frame_constants.hpp"
@@ -29,60 +31,113 @@ std::vector<const KernelRow*> kernels_for(const rt_plugin& accel, const Layout& 
 
 }  // namespace
 
+double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQuery& query,
+                         const std::function<void(const cl::Buffer&, cl_uint)>& answered) {
+    tuning_ = {};
+    if (rays.count == 0) return 0;
+    const Layout& layout = prepared.layout;
+    if (rays.lanes != layout.lanes)
+        throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes) + " lanes and the program has " +
+                                      std::to_string(layout.lanes) + ": pack them again");
+    const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
+    const cl_uint fields = query.count     ? RT_ANSWER_ALL
+                           : query.any_hit ? RT_ANSWER_OCCLUSION
+                           : query.brief   ? RT_ANSWER_NEAREST
+                           : unplaced      ? RT_ANSWER_HIT
+                                           : RT_ANSWER_ALL;
+    const size_t blocks = (rays.count + layout.lanes - 1) / layout.lanes;
+    const Asked asked{prepared.on_device, prepared.program, blocks, query.any_hit, query.count, query.brief};
+    if (!(asked == last_)) {
+        if (!last_.alike(asked)) packing_ = 0;
+        last_ = asked;
+        launchers_.clear();
+    }
+    if (packing_ != rays.packing) {
+        packing_ = rays.packing;
+        kernels_ = kernels_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
+        autotuner_ = Autotuner(static_cast<unsigned>(kernels_.size()));
+    }
+    const KernelRow& row = *kernels_[autotuner_.variant()];
+    Progress never_cancelled;
+    const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
+    tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
+    Queue& queue = device_->queue();
+    rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
+    frame.ray_mask = query.mask;
+    view_.write(queue, *prepared.scene, *prepared.on_device, {frame}, View());
+    const cl::Buffer& out = out_.fit(device_->context(), blocks * layout.lanes * fields * sizeof(float));
+    const cl::Buffer in = rays.upload();
+    const bool debug = prepared.settings.debug;
+    if (debug) overflows_.clear(queue);
+    const LaunchTimes times =
+        trace({prepared, *program, static_cast<unsigned>(blocks), query.any_hit, fields, in, out, query.progress});
+    overflowed_ = debug ? overflows_.read(queue) : 0;
+    if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
+    autotuner_.took(times.device_ms / double(blocks));  // pieces of one packing may differ in size
+    tuning_.settled = autotuner_.settled();
+    answered(out, fields);
+    return times.device_ms;
+}
+
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
     return wrap_cl_errors(*device_, "tracing rays", [&] {
-        if (hits) hits->clear();
-        tuning_ = {};
-        if (rays.ray_count() == 0) return 0.0;
-        const Layout& layout = prepared.layout;
-        if (rays.lanes() != layout.lanes)
-            throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
-                                          " lanes and the program has " + std::to_string(layout.lanes) + ": pack them again");
-        const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
-        const cl_uint fields = query.count     ? RT_ANSWER_ALL
-                               : query.any_hit ? RT_ANSWER_OCCLUSION
-                               : query.brief   ? RT_ANSWER_NEAREST
-                               : unplaced      ? RT_ANSWER_HIT
-                                               : RT_ANSWER_ALL;
-        const size_t slots = rays.block_count() * layout.lanes;
-        const Asked asked{prepared.on_device, prepared.program, rays.block_count(), query.any_hit, query.count, query.brief};
-        if (!(asked == last_)) {
-            last_ = asked;
-            packing_ = 0;
-            launchers_.clear();
-        }
-        if (packing_ != rays.packing()) {
-            packing_ = rays.packing();
-            kernels_ = kernels_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
-            autotuner_ = Autotuner(static_cast<unsigned>(kernels_.size()));
-        }
-        const KernelRow& row = *kernels_[autotuner_.variant()];
-        Progress never_cancelled;
-        const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
-        tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
-        Queue& queue = device_->queue();
-        rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
-        frame.ray_mask = query.mask;
-        view_.write(queue, *prepared.scene, *prepared.on_device, {frame}, View());
-        const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
-        const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
-        // We upload before every run, even if the rays are unchanged. A CPU's caches are then equally warm each time.
-        queue.enqueueWriteBuffer(in, CL_TRUE, 0, rays.floats().size() * sizeof(float), rays.floats().data());
-        const bool debug = prepared.settings.debug;
-        if (debug) overflows_.clear(queue);
-        const LaunchTimes times =
-            trace({prepared, *program, static_cast<unsigned>(rays.block_count()), query.any_hit, fields, in, out});
-        overflowed_ = debug ? overflows_.read(queue) : 0;
-        if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
-        autotuner_.took(times.device_ms);
-        tuning_.settled = autotuner_.settled();
-        if (hits) {
-            std::vector<float> answers(slots * fields);
-            queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());
-            *hits = unpack_hits(answers, rays.ray_count(), layout.lanes, fields, query.count);
-        }
-        return times.device_ms;
+        if (hits) hits->assign(rays.ray_count(), {});
+        const auto upload = [&] {
+            const size_t bytes = rays.floats().size() * sizeof(float);
+            const cl::Buffer& in = in_.fit(device_->context(), bytes);
+            // We upload before every run, even if the rays are unchanged. A CPU's caches are then equally warm each time.
+            device_->queue().enqueueWriteBuffer(in, CL_TRUE, 0, bytes, rays.floats().data());
+            return in;
+        };
+        const auto take = [&](size_t first, size_t count, const rt_hit* some) {
+            std::memcpy(&(*hits)[first], some, count * sizeof *some);
+        };
+        return trace(prepared, {rays.ray_count(), rays.lanes(), rays.packing(), upload}, query,
+                     [&](const cl::Buffer& out, cl_uint fields) {
+                         if (hits) read_answers(out, rays.ray_count(), rays.lanes(), fields, query.count, take);
+                     });
     });
+}
+
+double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQuery query) {
+    return wrap_cl_errors(*device_, "tracing rays", [&] {
+        const unsigned lanes = prepared.layout.lanes;
+        const auto upload = [&] {
+            if (rays.packed()) return rays.packed;
+            const cl::Buffer& in = in_.fit(device_->context(), block_floats(rays.count, lanes) * sizeof(float));
+            write_rays(in, rays.count, lanes, rays.read);
+            return in;
+        };
+        return trace(prepared, {rays.count, lanes, rays.packing, upload}, query, [&](const cl::Buffer& out, cl_uint fields) {
+            read_answers(out, rays.count, lanes, fields, query.count, rays.take);
+        });
+    });
+}
+
+cl::Buffer RayQueries::pack_on_device(size_t count, unsigned lanes, const ReadRays& read) {
+    return wrap_cl_errors(*device_, "packing rays", [&] {
+        const cl::Buffer in(device_->context(), CL_MEM_READ_ONLY, block_floats(count, lanes) * sizeof(float));
+        write_rays(in, count, lanes, read);
+        return in;
+    });
+}
+
+// What is mapped lies in the device's memory if that is the host's.
+void RayQueries::write_rays(const cl::Buffer& in, size_t count, unsigned lanes, const ReadRays& read) {
+    const Queue& queue = device_->queue();
+    void* const mapped =
+        queue.enqueueMapBuffer(in, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, block_floats(count, lanes) * sizeof(float));
+    pack_rays(count, lanes, read, static_cast<float*>(mapped));
+    queue.enqueueUnmapMemObject(in, mapped);
+}
+
+void RayQueries::read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, bool counted,
+                              const TakeHits& take) {
+    const Queue& queue = device_->queue();
+    void* const mapped =
+        queue.enqueueMapBuffer(out, CL_TRUE, CL_MAP_READ, 0, (count + lanes - 1) / lanes * lanes * fields * sizeof(float));
+    unpack_hits(static_cast<const float*>(mapped), count, lanes, fields, counted, take);
+    queue.enqueueUnmapMemObject(out, mapped);
 }
 
 std::vector<rt_hit> RayQueries::trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query) {

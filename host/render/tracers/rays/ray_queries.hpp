@@ -19,6 +19,15 @@
 
 namespace clarity {
 
+// Rays and hits that lie in arrays of the caller's own.
+struct RayArrays {
+    size_t count = 0;
+    uint64_t packing = 0;  // as RayBlocks::packing(). Pieces of one set of rays may have one number
+    cl::Buffer packed;     // by pack_on_device(); without it `read` gives the rays
+    ReadRays read;
+    TakeHits take;
+};
+
 // Ray queries on one device, and the choice of the fastest kernel for them. Used from one thread.
 class RayQueries {
  public:
@@ -27,7 +36,11 @@ class RayQueries {
     // device. Throws Error(failed) if the rays were packed for another number of lanes. If traversal stacks of a debug program
     // were full, this is logged as an error.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
-    // The same, and packs the rays. Rays that are traced repeatedly are better packed once.
+    // The same with arrays of the caller's own, of which one pass is made each way: between them and the device's buffers.
+    double trace(const Prepared& prepared, const RayArrays& rays, RayQuery query);
+    // Rays that stay on the device.
+    cl::Buffer pack_on_device(size_t count, unsigned lanes, const ReadRays& read);
+    // As the first, and packs the rays. Rays that are traced repeatedly are better packed once.
     std::vector<rt_hit> trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query = {});
     // All hits of each ray with t_min <= t < t_max, not only the nearest. A triangle, a polygon or a plane is hit once, a
     // sphere at both sides, a shape wherever its plugin finds another hit behind one (cl/primitives/leaf_shape.h). A primitive
@@ -40,6 +53,18 @@ class RayQueries {
     uint64_t overflows() const { return overflowed_; }
 
  private:
+    // Rays of a query. upload: returns the buffer that has them.
+    struct Given {
+        size_t count;
+        unsigned lanes;
+        uint64_t packing;
+        std::function<cl::Buffer()> upload;
+    };
+    // answered: gets the buffer of the answers, and how many numbers a ray has.
+    double trace(const Prepared& prepared, const Given& rays, const RayQuery& query,
+                 const std::function<void(const cl::Buffer&, cl_uint fields)>& answered);
+    void write_rays(const cl::Buffer& in, size_t count, unsigned lanes, const ReadRays& read);
+    void read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, bool counted, const TakeHits& take);
     // One launch of a query. The answers have `fields` numbers a ray (RT_ANSWER_*).
     struct Launch {
         const Prepared& prepared;
@@ -48,6 +73,10 @@ class RayQueries {
         bool any_hit;
         cl_uint fields;
         const cl::Buffer &in, &out;
+        const Progress* progress;
+        void go_on() const {
+            if (progress && progress->cancelled()) throw Cancelled();
+        }
     };
     // The numbers of rays in a list on the device, of this launch and of the next, and the list.
     struct Counted {
@@ -80,10 +109,11 @@ class RayQueries {
         std::shared_ptr<const TraceProgram> program;  // the program of pictures: it changes with the settings
         size_t blocks = 0;
         bool any_hit = false, count = false, brief = false;
-        bool operator==(const Asked& o) const {
-            return std::tie(scene, program, blocks, any_hit, count, brief) ==
-                   std::tie(o.scene, o.program, o.blocks, o.any_hit, o.count, o.brief);
+        // But for the number of rays.
+        bool alike(const Asked& o) const {
+            return std::tie(scene, program, any_hit, count, brief) == std::tie(o.scene, o.program, o.any_hit, o.count, o.brief);
         }
+        bool operator==(const Asked& o) const { return alike(o) && blocks == o.blocks; }
     };
     Asked last_;
     // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.

@@ -20,7 +20,7 @@ struct RayQuery {
     bool quiet = false;
     // Of the rays: they hit only instances that share a bit of it with their mask. RT_SEEN_BY_*, and bits of the caller's own.
     rt_u32 mask = RT_SEEN_BY_ALL;
-    Progress* progress = nullptr;  // a cancel ends the compilation of the kernels; null: nobody cancels
+    Progress* progress = nullptr;  // a cancel ends the query; null: nobody cancels
 };
 
 // What RayQueries::trace_all() computes.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -47,6 +48,13 @@ std::vector<rt_hit> traced(unsigned lanes, const std::vector<rt_ray>& rays, RayQ
     return Workbench::get().rays(ball(), make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}}), rays, query);
 }
 
+std::vector<rt_hit> unpacked(const std::vector<float>& answers, size_t count, unsigned lanes, rt_u32 fields, bool counted) {
+    std::vector<rt_hit> hits(count);
+    unpack_hits(answers.data(), count, lanes, fields, counted,
+                [&](size_t first, size_t some, const rt_hit* from) { std::copy(from, from + some, &hits[first]); });
+    return hits;
+}
+
 }  // namespace
 
 TEST(RayBlocks, StoreRaysFieldByField) {
@@ -77,8 +85,7 @@ TEST(RayBlocks, WithOneLaneHaveTheLayoutOfTheStructs) {
     for (rt_u32 i = 0; i < 3; ++i) hits[i] = {1.5f + float(i), .25f, .5f, rt_i32(i), -1, i + 1, i + 2, i + 3};
     std::vector<float> answers(8 * hits.size());
     std::memcpy(answers.data(), hits.data(), sizeof(rt_hit) * hits.size());
-    const std::vector<rt_hit> back = unpack_hits(answers, hits.size(), 1, RT_ANSWER_ALL, true);
-    ASSERT_EQ(back.size(), hits.size());
+    const std::vector<rt_hit> back = unpacked(answers, hits.size(), 1, RT_ANSWER_ALL, true);
     EXPECT_EQ(std::memcmp(back.data(), hits.data(), sizeof(rt_hit) * hits.size()), 0);
 }
 
@@ -94,12 +101,9 @@ TEST(RayBlocks, HitsAreInTheOrderOfTheRays) {
                 for (size_t k = 0; k < 8; ++k) answers[(i / lanes * 8 + k) * lanes + i % lanes] = fields[k];
                 distances[i] = float(i);
             }
-            const auto counted = unpack_hits(answers, count, lanes, RT_ANSWER_ALL, true),
-                       plain = unpack_hits(answers, count, lanes, RT_ANSWER_ALL, false),
-                       occlusion = unpack_hits(distances, count, lanes, RT_ANSWER_OCCLUSION, false);
-            ASSERT_EQ(counted.size(), count);
-            ASSERT_EQ(plain.size(), count);
-            ASSERT_EQ(occlusion.size(), count);
+            const auto counted = unpacked(answers, count, lanes, RT_ANSWER_ALL, true),
+                       plain = unpacked(answers, count, lanes, RT_ANSWER_ALL, false),
+                       occlusion = unpacked(distances, count, lanes, RT_ANSWER_OCCLUSION, false);
             for (size_t i = 0; i < count; ++i) {
                 for (const rt_hit& hit : {counted[i], plain[i]}) {
                     ASSERT_EQ(hit.t, float(i) + .5f);
