@@ -17,6 +17,7 @@
 #include "base/plural.hpp"
 #include "import/sink/height_map.hpp"
 #include "import/sink/mesh_copy.hpp"
+#include "import/sink/opacity_map.hpp"
 #include "import/sink/scene_sink.hpp"
 #include "import/sink/smaller_pictures.hpp"
 #include "import/sink/texture.hpp"
@@ -287,6 +288,8 @@ Problem completed(Problem why, const rt_texture_desc& d, std::vector<uint32_t>& 
     if (why) return why;
     picture.flags = d.space == RT_SPACE_SRGB ? 0 : RT_TEXTURE_LINEAR;
     if (d.space == RT_SPACE_HEIGHT) make_normals(texels.data() + picture.first, picture);
+    if (d.space == RT_SPACE_ALPHA || d.space == RT_SPACE_CLEARNESS)
+        make_opacities(texels.data() + picture.first, picture, d.space);
     add_smaller_pictures(texels, picture);
     return {};
 }

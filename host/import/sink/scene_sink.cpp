@@ -180,7 +180,7 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
     if (d.wrap_u > RT_WRAP_MIRROR || d.wrap_v > RT_WRAP_MIRROR)
         return fail("a texture has the wrap modes " + std::to_string(d.wrap_u) + " and " + std::to_string(d.wrap_v) +
                     ": expected RT_WRAP_ values");
-    if (d.space > RT_SPACE_HEIGHT || d.filter > RT_FILTER_NEAREST)
+    if (d.space > RT_SPACE_CLEARNESS || d.filter > RT_FILTER_NEAREST)
         return fail("a texture has the space " + std::to_string(d.space) + " and the filter " + std::to_string(d.filter) +
                     ": expected RT_SPACE_ and RT_FILTER_ values");
     const rt_u32 index = d.bytes ? builder_.texture_of_bytes(path_, d) : builder_.texture_of_file(path_, d);

@@ -188,7 +188,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
 
     const Units units = units_of(*scene, extension, file.bytes());
     const NodeTree tree(*scene);
-    MaterialTable materials(*scene, path, extension == "dae" ? collada_wraps(bytes) : ColladaWraps(), *sink);
+    MaterialTable materials(*scene, path, extension == "dae" ? collada_pictures(bytes) : ColladaPictures(), *sink);
     MeshTable meshes(*scene, materials, *sink);
     add_instances(tree, meshes, host, *sink);
     report(*scene, tree, meshes, complaints.errors(), host, *sink);

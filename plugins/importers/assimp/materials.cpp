@@ -31,6 +31,8 @@ struct Use {
     rt_u32 use, space;
 };
 constexpr Use kUses[] = {
+    {aiTextureType_BASE_COLOR, RT_MAP_COLOR, RT_SPACE_SRGB},
+    {aiTextureType_DIFFUSE, RT_MAP_COLOR, RT_SPACE_SRGB},
     {aiTextureType_EMISSION_COLOR, RT_MAP_EMISSION, RT_SPACE_SRGB},
     {aiTextureType_EMISSIVE, RT_MAP_EMISSION, RT_SPACE_SRGB},
     {aiTextureType_NORMAL_CAMERA, RT_MAP_NORMAL, RT_SPACE_HEIGHT},
@@ -52,6 +54,39 @@ std::string picture_of(const aiMaterial& m, aiTextureType type) {
     return m.GetTextureCount(type) > 0 && m.GetTexture(type, 0, &path) == aiReturn_SUCCESS ? path.C_Str() : "";
 }
 
+void add_word(std::string& list, const std::string& word) {
+    list += (list.empty() ? "" : ", ") + word;
+}
+
+// The channels of coordinates that pictures of a material name, each once.
+unsigned channel_of(const aiMaterial& m, aiTextureType type) {
+    int channel = 0;
+    const bool is_stated = m.Get(AI_MATKEY_UVWSRC(type, 0), channel) == aiReturn_SUCCESS;
+    return is_stated && channel > 0 && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS ? static_cast<unsigned>(channel) : 0;
+}
+std::vector<unsigned> channels_of(const aiMaterial& m) {
+    std::vector<unsigned> out;
+    const auto add = [&](aiTextureType type) {
+        if (picture_of(m, type).empty()) return;
+        const unsigned channel = channel_of(m, type);
+        if (std::find(out.begin(), out.end(), channel) == out.end()) out.push_back(channel);
+    };
+    for (const Use& use : kUses) add(use.type);
+    add(aiTextureType_OPACITY);
+    return out;
+}
+
+// assimp's order: rotation about the middle of the picture, then scaling, then translation.
+void lay(const aiMaterial& m, aiTextureType type, float (&matrix)[6]) {
+    aiUVTransform t;
+    if (m.Get(AI_MATKEY_UVTRANSFORM(type, 0), t) != aiReturn_SUCCESS) return;
+    const float c = std::cos(t.mRotation), s = std::sin(t.mRotation), middle = 0.5f;
+    const float x = middle - (c - s) * middle, y = middle - (s + c) * middle;
+    const float out[6] = {c * t.mScaling.x, -s * t.mScaling.x, x * t.mScaling.x + t.mTranslation.x,
+                          s * t.mScaling.y, c * t.mScaling.y,  y * t.mScaling.y + t.mTranslation.y};
+    std::copy(out, out + 6, matrix);
+}
+
 void apply_phong(const aiMaterial& m, rt_material_desc& out) {
     const aiColor3D specular = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
     const float strength = importers::limited(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
@@ -64,15 +99,15 @@ void apply_phong(const aiMaterial& m, rt_material_desc& out) {
 
 }  // namespace
 
-MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, ColladaWraps wraps, const rt_scene_sink& sink)
+MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, ColladaPictures pictures, const rt_scene_sink& sink)
     : scene_(scene),
       place_(file),
-      wraps_(std::move(wraps)),
+      pictures_(std::move(pictures)),
       sink_(sink),
       ids_(scene.mNumMaterials, RT_NONE),
       done_(scene.mNumMaterials, false) {
-    if (!wraps_.differs.empty())
-        rt::warn(sink_, "samplers wrap '" + wraps_.differs + "' in several ways; the first one counts");
+    if (!pictures_.differs.empty())
+        rt::warn(sink_, "samplers wrap '" + pictures_.differs + "' in several ways; the first one counts");
 }
 
 rt_u32 MaterialTable::id(unsigned material) {
@@ -88,12 +123,9 @@ rt_u32 MaterialTable::id(unsigned material) {
     // assimp adds a material where the file has none. The host's default material takes its place.
     if (std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME) return RT_NONE;
     rt_material_desc& out = desc;
-    std::string color_picture, left_out;
-    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
-        if (color_picture.empty()) out.texture = texture(m, type, RT_SPACE_SRGB);
-        if (color_picture.empty()) color_picture = picture_of(m, type);
-    }
-    std::vector<rt_map_desc> maps = maps_of(m);
+    desc.texture = RT_NONE;
+    std::string left_out;
+    std::vector<rt_map_desc> maps = maps_of(m, left_out);
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
     importers::store_color(base, 1, 1, out.color);
@@ -112,64 +144,78 @@ rt_u32 MaterialTable::id(unsigned material) {
         apply_phong(m, out);
     }
     importers::AlphaKeys alpha;
-    const std::string cut = picture_of(m, aiTextureType_OPACITY);
-    importers::apply_transparency(cut.empty() ? number(m, AI_MATKEY_OPACITY, 1) : 1,
-                                  number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0), number(m, AI_MATKEY_REFRACTI, 0), alpha, out);
-    // With A_ONE it is the picture's alpha that counts, which only that of the colour has here. RGB_ZERO would be one minus
-    // its brightness; assimp tells it by a transparent colour.
-    aiColor3D transparent;
-    if (!cut.empty() && cut == color_picture && m.Get(AI_MATKEY_COLOR_TRANSPARENT, transparent) != aiReturn_SUCCESS)
-        alpha.set(importers::AlphaKeys::blend, 1);
-    else if (!cut.empty())
-        left_out = "transparency";
+    const bool is_cut = !picture_of(m, aiTextureType_OPACITY).empty();
+    importers::apply_transparency(is_cut ? 1 : number(m, AI_MATKEY_OPACITY, 1), number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0),
+                                  number(m, AI_MATKEY_REFRACTI, 0), alpha, out);
+    if (is_cut) read_transparency(m, maps, alpha, left_out);
     alpha.give(keys);
     keys.give(out);
     importers::give_maps(maps, out);
     for (const auto& [type, word] : kLeftOut)
-        if (!picture_of(m, type).empty()) left_out += (left_out.empty() ? "" : ", ") + std::string(word);
+        if (!picture_of(m, type).empty()) add_word(left_out, word);
     if (!left_out.empty())
         rt::warn(sink_, "material '" + std::string(name.C_Str()) + "': left out the pictures of " + left_out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
 }
 
-TextureMapping MaterialTable::mapping(unsigned material) const {
-    TextureMapping mapping;
-    if (material >= scene_.mNumMaterials || !scene_.mMaterials[material]) return mapping;
-    const aiMaterial& m = *scene_.mMaterials[material];
-    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
-        if (m.GetTextureCount(type) == 0) continue;
-        int channel = 0;
-        if (m.Get(AI_MATKEY_UVWSRC(type, 0), channel) == aiReturn_SUCCESS && channel > 0 &&
-            channel < AI_MAX_NUMBER_OF_TEXTURECOORDS) {
-            mapping.channel = static_cast<unsigned>(channel);
-        }
-        aiUVTransform t;
-        if (m.Get(AI_MATKEY_UVTRANSFORM(type, 0), t) == aiReturn_SUCCESS) {
-            mapping.transform = t;
-            mapping.has_transform =
-                t.mTranslation.x != 0 || t.mTranslation.y != 0 || t.mScaling.x != 1 || t.mScaling.y != 1 || t.mRotation != 0;
-        }
-        return mapping;
+// A is the picture's alpha, L its brightness, t the factor. A_ONE: A t of the surface is there. RGB_ZERO: 1 - L t. RGB_ONE: L
+// t. Source: COLLADA 1.5.0, "transparent". Other formats than COLLADA do not say which; there only the alpha of the colour's
+// picture is certain.
+void MaterialTable::read_transparency(const aiMaterial& m, std::vector<rt_map_desc>& maps, importers::AlphaKeys& alpha,
+                                      std::string& left_out) {
+    const std::string picture = picture_of(m, aiTextureType_OPACITY);
+    const auto stated = pictures_.transparencies.find(file_name(picture));
+    const bool is_collada = stated != pictures_.transparencies.end();
+    const Transparency how = is_collada ? stated->second : Transparency{"A_ONE", 1};
+    const bool is_of_color =
+        picture == picture_of(m, aiTextureType_BASE_COLOR) || picture == picture_of(m, aiTextureType_DIFFUSE);
+    constexpr std::pair<std::string_view, rt_u32> kSpaces[] = {
+        {"A_ONE", RT_SPACE_ALPHA}, {"RGB_ONE", RT_SPACE_LINEAR}, {"RGB_ZERO", RT_SPACE_CLEARNESS}};
+    const auto space = std::find_if(std::begin(kSpaces), std::end(kSpaces), [&](const auto& s) { return s.first == how.mode; });
+    const bool is_understood = space != std::end(kSpaces) && (how.mode != "RGB_ZERO" || how.factor == 1);
+    if (is_of_color && how.mode == "A_ONE")
+        alpha.set(importers::AlphaKeys::blend, how.factor);
+    else if (is_collada && is_understood) {
+        const rt_map_desc opacity = map(m, aiTextureType_OPACITY, RT_MAP_OPACITY, space->second);
+        if (opacity.texture == RT_NONE) return;
+        maps.push_back(opacity);
+        alpha.set(importers::AlphaKeys::blend, how.mode == "RGB_ZERO" ? 1 : how.factor);
+    } else {
+        add_word(left_out, "transparency");
     }
-    return mapping;
 }
 
-// They lie as the picture of the colour does.
-std::vector<rt_map_desc> MaterialTable::maps_of(const aiMaterial& material) {
+Channels MaterialTable::channels(unsigned material) const {
+    if (material >= scene_.mNumMaterials || !scene_.mMaterials[material]) return {};
+    std::vector<unsigned> found = channels_of(*scene_.mMaterials[material]);
+    found.resize(2, found.empty() ? 0 : found[0]);
+    return {found[0], found[1]};
+}
+
+std::vector<rt_map_desc> MaterialTable::maps_of(const aiMaterial& material, std::string& left_out) {
     std::vector<rt_map_desc> maps;
     for (const Use& use : kUses) {
-        if (importers::has_map(maps, use.use)) continue;
-        const rt_map_desc map = rt::map(use.use, texture(material, use.type, use.space));
-        if (map.texture != RT_NONE) maps.push_back(map);
+        if (importers::has_map(maps, use.use) || picture_of(material, use.type).empty()) continue;
+        const rt_map_desc found = map(material, use.type, use.use, use.space);
+        if (found.texture != RT_NONE) maps.push_back(found);
     }
+    if (channels_of(material).size() > 2) add_word(left_out, "a third set of coordinates, which lie in the first");
     return maps;
+}
+
+rt_map_desc MaterialTable::map(const aiMaterial& material, aiTextureType type, rt_u32 use, rt_u32 space) {
+    rt_map_desc out = rt::map(use, texture(material, type, space));
+    const std::vector<unsigned> channels = channels_of(material);
+    out.set = channels.size() > 1 && channel_of(material, type) == channels[1] ? 1 : 0;
+    lay(material, type, out.matrix);
+    return out;
 }
 
 rt_u32 MaterialTable::texture(const aiMaterial& material, aiTextureType type, rt_u32 space) {
     const std::string path = picture_of(material, type);
     if (path.empty()) return RT_NONE;
-    const auto stated = wraps_.of_picture.find(file_name(path));
-    if (stated != wraps_.of_picture.end()) return add_texture(path, stated->second.first, stated->second.second, space);
+    const auto stated = pictures_.wraps.find(file_name(path));
+    if (stated != pictures_.wraps.end()) return add_texture(path, stated->second.first, stated->second.second, space);
     return add_texture(path, wrap_mode(material, AI_MATKEY_MAPPINGMODE_U(type, 0)),
                        wrap_mode(material, AI_MATKEY_MAPPINGMODE_V(type, 0)), space);
 }

@@ -10,8 +10,8 @@
 namespace assimp_import {
 namespace {
 
-// Position, normal, uv. Vertices are compared bit by bit.
-using Vertex = std::array<float, 8>;
+// Position, normal, two sets of uv. Vertices are compared bit by bit.
+using Vertex = std::array<float, 10>;
 
 // Gives equal vertices the same index: a hash table with open addressing over the list of vertices.
 class VertexSet {
@@ -36,7 +36,7 @@ class VertexSet {
 
  private:
     static size_t hash(const Vertex& vertex) {
-        uint64_t words[4], h = 0;
+        uint64_t words[5], h = 0;
         std::memcpy(words, &vertex, sizeof words);
         for (const uint64_t word : words) {
             h = (h ^ word) * 0x9E3779B97F4A7C15u;
@@ -51,41 +51,35 @@ bool is_finite(const aiVector3D& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Transforms a uv in assimp's order: rotation about the centre of the picture, then scaling, then translation.
-void transform_uv(const aiUVTransform& t, float& u, float& v) {
-    const float c = std::cos(t.mRotation), s = std::sin(t.mRotation);
-    const float x = u - 0.5f, y = v - 0.5f;
-    u = (c * x - s * y + 0.5f) * t.mScaling.x + t.mTranslation.x;
-    v = (s * x + c * y + 0.5f) * t.mScaling.y + t.mTranslation.y;
-}
-
 class CornerReader {
  public:
-    CornerReader(const aiMesh& mesh, const TextureMapping& mapping) : mesh_(mesh), mapping_(mapping) {
-        uvs_ = mesh.mTextureCoords[mapping.channel] ? mesh.mTextureCoords[mapping.channel] : mesh.mTextureCoords[0];
+    CornerReader(const aiMesh& mesh, const Channels& channels) : mesh_(mesh) {
+        for (size_t k = 0; k < channels.size(); ++k)
+            uvs_[k] = mesh.mTextureCoords[channels[k]] ? mesh.mTextureCoords[channels[k]] : mesh.mTextureCoords[0];
+        has_uvs2_ = channels[0] != channels[1];
     }
-    bool has_uvs() const { return uvs_ != nullptr; }
+    bool has_uvs() const { return uvs_[0] != nullptr; }
+    bool has_uvs2() const { return has_uvs2_ && uvs_[1]; }
     Vertex read(unsigned index) const {
         Vertex vertex{};
-        const auto put = [&](int at, float x) { vertex[at] = std::isfinite(x) ? x + 0.0f : 0; };  // -0 + 0 is +0
+        const auto put = [&](size_t at, float x) { vertex[at] = std::isfinite(x) ? x + 0.0f : 0; };  // -0 + 0 is +0
         const aiVector3D& p = mesh_.mVertices[index];
-        for (int k = 0; k < 3; ++k) put(k, p[k]);
+        for (unsigned k = 0; k < 3; ++k) put(k, p[k]);
         if (mesh_.mNormals && is_finite(mesh_.mNormals[index])) {
-            for (int k = 0; k < 3; ++k) put(3 + k, mesh_.mNormals[index][k]);
+            for (unsigned k = 0; k < 3; ++k) put(3 + k, mesh_.mNormals[index][k]);
         }
-        if (uvs_) {
-            float u = uvs_[index].x, v = uvs_[index].y;
-            if (mapping_.has_transform) transform_uv(mapping_.transform, u, v);
-            put(6, u);
-            put(7, v);
+        for (size_t k = 0; k < (has_uvs2() ? 2 : 1); ++k) {
+            if (!uvs_[k]) continue;
+            put(6 + 2 * k, uvs_[k][index].x);
+            put(7 + 2 * k, uvs_[k][index].y);
         }
         return vertex;
     }
 
  private:
     const aiMesh& mesh_;
-    TextureMapping mapping_;
-    const aiVector3D* uvs_ = nullptr;
+    const aiVector3D* uvs_[2] = {};
+    bool has_uvs2_ = false;
 };
 
 // True if all indices of the face are in range and its vertices are finite.
@@ -117,10 +111,10 @@ rt_u32 MeshTable::add(const std::vector<Part>& parts, const char* name) {
     for (const Part& part : parts) corner_count += scene_.mMeshes[part.first]->mNumVertices;
     VertexSet set(corner_count);
     std::vector<rt_u32> indices, sizes, materials;
-    bool has_normals = false, has_uvs = false, all_triangles = true;
+    bool has_normals = false, has_uvs = false, has_uvs2 = false, all_triangles = true;
     for (const auto& [index_of_mesh, index_of_material] : parts) {
         const aiMesh& mesh = *scene_.mMeshes[index_of_mesh];
-        const CornerReader corners(mesh, materials_.mapping(index_of_material));
+        const CornerReader corners(mesh, materials_.channels(index_of_material));
         rt_u32 material = RT_NONE;
         bool is_used = false;
         std::vector<rt_u32> seen(mesh.mNumVertices, RT_NONE);
@@ -148,6 +142,7 @@ rt_u32 MeshTable::add(const std::vector<Part>& parts, const char* name) {
         if (is_used) {
             has_normals = has_normals || mesh.mNormals;
             has_uvs = has_uvs || corners.has_uvs();
+            has_uvs2 = has_uvs2 || corners.has_uvs2();
             colored_ += mesh.mColors[0] != nullptr;
         }
     }
@@ -159,9 +154,10 @@ rt_u32 MeshTable::add(const std::vector<Part>& parts, const char* name) {
     out.name = name;
     out.positions = set.vertices[0].data();
     out.vertex_count = static_cast<rt_u32>(set.vertices.size());
-    out.position_stride = out.normal_stride = out.uv_stride = sizeof(Vertex);
+    out.position_stride = out.normal_stride = out.uv_stride = out.uv2_stride = sizeof(Vertex);
     if (has_normals) out.normals = set.vertices[0].data() + 3;
     if (has_uvs) out.uvs = set.vertices[0].data() + 6;
+    if (has_uvs2) out.uvs2 = set.vertices[0].data() + 8;
     out.indices = indices.data();
     out.index_count = indices.size();
     if (!all_triangles) out.face_sizes = sizes.data();

@@ -37,7 +37,7 @@ struct Box {
 struct MeshArrays {
     // 3, 3, 2 and 4 for each vertex; all but positions may be empty. colors: linear r, g, b, and alpha.
     std::vector<float> positions, normals, uvs, colors;
-    std::vector<float> uvs2, tangents;  // 2 and 4, as rt_mesh has them; VertexCopies does not copy them
+    std::vector<float> uvs2, tangents;  // 2 and 4, as rt_mesh has them; VertexCopies leaves tangents out
     double origin[3] = {0, 0, 0};       // what was subtracted from positions
     std::vector<rt_u32> sizes;          // corners of each face; empty: all faces are triangles
 
@@ -86,27 +86,33 @@ struct MeshArrays {
     }
 };
 
-// Gives each corner a vertex with its normal, uv and colour: the file's own vertex for the first set of values, and a copy of
-// it for each further set.
+// What a corner has of its own. Values that the mesh has no array for are not read.
+struct CornerValues {
+    const float *normal = nullptr, *uv = nullptr, *uv2 = nullptr;
+    const float* color = nullptr;  // NULL: copies of a vertex have its colour
+};
+
+// Gives each corner a vertex with its values: the file's own vertex for the first set of values, and a copy of it for each
+// further set.
 class VertexCopies {
  public:
     // copy_of: receives the file's vertex of each copy. Copies stand behind the file's vertices.
-    VertexCopies(MeshArrays& mesh, bool normals, bool uvs, bool colors, std::vector<rt_u32>& copy_of)
+    VertexCopies(MeshArrays& mesh, bool normals, bool uvs, bool uvs2, bool colors, std::vector<rt_u32>& copy_of)
         : mesh_(mesh), copy_of_(copy_of), next_(mesh.positions.size() / 3), used_(next_.size()) {
         if (normals) mesh.normals.resize(mesh.positions.size());
         if (uvs) mesh.uvs.resize(mesh.positions.size() / 3 * 2);
+        if (uvs2) mesh.uvs2.resize(mesh.positions.size() / 3 * 2);
         if (colors) mesh.colors.resize(mesh.positions.size() / 3 * 4, 1.0f);
     }
-    // color: of a mesh without colours of corners NULL. Copies of a vertex then have its own.
-    rt_u32 vertex(rt_u32 point, const float* normal, const float* uv, const float* color = nullptr) {
+    rt_u32 vertex(rt_u32 point, const CornerValues& values) {
         if (!used_[point]) {
             used_[point] = true;
-            store(point, normal, uv, color);
+            store(point, values);
             return point;
         }
         rt_u32 at = point;
         for (int step = 0;; ++step, at = next_[at]) {
-            if (matches(at, normal, uv, color)) return at;
+            if (matches(at, values)) return at;
             if (next_[at] == 0 || step == kMaxChain) break;
         }
         const rt_u32 copy = static_cast<rt_u32>(next_.size());
@@ -116,23 +122,26 @@ class VertexCopies {
         for (int k = 0; k < 3; ++k) mesh_.positions.push_back(mesh_.positions[3 * size_t(point) + k]);
         if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.normals.size() + 3);
         if (!mesh_.uvs.empty()) mesh_.uvs.resize(mesh_.uvs.size() + 2);
+        if (!mesh_.uvs2.empty()) mesh_.uvs2.resize(mesh_.uvs2.size() + 2);
         for (size_t k = 0; k < 4 && !mesh_.colors.empty(); ++k) mesh_.colors.push_back(mesh_.colors[4 * size_t(point) + k]);
-        store(copy, normal, uv, color);
+        store(copy, values);
         return copy;
     }
 
  private:
     // Values of one vertex that are compared, at most (at the hub of a fan there are many). Beyond, a further copy is made.
     static constexpr int kMaxChain = 32;
-    bool matches(rt_u32 at, const float* normal, const float* uv, const float* color) const {
-        return (mesh_.normals.empty() || std::memcmp(&mesh_.normals[3 * size_t(at)], normal, 12) == 0) &&
-               (mesh_.uvs.empty() || std::memcmp(&mesh_.uvs[2 * size_t(at)], uv, 8) == 0) &&
-               (!color || std::memcmp(&mesh_.colors[4 * size_t(at)], color, 16) == 0);
+    bool matches(rt_u32 at, const CornerValues& v) const {
+        return (mesh_.normals.empty() || std::memcmp(&mesh_.normals[3 * size_t(at)], v.normal, 12) == 0) &&
+               (mesh_.uvs.empty() || std::memcmp(&mesh_.uvs[2 * size_t(at)], v.uv, 8) == 0) &&
+               (mesh_.uvs2.empty() || std::memcmp(&mesh_.uvs2[2 * size_t(at)], v.uv2, 8) == 0) &&
+               (!v.color || std::memcmp(&mesh_.colors[4 * size_t(at)], v.color, 16) == 0);
     }
-    void store(rt_u32 at, const float* normal, const float* uv, const float* color) {
-        if (!mesh_.normals.empty()) std::copy_n(normal, 3, &mesh_.normals[3 * size_t(at)]);
-        if (!mesh_.uvs.empty()) std::copy_n(uv, 2, &mesh_.uvs[2 * size_t(at)]);
-        if (color) std::copy_n(color, 4, &mesh_.colors[4 * size_t(at)]);
+    void store(rt_u32 at, const CornerValues& v) {
+        if (!mesh_.normals.empty()) std::copy_n(v.normal, 3, &mesh_.normals[3 * size_t(at)]);
+        if (!mesh_.uvs.empty()) std::copy_n(v.uv, 2, &mesh_.uvs[2 * size_t(at)]);
+        if (!mesh_.uvs2.empty()) std::copy_n(v.uv2, 2, &mesh_.uvs2[2 * size_t(at)]);
+        if (v.color) std::copy_n(v.color, 4, &mesh_.colors[4 * size_t(at)]);
     }
     MeshArrays& mesh_;
     std::vector<rt_u32>& copy_of_;

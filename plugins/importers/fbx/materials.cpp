@@ -44,12 +44,35 @@ void read_phong(const Properties& p, bool has_texture, bool has_emission, AlphaK
     apply_transparency(p.number("Opacity", 1 - share), 0, 0, alpha, out);
 }
 
-// Whether a texture's picture is placed by more than texture coordinates. Source of the names: FBX SDK help, "FbxTexture" and
-// "FbxFileTexture"; those with "Model" are blocks of the texture (measured from max2009_blob_6100_binary).
-bool is_transformed(const Properties& p) {
-    const Vec3 zero{}, one{1, 1, 1};
-    return p.vector("Translation", zero) != zero || p.vector("Rotation", zero) != zero || p.vector("Scaling", one) != one ||
-           p.vector("ModelUVTranslation", zero) != zero || p.vector("ModelUVScaling", one) != one || p.whole("UVSwap", 0) != 0;
+// The place on the picture of a point of the surface: UVSwap, scaling and rotation about their pivots, then translation, with
+// (0, 0) at the bottom left. Source of the names: FBX SDK help, "FbxTexture" and "FbxFileTexture"; those with "Model" are
+// blocks of the texture (measured from max2009_blob_6100_binary), and assimp's issue 2043 tells that programs leave them alone.
+// 3ds Max writes its tiling as Scaling and 0.5 - (offset + 0.5) tiling as Translation (comment in Cocos' FBX-glTF-conv).
+void lay(const Properties& p, rt_map_desc& out) {
+    const Vec3 zero{}, one{1, 1, 1}, turn = p.vector("TextureRotationPivot", zero),
+                                     pivot = p.vector("TextureScalingPivot", zero);
+    const Vec3 scale = p.vector("Scaling", one), offset = p.vector("Translation", zero), rotation = p.vector("Rotation", zero);
+    const Vec3 first_scale = p.vector("ModelUVScaling", one), first_offset = p.vector("ModelUVTranslation", zero);
+    constexpr double kRadians = 0.017453292519943295;
+    const double c = std::cos(rotation[2] * kRadians), s = std::sin(rotation[2] * kRadians);
+    const bool is_swapped = p.whole("UVSwap", 0) != 0;
+    const auto place = [&](double u, double v) -> std::array<double, 2> {
+        u = u * first_scale[0] + first_offset[0], v = v * first_scale[1] + first_offset[1];
+        if (is_swapped) std::swap(u, v);
+        u = (u - pivot[0]) * scale[0] + pivot[0] - turn[0], v = (v - pivot[1]) * scale[1] + pivot[1] - turn[1];
+        return {c * u - s * v + turn[0] + offset[0], s * u + c * v + turn[1] + offset[1]};
+    };
+    const std::array<double, 2> origin = place(0, 0), along_u = place(1, 0), along_v = place(0, 1);
+    for (size_t k = 0; k < 2; ++k) {
+        out.matrix[3 * k] = static_cast<float>(along_u[k] - origin[k]);
+        out.matrix[3 * k + 1] = static_cast<float>(along_v[k] - origin[k]);
+        out.matrix[3 * k + 2] = static_cast<float>(origin[k]);
+    }
+}
+// The angles about u and v tilt the picture out of its plane.
+bool is_tilted(const Properties& p) {
+    const Vec3 rotation = p.vector("Rotation", Vec3{});
+    return rotation[0] != 0 || rotation[1] != 0;
 }
 
 // 0 repeat, 1 clamp. Source: FBX SDK help, "FbxTexture::EWrapMode".
@@ -59,13 +82,25 @@ rt_u32 wrap_mode(const Properties& p, const char* name) {
 
 }  // namespace
 
-// UVSet: the `Name` of a layer. Source: FBX SDK help, "FbxTexture".
-std::vector<std::string_view> Materials::uv_sets(uint32_t model) const {
-    std::vector<std::string_view> out;
-    for (const uint32_t material : of(model)) {
-        const uint32_t found = texture(material, model);
-        out.push_back(found == kNoObject ? std::string_view() : context_.properties(found).text("UVSet"));
+// UVSet: the `Name` of a layer; `default` is that of new textures. Source: FBX SDK help, "FbxTexture".
+std::string_view Materials::uv_set(uint32_t texture) const {
+    const std::string_view name = context_.properties(texture).text("UVSet");
+    return name == "default" ? std::string_view() : name;
+}
+
+UvSets Materials::sets_of(const std::vector<UsedTexture>& used) const {
+    UvSets sets;
+    for (const UsedTexture& of : used) {
+        const std::string_view name = uv_set(of.texture);
+        if (sets.size() < kMostUvSets && std::find(sets.begin(), sets.end(), name) == sets.end()) sets.push_back(name);
     }
+    if (sets.empty()) sets.emplace_back();
+    return sets;
+}
+
+std::vector<UvSets> Materials::uv_sets(uint32_t model) const {
+    std::vector<UvSets> out;
+    for (const uint32_t material : of(model)) out.push_back(sets_of(used(material, model)));
     return out;
 }
 
@@ -74,22 +109,21 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     if (known != ids_.end()) return known->second;
     const std::string& name = context_.objects[material].name;
     rt_material_desc out = rt::material(name.empty() ? nullptr : name.c_str());
-    const uint32_t found = texture(material, model);
-    out.texture = found == kNoObject ? RT_NONE : picture(found, RT_SPACE_SRGB);
-    const std::vector<rt_map_desc> maps = maps_of(material);
+    std::vector<std::string> left_out = pictures_left_out(material);
+    const std::vector<rt_map_desc> maps = maps_of(material, used(material, model), left_out);
     give_maps(maps, out);
+    const bool has_color = has_map(maps, RT_MAP_COLOR);
     AlphaKeys alpha;
     MaterialKeys keys;
-    std::vector<std::string> left_out = pictures_left_out(material);
     const Properties properties = context_.properties(material);
     const Surface surface(properties);
     if (surface.is_physical())
-        surface.read(maps, out.texture != RT_NONE, keys, alpha, out, left_out);
+        surface.read(maps, has_color, keys, alpha, out, left_out);
     else
-        read_phong(properties, out.texture != RT_NONE, has_map(maps, RT_MAP_EMISSION), alpha, out);
+        read_phong(properties, has_color, has_map(maps, RT_MAP_EMISSION), alpha, out);
     // A texture of the transparency replaces its value. Programs connect the picture of the colour again where its alpha
     // counts.
-    const uint32_t clear = transparency(material);
+    const uint32_t clear = transparency(material), found = texture(material, model);
     if (clear != kNoObject && found != kNoObject &&
         (clear == found || (!file_of(clear).empty() && file_of(clear) == file_of(found))))
         alpha.set(AlphaKeys::blend, 1);
@@ -105,22 +139,41 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
 }
 
-// They lie as the texture of the colour does. A map of normals counts more than one of heights.
-std::vector<rt_map_desc> Materials::maps_of(uint32_t material) {
-    std::vector<rt_map_desc> maps;
-    const auto add = [&](const Link& link, rt_u32 use, rt_u32 space) {
-        if (has_map(maps, use) || context_.objects[link.from].kind != "Texture") return;
-        rt_map_desc map = rt::map(use, picture(link.from, space));
-        if (space == RT_SPACE_HEIGHT)
-            map.scale = limited(context_.properties(material).number("BumpFactor", 1), -1000, 1000, 1);
-        if (map.texture != RT_NONE) maps.push_back(map);
+// The texture of the colour, then each other use once. A map of normals counts more than one of heights.
+std::vector<UsedTexture> Materials::used(uint32_t material, uint32_t model) const {
+    std::vector<UsedTexture> out;
+    const auto add = [&](uint32_t texture, rt_u32 use, rt_u32 space) {
+        const bool is_new = std::none_of(out.begin(), out.end(), [&](const UsedTexture& known) { return known.use == use; });
+        if (is_new && texture != kNoObject && context_.objects[texture].kind == "Texture") out.push_back({texture, use, space});
     };
+    add(texture(material, model), RT_MAP_COLOR, RT_SPACE_SRGB);
     const std::vector<const Link*> links = context_.objects.below(material);
     for (const Use& use : kUses)
         for (const Link* link : links)
-            if (link->property == use.property) add(*link, use.use, use.space);
+            if (link->property == use.property) add(link->from, use.use, use.space);
     for (const Link* link : links)
-        if (const SurfaceMap* map = surface_map(plain_name(link->property))) add(*link, map->use, map->space);
+        if (const SurfaceMap* map = surface_map(plain_name(link->property))) add(link->from, map->use, map->space);
+    return out;
+}
+
+std::vector<rt_map_desc> Materials::maps_of(uint32_t material, const std::vector<UsedTexture>& used,
+                                            std::vector<std::string>& left_out) {
+    std::vector<rt_map_desc> maps;
+    const UvSets sets = sets_of(used);
+    for (const UsedTexture& of : used) {
+        const Properties properties = context_.properties(of.texture);
+        rt_map_desc map = rt::map(of.use, picture(of.texture, of.space));
+        if (map.texture == RT_NONE) continue;
+        const auto set = std::find(sets.begin(), sets.end(), uv_set(of.texture));
+        const std::string label = "of the texture '" + context_.objects[of.texture].name + "'";
+        if (set == sets.end()) left_out.push_back("the third set of coordinates, " + label);
+        if (is_tilted(properties)) left_out.push_back("the rotation about u and v " + label);
+        map.set = set == sets.end() ? 0 : static_cast<rt_u32>(set - sets.begin());
+        lay(properties, map);
+        if (of.space == RT_SPACE_HEIGHT)
+            map.scale = limited(context_.properties(material).number("BumpFactor", 1), -1000, 1000, 1);
+        maps.push_back(map);
+    }
     return maps;
 }
 
@@ -173,7 +226,6 @@ rt_u32 Materials::picture(uint32_t texture, rt_u32 space) {
     if (known != pictures_.end()) return known->second;
     const Document& document = context_.document;
     const Node* node = context_.objects[texture].node;
-    if (is_transformed(context_.properties(texture))) ++transformed_;
     rt_texture_desc out{};
     out.struct_bytes = sizeof out;
     out.space = space;
@@ -202,9 +254,6 @@ void Materials::report() const {
     if (transparencies_ > 0)
         context_.warn("pictures of the transparency of " + std::to_string(transparencies_) +
                       " materials are left out: they are not those of the colour");
-    if (transformed_ == 0) return;
-    context_.warn("the transforms of " + std::to_string(transformed_) +
-                  " textures are left out: their pictures lie as the texture coordinates say");
 }
 
 }  // namespace fbx_import

@@ -39,22 +39,26 @@ struct Wanted {
     uint32_t object, node;
     const Node* geometry;
     std::vector<uint32_t> materials;
-    std::vector<std::string_view> uv_sets;  // the set that the texture of each material names
+    std::vector<UvSets> uv_sets;  // of each material
 };
 
-// The sets of texture coordinates that the materials need: the first set, and those that a texture names. of_slot: which of
-// them each material has.
-std::vector<const Node*> uv_layers(const Document& document, const Wanted& wanted, std::vector<size_t>& of_slot) {
+// The sets of texture coordinates that the materials need: the first one, and those that textures name. of_slot: which of them
+// each material has as its first and its second.
+std::vector<const Node*> uv_layers(const Document& document, const Wanted& wanted,
+                                   std::vector<std::array<size_t, kMostUvSets>>& of_slot) {
     std::vector<const Node*> out(1, document.child(wanted.geometry, "LayerElementUV"));
-    for (const std::string_view name : wanted.uv_sets) {
-        const Node* found = out[0];
-        for (const Node& layer : document.children(*wanted.geometry)) {
-            const bool is_set = layer.name == "LayerElementUV" && !name.empty();
-            if (is_set && document.text(&layer, "Name") == name) found = &layer;
+    for (const UvSets& sets : wanted.uv_sets) {
+        std::array<size_t, kMostUvSets>& to = of_slot.emplace_back();
+        for (size_t k = 0; k < sets.size(); ++k) {
+            const Node* found = out[0];
+            for (const Node& layer : document.children(*wanted.geometry)) {
+                const bool is_set = layer.name == "LayerElementUV" && !sets[k].empty();
+                if (is_set && document.text(&layer, "Name") == sets[k]) found = &layer;
+            }
+            const auto at = std::find(out.begin(), out.end(), found);
+            to[k] = static_cast<size_t>(at - out.begin());
+            if (at == out.end()) out.push_back(found);
         }
-        const auto at = std::find(out.begin(), out.end(), found);
-        of_slot.push_back(static_cast<size_t>(at - out.begin()));
-        if (at == out.end()) out.push_back(found);
     }
     return out;
 }
@@ -88,7 +92,7 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     const Node& geometry = *wanted.geometry;
     MeshData mesh;
     Layer normals, colors;
-    std::vector<size_t> uv_of_slot;
+    std::vector<std::array<size_t, kMostUvSets>> uv_of_slot;
     const std::vector<const Node*> layers = uv_layers(document, wanted, uv_of_slot);
     std::vector<Layer> uvs(layers.size());
     // Most of the time is spent on the arrays, which can be inflated at the same time.
@@ -117,15 +121,19 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     }
     const bool has_uvs = std::any_of(uvs.begin(), uvs.end(), [](const Layer& layer) { return !layer.empty(); });
     if (normals.empty() && colors.empty() && !has_uvs) return mesh;
-    importers::VertexCopies copies(mesh, !normals.empty(), has_uvs, !colors.empty(), mesh.copy_of);
+    const bool has_uvs2 = has_uvs && std::any_of(wanted.uv_sets.begin(), wanted.uv_sets.end(),
+                                                 [](const UvSets& sets) { return sets.size() > 1; });
+    importers::VertexCopies copies(mesh, !normals.empty(), has_uvs, has_uvs2, !colors.empty(), mesh.copy_of);
     for_corners(mesh.indices, mesh.sizes, [&](const Corner& c) {
         if (c.vertex >= mesh.points) return;
         const size_t slot = mesh.slots.empty() ? 0 : static_cast<size_t>(mesh.slots[c.face]);
-        const Layer& uv = uvs[slot < uv_of_slot.size() ? uv_of_slot[slot] : 0];
+        const std::array<size_t, kMostUvSets> sets =
+            slot < uv_of_slot.size() ? uv_of_slot[slot] : std::array<size_t, kMostUvSets>{};
         std::array<float, 4> color{};
         if (!colors.empty()) color = linear_color(colors, c);
         const rt_u32 vertex =
-            copies.vertex(static_cast<rt_u32>(c.vertex), normals.at(c), uv.at(c), colors.empty() ? nullptr : color.data());
+            copies.vertex(static_cast<rt_u32>(c.vertex),
+                          {normals.at(c), uvs[sets[0]].at(c), uvs[sets[1]].at(c), colors.empty() ? nullptr : color.data()});
         mesh.indices[c.corner] = static_cast<int32_t>(vertex);
     });
     return mesh;

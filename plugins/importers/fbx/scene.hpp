@@ -51,12 +51,20 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
 
 // ---- materials
 
+// The names of the sets of texture coordinates that a material uses; the empty name is the first set of a mesh.
+using UvSets = std::vector<std::string_view>;
+inline constexpr size_t kMostUvSets = 2;
+struct UsedTexture {
+    uint32_t texture;
+    rt_u32 use, space;  // RT_MAP_..., RT_SPACE_...
+};
+
 class Materials {
  public:
     explicit Materials(const Context& context) : context_(context) {}
-    // The materials of a model in the order of their slots, and the sets of texture coordinates that their textures name.
+    // The materials of a model in the order of their slots, and the sets of each of them.
     std::vector<uint32_t> of(uint32_t model) const { return context_.objects.below(model, "Material"); }
-    std::vector<std::string_view> uv_sets(uint32_t model) const;
+    std::vector<UvSets> uv_sets(uint32_t model) const;
     rt_u32 id(uint32_t material, uint32_t model);
     void report() const;  // warns about what was left out
 
@@ -64,13 +72,16 @@ class Materials {
     uint32_t texture(uint32_t material, uint32_t model) const;  // kNoObject: there is none
     uint32_t transparency(uint32_t material) const;             // its texture, likewise
     std::string_view file_of(uint32_t texture) const;
-    std::vector<rt_map_desc> maps_of(uint32_t material);  // besides that of the colour
+    std::vector<UsedTexture> used(uint32_t material, uint32_t model) const;
+    std::string_view uv_set(uint32_t texture) const;
+    UvSets sets_of(const std::vector<UsedTexture>& used) const;
+    std::vector<rt_map_desc> maps_of(uint32_t material, const std::vector<UsedTexture>& used,
+                                     std::vector<std::string>& left_out);
     std::vector<std::string> pictures_left_out(uint32_t material) const;
     rt_u32 picture(uint32_t texture, rt_u32 space);
     const Context& context_;
     std::map<uint32_t, rt_u32> ids_;
     std::map<std::pair<uint32_t, rt_u32>, rt_u32> pictures_;  // by texture and space
-    size_t transformed_ = 0;                                  // textures
     size_t transparencies_ = 0;                               // materials with a picture of it that is not read
 };
 

@@ -93,7 +93,7 @@ void FlatMesh::copy_vertices() {
     // Values of vertices (PLY has both) stay with the copies.
     const std::vector<float> own_normals = normals, own_uvs = uvs;
     std::vector<rt_u32> copy_of;
-    importers::VertexCopies copies(*this, has_normals || !normals.empty(), has_uvs || !uvs.empty(), false, copy_of);
+    importers::VertexCopies copies(*this, has_normals || !normals.empty(), has_uvs || !uvs.empty(), false, false, copy_of);
     const float zero[3] = {0, 0, 0};
     const auto value = [&](const std::vector<rt_u32>& of_corner, const std::vector<float>& values, size_t corner,
                            const std::vector<float>& own, size_t width) {
@@ -104,7 +104,7 @@ void FlatMesh::copy_vertices() {
     for (size_t i = 0; i < corners.size(); ++i) {
         const float* const normal = value(normal_of_corner, corner_normals, i, own_normals, 3);
         const float* const uv = value(uv_of_corner, corner_uvs, i, own_uvs, 2);
-        corners[i] = copies.vertex(corners[i], normal, uv);
+        corners[i] = copies.vertex(corners[i], {normal, uv});
     }
 }
 

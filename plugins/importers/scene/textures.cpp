@@ -37,7 +37,8 @@ void read_texture(Statement& s, Document& document, Diagnostics&) {
     while (!s.done()) {
         switch (s.key()) {
             case kSpace:
-                texture.space = static_cast<rt_u32>(s.choice("colour space", {"srgb", "linear", "height"}));
+                texture.space =
+                    static_cast<rt_u32>(s.choice("colour space", {"srgb", "linear", "height", "alpha", "clearness"}));
                 break;
             case kWrap:
                 read_wrap(s, texture.wrap_u, texture.wrap_v);

@@ -31,17 +31,20 @@ Scene square(const Scratch& folder, const std::string& parameters) {
             "</phong></technique></profile_COMMON></effect></library_effects><library_materials><material id=\"m\" name=\"m\">"
             "<instance_effect url=\"#e\"/></material></library_materials><library_geometries><geometry id=\"g\"><mesh>" +
             source("p", "0 0 0 1 0 0 1 1 0 0 1 0", "XYZ", 3) + source("u", "0 0 1 0 1 1 0 1", "ST", 2) +
+            source("w", "5 5 6 5 6 6 5 6", "ST", 2) +
             "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><polylist material=\"s\" count=\"1\">"
             "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><input semantic=\"TEXCOORD\" source=\"#u\" offset=\"0\" "
-            "set=\"0\"/><vcount>4</vcount><p>0 1 2 3</p></polylist></mesh></geometry></library_geometries>"
+            "set=\"0\"/><input semantic=\"TEXCOORD\" source=\"#w\" offset=\"0\" set=\"1\"/><vcount>4</vcount><p>0 1 2 "
+            "3</p></polylist></mesh></geometry></library_geometries>"
             "<library_visual_scenes><visual_scene id=\"x\"><node id=\"n\"><instance_geometry url=\"#g\"><bind_material>"
             "<technique_common><instance_material symbol=\"s\" target=\"#m\"><bind_vertex_input semantic=\"UV\" "
-            "input_semantic=\"TEXCOORD\" input_set=\"0\"/></instance_material></technique_common></bind_material>"
+            "input_semantic=\"TEXCOORD\" input_set=\"0\"/><bind_vertex_input semantic=\"TEX1\" input_semantic=\"TEXCOORD\" "
+            "input_set=\"1\"/></instance_material></technique_common></bind_material>"
             "</instance_geometry></node></visual_scene></library_visual_scenes>"
             "<scene><instance_visual_scene url=\"#x\"/></scene></COLLADA>\n"));
 }
-std::string picture(const std::string& name) {
-    return "<texture texture=\"" + name + "-t\" texcoord=\"UV\"/>";
+std::string picture(const std::string& name, const std::string& set = "UV", const std::string& extra = "") {
+    return "<texture texture=\"" + name + "-t\" texcoord=\"" + set + "\">" + extra + "</texture>";
 }
 const std::string kDiffuse = "<diffuse>" + picture("dot") + "</diffuse>";
 
@@ -63,7 +66,7 @@ TEST(ColladaMaterials, HavePicturesOfEmissionAndBumps) {
     EXPECT_EQ(bumped.textures[bumped.maps[rough.maps[RT_MAP_NORMAL]].texture].flags, RT_TEXTURE_LINEAR);
 }
 
-// COLLADA 1.5.0, "transparent": A_ONE is the alpha of a colour or picture, RGB_ZERO one minus the brightness.
+// COLLADA 1.5.0, "transparent": A_ONE is the alpha of a colour or picture, RGB_ONE their brightness, RGB_ZERO one minus that.
 TEST(ColladaMaterials, AreAsTransparentAsTheySay) {
     NEEDS_IMPORTER("a.dae");
     const Scratch folder;
@@ -83,13 +86,50 @@ TEST(ColladaMaterials, AreAsTransparentAsTheySay) {
     EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
     EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
     EXPECT_EQ(cut.materials.back().values.opacity, 1);
-    const Scene other = clear("A_ONE", picture("other"), "1");
-    ASSERT_EQ(other.warnings.size(), 1u);
-    EXPECT_NE(other.warnings[0].find("material 'm': left out the pictures of transparency"), std::string::npos)
-        << other.warnings[0];
-    const Scene inverted = clear("RGB_ZERO", picture("dot"), "1");
-    ASSERT_EQ(inverted.warnings.size(), 1u);
-    EXPECT_EQ(inverted.materials.back().values.alpha, RT_ALPHA_OPAQUE);
+    // Of another picture: "xyz" has the channels 120, 121 and 122, and no alpha, which is then 1.
+    const auto opacity = [&](const Scene& scene) {
+        const Material& m = scene.materials.back();
+        EXPECT_EQ(m.values.alpha, RT_ALPHA_BLEND);
+        const rt_u32 map = m.maps[RT_MAP_OPACITY];
+        return map == RT_NONE ? 256 : scene.texels[scene.textures[scene.maps[map].texture].first] & 255u;
+    };
+    const Scene other = clear("A_ONE", picture("other"), "0.5");
+    EXPECT_TRUE(other.warnings.empty()) << other.warnings.at(0);
+    EXPECT_EQ(opacity(other), 255u);
+    EXPECT_EQ(other.materials.back().values.opacity, 0.5f);
+    const Scene inverted = clear("RGB_ZERO", picture("other"), "1");
+    EXPECT_TRUE(inverted.warnings.empty()) << inverted.warnings.at(0);
+    EXPECT_EQ(opacity(inverted), 255u - 121u);
+    EXPECT_EQ(opacity(clear("RGB_ZERO", picture("dot"), "1")), 255u - 98u) << "of the picture of the colour, too";
+    EXPECT_EQ(opacity(clear("RGB_ONE", picture("other"), "1")), 120u);
+    for (const Scene& left : {clear("RGB_ZERO", picture("other"), "0.5"), clear("A_ZERO", picture("other"), "1")}) {
+        ASSERT_EQ(left.warnings.size(), 1u);
+        EXPECT_NE(left.warnings[0].find("material 'm': left out the pictures of transparency"), std::string::npos)
+            << left.warnings[0];
+        EXPECT_EQ(left.materials.back().values.alpha, RT_ALPHA_OPAQUE);
+    }
+}
+
+TEST(ColladaMaterials, PicturesLieInSetsAndAreTransformed) {
+    NEEDS_IMPORTER("a.dae");
+    const Scratch folder;
+    const std::string maya =
+        "<extra><technique profile=\"MAYA\"><repeatU>2</repeatU><offsetV>0.25</offsetV></technique></extra>";
+    const Scene scene = square(
+        folder, "<emission>" + picture("other", "TEX1") + "</emission><diffuse>" + picture("dot", "UV", maya) + "</diffuse>");
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.at(0);
+    const Material& m = scene.materials.back();
+    ASSERT_NE(m.maps[RT_MAP_COLOR], RT_NONE);
+    const rt_map color = scene.maps[m.maps[RT_MAP_COLOR]], emission = scene.maps[m.maps[RT_MAP_EMISSION]];
+    EXPECT_EQ(color.set, 0u);
+    EXPECT_EQ(color.matrix[0], 2);
+    EXPECT_EQ(color.matrix[4], 1);
+    EXPECT_EQ(color.matrix[5], 0.25f);
+    EXPECT_EQ(emission.set, 1u);
+    EXPECT_EQ(emission.matrix[0], 1);
+    ASSERT_EQ(scene.uvs2.size(), scene.uvs.size());
+    for (size_t i = 0; i < scene.uvs.size(); ++i) EXPECT_EQ(scene.uvs2[i], scene.uvs[i] + 5);
+    EXPECT_TRUE(square(folder, kDiffuse).uvs2.empty()) << "a set that no picture names";
 }
 
 TEST(ColladaMaterials, SayWhichPicturesAreLeftOut) {

@@ -44,22 +44,73 @@ TEST_P(FbxDetailForm, TakesTheSetOfCoordinatesThatATextureNames) {
     EXPECT_EQ(first_coordinates("detail", "default"), std::pair(10.f, 3.f)) << "the first set, if there is none of the name";
 }
 
-TEST_P(FbxDetailForm, WarnsThatTransformsOfTexturesAreLeftOut) {
-    const auto scene_with = [&](const std::vector<FbxNode>& properties) {
-        return import({geometry(1), model(2, "A"), material(3), texture(5, properties)},
+TEST_P(FbxDetailForm, LaysTexturesAsTheyAreTransformed) {
+    folder_.write("dot.ppm", "P6 1 1 255\nabc");
+    const auto scene_of = [&](FbxNode moved) {
+        moved.children.push_back(node("FileName", {text("dot.ppm")}));
+        return import({geometry(1, {uv_set(0, "plain", 0)}), model(2, "A"), material(3), moved},
                       {link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor")});
     };
-    EXPECT_TRUE(warns_of(scene_with({property("Scaling", {2, 2, 1})}), "the transforms of 1 textures are left out"));
-    EXPECT_FALSE(warns_of(scene_with({property("Scaling", {1, 1, 1})}), "transforms"));
-    const auto scene_with_blocks = [&](double scale) {
-        FbxNode moved = texture(5, {});
-        moved.children.push_back(node("ModelUVTranslation", {0.0, 0.0}));
-        moved.children.push_back(node("ModelUVScaling", {scale, 1.0}));
-        return import({geometry(1), model(2, "A"), material(3), moved},
-                      {link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor")});
+    // Where the point (u, v) of the surface lies on the picture.
+    const auto place = [&](FbxNode moved, double u, double v) {
+        const Scene scene = scene_of(std::move(moved));
+        EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.at(0);
+        const rt_u32 map = scene.materials.back().maps[RT_MAP_COLOR];
+        if (map == RT_NONE) return std::array<double, 2>{u, v};
+        const float* const m = scene.maps.at(map).matrix;
+        return std::array<double, 2>{m[0] * u + m[1] * v + m[2], m[3] * u + m[4] * v + m[5]};
     };
-    EXPECT_TRUE(warns_of(scene_with_blocks(2), "the transforms of 1 textures are left out"));
-    EXPECT_FALSE(warns_of(scene_with_blocks(1), "transforms"));
+    const auto expect = [&](const std::vector<FbxNode>& properties, double u, double v) {
+        const auto [x, y] = place(texture(5, properties), 0.5, 0.25);
+        EXPECT_NEAR(x, u, 1e-6);
+        EXPECT_NEAR(y, v, 1e-6);
+    };
+    expect({}, 0.5, 0.25);
+    EXPECT_NE(scene_of(texture(5, {property("Scaling", {1, 1, 1})})).materials.back().values.texture, RT_NONE);
+    expect({property("Scaling", {2, 3, 1})}, 1, 0.75);
+    // 3ds Max: tiling 2 and 3, offset 0.1 and 0.2; the picture's middle stays where it is but for the offset.
+    expect({property("Scaling", {2, 3, 1}), property("Translation", {0.5 - 0.6 * 2, 0.5 - 0.7 * 3, 0})}, (0.5 - 0.6) * 2 + 0.5,
+           (0.25 - 0.7) * 3 + 0.5);
+    expect({property("Rotation", {0, 0, 90})}, -0.25, 0.5);
+    expect({property("Rotation", {0, 0, 90}), property("TextureRotationPivot", {0.5, 0.5, 0})}, 0.75, 0.5);
+    expect({property("Scaling", {2, 2, 1}), property("TextureScalingPivot", {0.5, 0.5, 0})}, 0.5, 0);
+    expect({property("Scaling", {2, 1, 1}), property("Rotation", {0, 0, 90}), property("Translation", {0.125, 0, 0})},
+           -0.25 + 0.125, 1);
+    expect({node("P", {text("UVSwap"), text("bool"), text(""), text(""), whole(1)})}, 0.25, 0.5);
+    FbxNode blocks = texture(5, {});
+    blocks.children.push_back(node("ModelUVTranslation", {0.5, 0.0}));
+    blocks.children.push_back(node("ModelUVScaling", {2.0, 1.0}));
+    EXPECT_EQ(place(blocks, 0.5, 0.25), (std::array<double, 2>{1.5, 0.25}));
+    EXPECT_TRUE(warns_of(scene_of(texture(5, {property("Rotation", {30, 0, 0})})),
+                         "'M': left out the rotation about u and v of the texture 'T'"));
+}
+
+// Two textures of one material in two sets: the mesh has both, and each use names its own.
+TEST_P(FbxDetailForm, TexturesOfOneMaterialHaveSetsOfTheirOwn) {
+    folder_.write("dot.ppm", "P6 1 1 255\nabc");
+    const auto of_set = [](int64_t id, const std::string& set, double scale) {
+        FbxNode out = texture(id, {word("UVSet", set), property("Scaling", {scale, 1, 1})});
+        out.children.push_back(node("FileName", {text("dot.ppm")}));
+        return out;
+    };
+    const std::vector<FbxNode> links = {
+        link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor"), link(6, 3, "EmissiveColor"), link(7, 3, "NormalMap")};
+    const auto with = [&](const std::string& third) {
+        return import({geometry(1, {uv_set(0, "plain", 0), uv_set(1, "detail", 10), uv_set(2, "more", 20)}), model(2, "A"),
+                       material(3), of_set(5, "plain", 1), of_set(6, "detail", 3), of_set(7, third, 1)},
+                      links);
+    };
+    const Scene scene = with("plain");
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.at(0);
+    const Material& m = scene.materials.back();
+    ASSERT_EQ(scene.uvs2.size(), scene.uvs.size());
+    EXPECT_EQ(scene.uvs[2 * size_t(scene.triangles[3])], 3);
+    EXPECT_EQ(scene.uvs2[2 * size_t(scene.triangles[3])], 13);
+    const rt_map& emission = scene.maps.at(m.maps[RT_MAP_EMISSION]);
+    EXPECT_EQ(emission.set, 1u);
+    EXPECT_EQ(emission.matrix[0], 3);
+    EXPECT_EQ(scene.maps.at(m.maps[RT_MAP_NORMAL]).set, 0u);
+    EXPECT_TRUE(warns_of(with("more"), "the third set of coordinates, of the texture 'T'"));
 }
 
 TEST_P(FbxDetailForm, TakesWrapModesOfTextures) {
