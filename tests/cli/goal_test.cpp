@@ -78,11 +78,53 @@ TEST_F(Goal, IsRecorded) {
     EXPECT_NE((timed.out + timed.err).find("--time-budget"), std::string::npos) << timed.out << timed.err;
 }
 
+// The picture ends when all pixels have samples enough, and says how many they are.
+TEST_F(Goal, PixelsRest) {
+    const nlohmann::json coarse = stats({"--adaptive", ".2"}), fine = stats({"--adaptive", ".05"});
+    for (const auto& [run, bound] : {std::pair{&coarse, 0.2}, {&fine, 0.05}}) {
+        EXPECT_EQ((*run)["adaptive"], bound);
+        EXPECT_LE((*run)["estimated_error"], bound) << "no pixel has more of its light";
+        EXPECT_LT((*run)["mean_samples"], 0.8 * (*run)["samples"].get<double>());
+    }
+    EXPECT_GT(fine["mean_samples"], 4 * coarse["mean_samples"].get<double>());
+    EXPECT_LT(stats({"--adaptive", ".05", "--error", ".1"})["samples"], fine["samples"]);
+    EXPECT_EQ(stats({"--adaptive", ".05", "--spp", "50"})["samples"], 50) << "--spp is the most";
+    EXPECT_EQ(stats({"--adaptive", "0", "--spp", "50"}).contains("adaptive"), false);
+}
+
+TEST_F(Goal, ThePictureSaysHowGoodItIs) {
+    ASSERT_EQ(render({"--adaptive", ".2", "-o", scratch_.path("b.png")}).exit_code, 0);
+    const nlohmann::json run = nlohmann::json::parse(scratch_.read("s.json"));
+    const std::string png = scratch_.read("b.png");
+    const auto number = [&](const std::string& key) {
+        const size_t at = png.find(key + std::string(1, '\0'));
+        return at == std::string::npos ? -1 : std::stod(png.substr(at + key.size() + 1, 20));
+    };
+    EXPECT_NEAR(number("Samples"), run["mean_samples"].get<double>(), 1e-3);
+    EXPECT_NEAR(number("Estimated error"), run["estimated_error"].get<double>(), 1e-6);
+}
+
+// A picture of the same seconds is done, however many samples they were enough for.
+TEST_F(Goal, IsSkippedIfItIsTheSame) {
+    const auto tells = [&](const std::vector<std::string>& goal) {
+        std::vector<std::string> all = goal;
+        all.emplace_back("--skip-existing");
+        return render(all).err.find("were there already") != std::string::npos;
+    };
+    EXPECT_FALSE(tells({"--time-budget", ".1"}));
+    EXPECT_TRUE(tells({"--time-budget", ".1"}));
+    EXPECT_FALSE(tells({"--time-budget", ".2"}));
+    EXPECT_FALSE(tells({"--adaptive", ".2"}));
+    EXPECT_FALSE(tells({"--adaptive", ".3"}));
+    EXPECT_TRUE(tells({"--adaptive", ".3"}));
+}
+
 TEST_F(Goal, ThatNobodyCanKeepIsRefused) {
     for (const std::vector<std::string>& words :
          std::vector<std::vector<std::string>>{{"--error", ".1", "--tracer", "iterative"},
                                                {"--error", ".1", "--aov", "error"},
                                                {"--error", "0"},
+                                               {"--adaptive", "-1"},
                                                {"--time-budget", "-1"},
                                                {"--error", ".1", "--repeat", "2"},
                                                {"--time-budget", "1", "--repeat", "2"}})

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "render/film/film_noise.hpp"
 #include "ui/session/figures.hpp"
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/theme.hpp"
@@ -184,6 +185,9 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
             picture->reduced ? "pixels of the picture, fewer than asked for while something moves" : "pixels of the picture");
         std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
         status_item(text, colors::kDim, "samples a pixel so far; more are added while the camera rests");
+        if (adaptive_bound(s) > 0)
+            status_item("adaptive, biased a little", colors::kAmber,
+                        "pixels rest when their samples are alike: the setting `Adaptive`");
         if (const uint64_t dropped = picture->main.stats.dropped; dropped > 0)
             status_item(
                 count_text(static_cast<double>(dropped)) + " " + noun(dropped, "ray") + " dropped", colors::kAmber,

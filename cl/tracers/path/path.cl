@@ -19,7 +19,7 @@ trace_path(const constant rt_frame *frame, const uint first_group, global float4
         uint not_finite = 0;
         rt_path paths = rt_no_paths(frame);
         for (uint next = 0;;) {
-            rt_refill(frame, origin, &paths, &next);
+            rt_refill(frame, film, origin, &paths, &next);
             if (!rt_any(paths.alive)) break;
             const vmask on = rt_trace_segment(&ctx, frame, &paths, distances + (size_t)number * rays, &tally);
             rt_end_paths(frame, &paths, rt_bits(paths.alive & ~on), film, &not_finite);

@@ -67,9 +67,18 @@ RT_INLINE rt_sampler rt_sampler_of(const constant rt_frame *frame, const rt_path
     return s;
 }
 
-/* Begins a path in each lane whose path has ended: of the next sample of its pixel, or of the next pixel of the packet. *next:
- * the first slot that no lane has had. */
-RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *p, uint *next)
+/* The same, and whether the pixel takes samples in this launch (adaptive sampling: sum.h). */
+RT_INLINE bool rt_working_pixel_of_slot(const constant rt_frame *frame, const global float4 *film, uint2 origin, uint slot, uint2 *pixel)
+{
+    if (!rt_pixel_of_slot(frame, origin, slot, pixel)) return false;
+    if (frame->adds == 0u || !(RT_SETTING(frame, adaptive) > 0.0f)) return true;
+    const uint deviations = as_uint(film[(size_t)(frame->height + pixel->y) * frame->width + pixel->x].w);
+    return !(deviations >= 0x80000000u && deviations <= 0xff800000u); /* negative, and -0, but a number */
+}
+
+/* Begins a path in each lane whose path has ended: of the next sample of its pixel, or of the next pixel of the packet that takes
+ * samples. *next: the first slot that no lane has had. film: of the picture; 0 if all slots have been had. */
+RT_INLINE void rt_refill(const constant rt_frame *frame, const global float4 *film, uint2 origin, rt_path *p, uint *next)
 {
     const uint slots = RT_BLOCKS(frame) * RT_LANES;
     int slot[RT_LANES], sample[RT_LANES], pixel[RT_LANES], xs[RT_LANES], ys[RT_LANES];
@@ -85,7 +94,7 @@ RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *
         ++sample[l];
         if (sample[l] >= (int)(frame->sample + frame->samples)) {
             sample[l] = (int)frame->sample;
-            while (*next < slots && !rt_pixel_of_slot(frame, origin, *next, &at)) ++*next;
+            while (*next < slots && !rt_working_pixel_of_slot(frame, film, origin, *next, &at)) ++*next;
             slot[l] = *next < slots ? (int)(*next)++ : -1;
             if (slot[l] < 0) continue;
         }

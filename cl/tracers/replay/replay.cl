@@ -24,7 +24,7 @@ replay_samples(const constant rt_frame *frame, const uint x, const uint y, globa
     /* Each lane is as if it had just ended the sample before its own, and no other pixel follows. */
     paths.sample = rt_vint((int)(frame->sample + first) - 1) + rt_lane_index();
     uint next = RT_BLOCKS(frame) * RT_LANES;
-    rt_refill(frame, (uint2)(x, y), &paths, &next);
+    rt_refill(frame, 0, (uint2)(x, y), &paths, &next);
     const uint begun = rt_bits(paths.alive);
     rt_record_begins(&recorder, begun, paths.origin, paths.weight);
     while (rt_any(paths.alive)) paths.alive = rt_trace_segment(&ctx, frame, &paths, distances, &tally);

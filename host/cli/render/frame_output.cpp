@@ -6,6 +6,7 @@
 #include "base/digest.hpp"
 #include "base/elapsed.hpp"
 #include "base/host_name.hpp"
+#include "base/numbers.hpp"
 #include "cli/render/frame_record.hpp"
 #include "cli/render/picture_digest.hpp"
 
@@ -36,6 +37,10 @@ void write_frame(const RenderOptions& options, const FrameFile& file, FramePixel
     const std::string command = render_words(options, file.moves ? std::optional<int>(file.frame) : std::nullopt);
     PictureNotes notes = picture_notes();
     notes.texts.insert(notes.texts.end(), {{"Command", command}, {"Digest", file.digest}});
+    if (file.noise) {
+        notes.texts.emplace_back("Samples", exact_text(float(file.noise->mean_samples)));
+        notes.texts.emplace_back("Estimated error", exact_text(float(file.noise->error)));
+    }
     // A frame that others wait for, or that took long, must outlast a power cut.
     notes.sync = file.has_record || !options.checkpoint.empty() || !options.resume.empty();
     std::string digest = writes_display(file.path) ? pixel_digest(pixels.display) : pixel_digest(pixels.values);

@@ -1,10 +1,12 @@
 // frame_output.hpp -- writes the file of a frame, with its notes and its record.
 #pragma once
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/film/image_io.hpp"
 
 namespace clarity {
@@ -21,6 +23,7 @@ struct FrameFile {
     bool moves = false;       // each frame is another picture
     bool has_record = false;  // which is written after the picture
     unsigned samples = 0, of_checkpoint = 0;
+    std::optional<FilmNoise> noise;  // of `path`
     std::string device;
     std::chrono::steady_clock::time_point begin;  // of the work on this frame
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elapsed.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 
 namespace clarity {
@@ -15,23 +16,12 @@ constexpr unsigned kUnlimited = 1u << 30;
 
 }  // namespace
 
-double estimated_error(const FloatImage& sums) {
-    const size_t pixels = sums.pixels.size() / 8;  // two planes of four channels
-    const float* const sum = sums.pixels.data();
-    const float* const rest = sum + 4 * pixels;
-    double squares = 0, light = 0;
-    for (size_t i = 0; i < pixels; ++i) {
-        const double count = sum[4 * i + 3];
-        if (count < 2) return INFINITY;
-        squares += rest[4 * i + 3] / ((count - 1) * count);
-        light += (0.2126 * sum[4 * i] + 0.7152 * sum[4 * i + 1] + 0.0722 * sum[4 * i + 2]) / count;
-    }
-    if (squares == 0) return 0;
-    return std::sqrt(squares * double(pixels)) / light;
-}
-
 bool has_goal(const RenderOptions& options) {
     return options.error > 0 || options.time_budget_s > 0;
+}
+
+bool ends_by_itself(const RenderOptions& options, const Settings& settings) {
+    return has_goal(options) || adaptive_bound(settings) > 0;
 }
 
 bool states_samples(const RenderOptions& options) {
@@ -46,14 +36,13 @@ void PictureGoal::begin(unsigned first) {
     begin_ = std::chrono::steady_clock::now();
     first_ = first;
     next_ = std::max(kFewest, first);
-    reached_ = -1;
 }
 
 unsigned PictureGoal::more(MultiFrameRenderer& frames, unsigned samples) {
     const unsigned in_time = more_in_time(samples);
     // Ranks differ in time and agree in the error: the first one's word counts.
     const double time = ranks_ ? ranks_->gather(in_time)[0] : in_time;
-    return time == 0 ? 0 : std::min(unsigned(time), more_for_error(frames, samples));
+    return time == 0 ? 0 : std::min({unsigned(time), more_for_error(frames, samples), more_for_pixels(frames, samples)});
 }
 
 unsigned PictureGoal::more_in_time(unsigned samples) const {
@@ -67,14 +56,24 @@ unsigned PictureGoal::more_in_time(unsigned samples) const {
 unsigned PictureGoal::more_for_error(MultiFrameRenderer& frames, unsigned samples) {
     if (error_ == 0) return kUnlimited;
     if (samples >= next_) {
-        reached_ = estimated_error(frames.read_sums());
-        if (ranks_) reached_ = ranks_->gather(reached_)[0];  // only the first one has all pixels
-        if (reached_ <= error_) return 0;
+        double reached = film_noise(frames.read_sums()).error;
+        if (ranks_) reached = ranks_->gather(reached)[0];  // only the first one has all pixels
+        if (reached <= error_) return 0;
         // Errors of independent samples fall with the root of their number.
-        const double wanted = samples * std::pow(reached_ / error_, 2);
+        const double wanted = samples * std::pow(reached / error_, 2);
         next_ = unsigned(std::clamp(wanted, samples + 1.0, 2.0 * samples));
     }
     return next_ - samples;
+}
+
+// Until all pixels would rest.
+unsigned PictureGoal::more_for_pixels(MultiFrameRenderer& frames, unsigned samples) const {
+    if (!(adaptive_ > 0)) return kUnlimited;
+    if (is_look(samples)) {
+        FloatImage sums = frames.read_sums();
+        if (mark_resting(sums, adaptive_, samples) == 0) return 0;
+    }
+    return next_look(samples) - samples;
 }
 
 }  // namespace clarity

@@ -18,17 +18,6 @@ constexpr double kBatchMs = 100;
 // saved then. The program's end may wait that long (interrupt.hpp).
 constexpr double kWaitedForMs = 400;
 
-void add_shares(std::vector<DeviceShare>& sum, const std::vector<DeviceShare>& more) {
-    if (sum.size() != more.size()) sum.assign(more.size(), {});
-    for (size_t i = 0; i < more.size(); ++i) {
-        DeviceShare total = more[i];
-        total.device_ms += sum[i].device_ms;
-        total.wall_ms += sum[i].wall_ms;
-        total.launches += sum[i].launches;
-        sum[i] = total;
-    }
-}
-
 }  // namespace
 
 FrameStats PictureTracer::trace_samples(const Picture& picture, unsigned first, unsigned how_many, bool count,

@@ -35,6 +35,7 @@
 #include "device/kernel_watch.hpp"
 #include "mpi/mpi_ranks.hpp"
 #include "plugin/library_watch.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "render/view/size_note.hpp"
@@ -57,7 +58,8 @@ class RenderJob {
           plugins_(plugins),
           bar_(options_.quiet || !is_first()),
           scene_(plugins, options_, words_, bar_) {
-        if (has_goal(options_) && !states_samples(options_)) words_.settings.spp = int(find_setting("spp")->max);
+        if (ends_by_itself(options_, settings_) && !states_samples(options_))
+            words_.settings.spp = int(find_setting("spp")->max);
         if (!options_.crop.empty()) crop_picture(words_.settings, options_.crop);
         stats_.files = options_.scene.files;
         stats_.settings = settings_;
@@ -324,7 +326,8 @@ class RenderJob {
                                 progress);
         const bool whole = traced.whole;
         stats_.samples = traced.samples;
-        stats_.estimated_error = goal_.reached();
+        stats_.noise.reset();
+        if (whole && frames.planes() > 1) stats_.noise = film_noise(frames.read_sums());
         if (stats_.reference && traced.exact && traced.samples > 0) stats_.reference->offer(frames, traced.samples, true);
         bar_.clear();
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
@@ -376,7 +379,7 @@ class RenderJob {
                 if (checkpoint.saves()) checkpoint.offer(frames, samples);
                 if (stats_.reference) stats_.reference->offer(frames, samples, false);
             };
-        if (has_goal(options_)) pass.more = [&](unsigned samples) { return goal_.more(frames, samples); };
+        if (ends_by_itself(options_, settings_)) pass.more = [&](unsigned samples) { return goal_.more(frames, samples); };
         for (;;) {
             pass.first = resumed_ = checkpoint.resume(frames, prepared_, settings_);
             if (stats_.reference) stats_.reference->begin();
@@ -403,7 +406,7 @@ class RenderJob {
         if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
         FrameFile file;
         file.path = path, file.digest = frame.digest, file.frame = frame.number, file.moves = moving_;
-        file.samples = stats_.samples, file.of_checkpoint = resumed_;
+        file.samples = stats_.samples, file.of_checkpoint = resumed_, file.noise = stats_.noise;
         file.device = devices_name(stats_.devices);
         file.has_record = records();
         file.begin = frame.begin;
@@ -411,7 +414,8 @@ class RenderJob {
         char times[96] = "";
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
-        const std::string samples = has_goal(options_) ? "  " + plural(stats_.samples, "sample") + " a pixel" : "";
+        const std::string samples =
+            ends_by_itself(options_, settings_) ? "  " + plural(stats_.samples, "sample") + " a pixel" : "";
         log(LogLevel::info, path + times + samples);
     }
 
@@ -449,7 +453,7 @@ class RenderJob {
     unsigned resumed_ = 0;  // samples of the picture that a checkpoint had
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;
-    PictureGoal goal_{options_, mpi_};
+    PictureGoal goal_{options_, settings_, mpi_};
     std::unique_ptr<MotionBlur> blur_;  // nullptr: all samples of a picture are at one time
     RenderStats stats_;
 };

@@ -8,6 +8,7 @@
 #include "cli/render/frame_record.hpp"
 #include "cli/render/picture_checkpoint.hpp"
 #include "cli/render/picture_goal.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/film/image_io.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/tracer_choice.hpp"
@@ -58,6 +59,9 @@ void check_render_options(const RenderOptions& options, const Settings& settings
     if (options.error > 0 && (picture_of_tracer(settings.tracer) != kPathPicture || !find_aov(settings.aov).is_color()))
         throw Error(Exit::usage,
                     "--error: only colours of the tracer `path` have an estimated error; add --tracer path, or take --spp N");
+    if (options.mpi && adaptive_bound(settings) > 0)
+        throw Error(Exit::usage,
+                    "--adaptive: looks at the whole picture, of which each rank of --mpi has a part; leave it out");
     check_pose(options.pose);
     if (options.skip_existing && options.watch)
         throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");

@@ -139,7 +139,8 @@ std::string stats_json(const RenderStats& stats) {
             {"x", crop.x}, {"y", crop.y}, {"of", std::to_string(crop.whole_width) + "x" + std::to_string(crop.whole_height)}};
     json["spp"] = stats.settings.spp;
     json["samples"] = stats.samples;
-    if (stats.estimated_error >= 0) json["estimated_error"] = figure(stats.estimated_error);
+    if (stats.noise) json["estimated_error"] = figure(stats.noise->error), json["mean_samples"] = stats.noise->mean_samples;
+    if (const double bound = adaptive_bound(stats.settings); bound > 0) json["adaptive"] = bound;
     json["shutter"] = stats.settings.shutter;
     json["aov"] = used.aov;
     json["shadows"] = stats.settings.shadows;

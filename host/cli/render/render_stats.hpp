@@ -1,9 +1,11 @@
 // render_stats.hpp -- statistics of `clarity render --stats`.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/render/reference_run.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/frame/frame_stats.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/multi/ranks.hpp"
@@ -33,7 +35,7 @@ struct RenderStats {
     double share_ms = 0, wait_to_trace_ms = 0, wait_traced_ms = 0, collect_ms = 0;
     std::shared_ptr<ReferenceRun> reference;  // null: there is none to compare with
     unsigned samples = 0;                     // of a pixel of the last picture
-    double estimated_error = -1;              // of the last picture; negative: --error did not ask
+    std::optional<FilmNoise> noise;           // of the last picture, if `path` has traced it
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, not_finite = 0, overflowed = 0;  // of one frame
 };
 

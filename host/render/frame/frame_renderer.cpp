@@ -13,6 +13,7 @@
 #include "render/film/bands.hpp"
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/launch/frame_constants.hpp"
 #include "render/settings/aov.hpp"
 #include "render/tracers/tracer.hpp"
@@ -82,6 +83,7 @@ struct FrameRenderer::Impl {
     Layout layout;                          // of the picture in the film
     std::vector<rt_u32> rows;               // work-group rows that are traced; counters and distances are stored in this order
     unsigned begun = 0;                     // work-groups of these rows that earlier calls have traced
+    std::vector<unsigned> resting;          // of each row of work-groups: pixels that rest; empty: none
     // The program and scene of `tracer` and of the launcher's pace.
     std::shared_ptr<const TraceProgram> program;
     std::shared_ptr<const DeviceScene> bound;
@@ -217,8 +219,24 @@ struct FrameRenderer::Impl {
         return bands;
     }
     GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
-    // Pixels that this call traces.
-    uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
+    // Pixels to which this call adds samples.
+    uint64_t pixels() const {
+        const size_t first = begun / layout.groups_x(width);
+        uint64_t count = group_rows().pixels(first);
+        for (size_t i = first; i < rows.size() && !resting.empty(); ++i) count -= resting[rows[i]];
+        return count;
+    }
+    // Counts the pixels of these rows that rest: film_noise.hpp.
+    void count_resting(const FloatImage& sums, const GroupRows& written) {
+        resting.resize(layout.groups_y(height));
+        for (const rt_u32 row : written.rows) {
+            const size_t from = size_t(row) * written.row_pixels(),
+                         end = std::min(from + written.row_pixels(), size_t(width) * height);
+            const float* const deviations = sums.pixels.data() + size_t(width) * height * 4;
+            resting[row] = 0;
+            for (size_t i = from; i < end; ++i) resting[row] += is_resting(deviations[4 * i + 3]);
+        }
+    }
     void end_sum(FrameStats& stats) {
         stats.kernels.emplace_back();
         const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
@@ -257,6 +275,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
         const timeline::Scope span("frame", "trace samples");
         const Impl::Picture picture{prepared, settings, view, shared, progress};
         im.begin(picture);
+        if (samples.first == 0) im.resting.clear();
         // If the last picture was displayed, tone mapping and copy are queued right behind the trace, so that the host waits
         // once instead of twice.
         im.relay.forget_begun();
@@ -367,7 +386,9 @@ void FrameRenderer::write_sums(const Prepared& prepared, const Settings& setting
         im.begin({prepared, settings, View{}, shared, never_cancelled});
         const std::vector<rt_u32> rows(im.rows.begin() + std::ptrdiff_t(shared ? shared->begin : 0), im.rows.end());
         const size_t row_bytes = im.film_bytes(im.width);
-        const std::vector<Band> bands = GroupRows{im.width, im.height, im.layout.row_height(), rows}.bands();
+        const GroupRows written{im.width, im.height, im.layout.row_height(), rows};
+        const std::vector<Band> bands = written.bands();
+        if (im.planes() > 1) im.count_resting(sums, written);
         for (unsigned plane = 0; plane < im.planes(); ++plane)
             for (const Band& band : im.in_plane(plane, bands))
                 im.device->queue().enqueueWriteBuffer(

@@ -40,6 +40,17 @@ void add_stats(FrameStats& sum, const FrameStats& more) {
     for (const KernelTime& time : more.kernels) time_of(sum.kernels, time.name).ms += time.ms;
 }
 
+void add_shares(std::vector<DeviceShare>& sum, const std::vector<DeviceShare>& more) {
+    if (sum.size() != more.size()) sum.assign(more.size(), {});
+    for (size_t i = 0; i < more.size(); ++i) {
+        DeviceShare total = more[i];
+        total.device_ms += sum[i].device_ms;
+        total.wall_ms += sum[i].wall_ms;
+        total.launches += sum[i].launches;
+        sum[i] = total;
+    }
+}
+
 void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one) {
     for (const KernelTime& time : one) {
         double& ms = time_of(all, time.name).ms;

@@ -40,6 +40,8 @@ std::string not_finite_text(uint64_t samples);
 void add_rays(FrameStats& sum, const FrameStats& more);
 // Adds ray counts, launches and times of work that ran one after the other. Times of kernels are added by name.
 void add_stats(FrameStats& sum, const FrameStats& more);
+// Adds the parts of the same devices in one piece of work after the other. Rows are those of the last piece.
+void add_shares(std::vector<DeviceShare>& sum, const std::vector<DeviceShare>& more);
 // Combines times of devices that ran side by side: the slowest device's time counts, by kernel name.
 void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one);
 

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/part_of_progress.hpp"
 #include "device/cl_errors.hpp"
 #include "render/film/film.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/film/pinned_memory_pool.hpp"
 #include "render/frame/frame_stats.hpp"
 #include "render/kernels/program_cache.hpp"
@@ -34,6 +36,21 @@ struct MultiFrameRenderer::Impl {
         FloatImage image{width, height, channels, {}};
         image.pixels.resize(size_t(width) * height * channels);
         return image;
+    }
+
+    FrameStats trace(const Settings& settings, const View& view, unsigned sample, unsigned end, bool count_rays,
+                     Progress& progress, const std::function<void()>& meanwhile) {
+        if (shared) {
+            if (meanwhile) meanwhile();
+            return shared->trace(prepared, settings, view, sample, end, count_rays, progress, place_for_display(settings));
+        }
+        samples = sample;
+        const auto complete = [&](unsigned done) {
+            samples = done;
+            return done == end || progress.report(float(done - sample) / float(end - sample));
+        };
+        return alone->trace(*prepared->first(), settings, view, {sample, end - sample, complete}, count_rays, progress, nullptr,
+                            meanwhile);
     }
 
     // Completes the picture of rank 0.
@@ -85,17 +102,24 @@ FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>&
     im.width = unsigned(settings.width);
     im.height = unsigned(settings.height);
     const unsigned end = sample + samples;
-    if (im.shared) {
-        if (meanwhile) meanwhile();
-        return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress, im.place_for_display(settings));
+    // With `adaptive` the picture depends on the first samples of all of its pixels, and on nothing else that is traced.
+    const double bound = planes() > 1 ? adaptive_bound(settings) : 0;
+    if (bound == 0) return im.trace(settings, view, sample, end, count_rays, progress, meanwhile);
+    FrameStats all;
+    for (unsigned first = sample; first < end;) {
+        if (is_look(first)) {
+            auto sums = std::make_shared<FloatImage>(read_sums());
+            mark_resting(*sums, bound, first);
+            resume(prepared, settings, std::move(sums), first);
+        }
+        const unsigned until = std::min(end, next_look(first));
+        PartOf part(progress, double(first - sample) / samples, double(until - first) / samples);
+        const FrameStats some = im.trace(settings, view, first, until, count_rays, part, first == sample ? meanwhile : nullptr);
+        add_stats(all, some);
+        add_shares(all.devices, some.devices);
+        first = until;
     }
-    im.samples = sample;
-    const auto complete = [&](unsigned done) {
-        im.samples = done;
-        return done == end || progress.report(float(done - sample) / float(samples));
-    };
-    return im.alone->trace(*prepared->first(), settings, view, {sample, samples, complete}, count_rays, progress, nullptr,
-                           meanwhile);
+    return all;
 }
 
 unsigned MultiFrameRenderer::planes() const {

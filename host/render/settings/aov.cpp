@@ -65,9 +65,9 @@ Aov generations() {
     return aov;
 }
 
-// Of a sample; of one sample it is not known.
+// Of a sample; of one sample it is not known. The sign says whether the pixel rests.
 float variance(const float* sum, const float* rest) {
-    return sum[3] > 1 ? rest[3] / (sum[3] - 1) : 0.0f;
+    return sum[3] > 1 ? std::fabs(rest[3]) / (sum[3] - 1) : 0.0f;
 }
 
 // What the tracer `path` knows of its noise.

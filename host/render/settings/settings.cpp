@@ -215,6 +215,12 @@ std::vector<Setting> settings_of_paths() {
                "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and those of "
                "its neighbours too (deviation half a pixel, cut at one and a half)",
                {"box", "gaussian"}, Effect::frame, &Settings::filter),
+        kernel_number(
+            "adaptive", "Adaptive",
+            "of `path`: pixels rest once their standard error, estimated, is at most this share of their light (of the "
+            "picture's mean light, where they are darker), so that samples go where noise is; 0: none rests. Pictures are "
+            "then biased a little",
+            0, 1, 0.0),
         kernel_number("only_bounce", "Only bounce",
                       "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all", -1,
                       kMostDepth, -1),
