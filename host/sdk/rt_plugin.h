@@ -170,6 +170,8 @@ typedef struct rt_volume_sink {
     void *ctx;
     void (*box)(void *ctx, const float lo[3], const float hi[3]);
     void (*sphere)(void *ctx, const float center[3], float radius);
+    /* Appended: ask RT_HAS first. halves: three vectors from the centre to the middles of three sides. */
+    void (*oriented_box)(void *ctx, const float center[3], const float halves[9]);
 } rt_volume_sink;
 
 /* A node of a binary tree over the primitives of one group. 32 B; it never grows. */

@@ -162,6 +162,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #ifdef BROKEN_STOPS_AT_FIRST_LEAF
             if (rt_any(RT_MASK(hit->prim >= rt_vint(0)))) return;
 #endif
+#if defined(BROKEN_ALL_STOPS) && defined(RT_ALL_HITS)
+            if (rt_any(RT_MASK(hit->list->prim[0] >= rt_vint(0)))) return;
+#endif
 #if RT_ANY_HIT
 #ifdef BROKEN_ANY_RETURNS_EARLY
             if (rt_any(RT_MASK(hit->t < rt_vfloat(0.0f)))) return;

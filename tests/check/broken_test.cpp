@@ -100,6 +100,7 @@ const Defect kDefects[] = {
     {"ignores_transform", "hits.instances", {"wrong"}},
     {"writes_t", "hits.random", {"wrong"}},
     {"stops_at_first_leaf", "hits.random", {"behind the nearest"}},
+    {"all_stops", "hits.all", {"is not listed", "does not stop at a hit"}},
     {"reads_beyond_slot", "hits.random", {"crashed (segmentation fault", "beyond the end of slot broken_nodes"}},
     {"small_stack", "hits.stack", {"stack was full"}},
     {"forgets_deferred", "hits.stack", {"hit nothing", "has not come back from it"}},

@@ -88,9 +88,12 @@ void add_stadium(uint64_t triangles, Scene& scene) {
     };
     const unsigned tiers = 24;
     const auto parts = static_cast<unsigned>(std::clamp<uint64_t>(triangles / (4 * tiers), 12, 4096));
+    // The pitch is two triangles, and its corners are under the stands. A fan of slivers around the middle would put hundreds
+    // of boxes over one another exactly where the camera looks.
+    const auto corner = [&](double x, double z) { return middle + size * Vec{52 * x, 0, 40 * z}; };
+    mesh.quad(corner(-1, -1), corner(-1, 1), corner(1, 1), corner(1, -1));
     for (unsigned i = 0; i < parts; ++i) {
         const double a = kTurn * i / parts, b = kTurn * (i + 1) / parts;
-        mesh.triangle(mesh.vertex(at(0, 0, 0)), mesh.vertex(at(40, b, 0)), mesh.vertex(at(40, a, 0)));
         for (unsigned t = 0; t < tiers; ++t) {  // a step's front and its seat
             const double r = 40 + 2.5 * t, h = 1.2 * t;
             mesh.quad(at(r, a, h), at(r, b, h), at(r, b, h + 1.2), at(r, a, h + 1.2));

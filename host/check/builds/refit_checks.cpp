@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 
+#include "check/builds/parameter_tries.hpp"
 #include "check/builds/refit_run.hpp"
 #include "check/builds/result_checks.hpp"
 #include "check/scenes.hpp"
@@ -92,7 +93,20 @@ class RefitCheck {
                 if (large && quick_ && movement.move != as_wave) continue;
                 const std::string what = "scene `" + scene.name + "`, " + movement.name;
                 step("refitting " + what, kRefitLimit_s);
-                if (const std::string why = fault(scene, movement); !why.empty()) return Outcome::failed(what + ": " + why);
+                if (const std::string why = fault(scene, movement, params_); !why.empty())
+                    return Outcome::failed(what + ": " + why);
+                ++refits;
+            }
+        // Each choice may have volumes of its own.
+        const NamedScene& small = scenes.back();
+        for (const ParameterValues& params : parameter_tries(plugin_, 0))
+            for (const Movement& movement : movements()) {
+                if (movement.move != as_wave && movement.move != at_point && quick_) continue;
+                const std::string what =
+                    "with " + choice_text(plugin_, params) + ", scene `" + small.name + "`, " + movement.name;
+                step("refitting " + what, kRefitLimit_s);
+                if (const std::string why = fault(small, movement, params); !why.empty())
+                    return Outcome::failed(what + ": " + why);
                 ++refits;
             }
         for (const NamedScene& scene : scenes) {
@@ -113,12 +127,12 @@ class RefitCheck {
     }
 
     // Builds a scene, moves it, refits it, and looks at the volumes.
-    std::string fault(const NamedScene& scene, const Movement& movement) {
+    std::string fault(const NamedScene& scene, const Movement& movement, const ParameterValues& params) {
         const BuildCase rest(scene.name, scene.scene), moved(scene.name, movement.move(scene.scene));
         if (moved.scene().prims.size() != rest.scene().prims.size()) return {};  // flattened in another way
-        const BuildRun built = rest.run(plugin_, params_, Schedule::program);
+        const BuildRun built = rest.run(plugin_, params, Schedule::program);
         if (!built.why.empty()) return built.why;
-        RefitRun run = run_refit(plugin_, params_, built.result, moved.scene(), all_groups(rest), Schedule::program);
+        RefitRun run = run_refit(plugin_, params, built.result, moved.scene(), all_groups(rest), Schedule::program);
         if (std::string why = failure_of(run); !why.empty()) return why;
         if (!plugin_.accel->levels) return {};
         std::string why = loose_bounds(plugin_, moved.scene(), run.result);

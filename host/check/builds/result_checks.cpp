@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 
 #include "base/memory_text.hpp"
@@ -29,11 +30,26 @@ std::string name_of(rt_u32 ref) {
     return kind_of(ref) + std::to_string(RT_REF_INDEX(ref));
 }
 
-// A box or a sphere that `levels` showed.
+// A box, a sphere or an oriented box that `levels` showed.
 struct Volume {
-    std::array<float, 6> box{};  // lo, hi; a sphere: centre, radius, 0, 0
-    bool sphere = false;
-    bool operator<(const Volume& o) const { return sphere != o.sphere ? sphere < o.sphere : box < o.box; }
+    std::array<float, 6> box{};  // lo, hi; a sphere: centre, radius, 0, 0; an oriented box: -lengths, lengths of `halves`
+    bool sphere = false, oriented = false;
+    std::array<float, 3> center{};  // these two are of oriented boxes
+    std::array<float, 9> halves{};
+    bool operator<(const Volume& o) const {
+        return std::tie(sphere, box, center, halves) < std::tie(o.sphere, o.box, o.center, o.halves);
+    }
+    // The coordinates of a point along the volume's own axes.
+    std::array<double, 3> inward(const float* p) const {
+        if (!oriented) return {p[0], p[1], p[2]};
+        std::array<double, 3> at{};
+        for (int a = 0; a < 3; ++a) {
+            // Lengths near 0 have no direction: whether such a point is inside the plane is for the hits to tell.
+            if (!(box[3 + a] > 0)) continue;
+            for (int k = 0; k < 3; ++k) at[a] += (double(p[k]) - center[k]) * halves[3 * a + k] / box[3 + a];
+        }
+        return at;
+    }
     bool sound() const {
         if (sphere) {
             for (int k = 0; k < 3; ++k)
@@ -46,8 +62,12 @@ struct Volume {
     }
     bool holds(const float* p) const {
         if (!sphere) {
+            const std::array<double, 3> at = inward(p);
+            // The axes of an oriented box are shown rounded, and traversals compute with them in single precision: 1e-5 of its
+            // size.
+            const double slack = oriented ? 1e-5 * std::max({box[3], box[4], box[5]}) : 0;
             for (int k = 0; k < 3; ++k)
-                if (!(p[k] >= box[k] && p[k] <= box[k + 3])) return false;
+                if (!(at[k] >= box[k] - slack && at[k] <= box[k + 3] + slack)) return false;
             return true;
         }
         double d2 = 0;
@@ -68,7 +88,8 @@ struct Volume {
             for (int k = 0; k < 3; ++k) d2 += (double(p[k]) - box[k]) * (double(p[k]) - box[k]);
             return std::sqrt(d2) - box[3];
         }
-        for (int k = 0; k < 3; ++k) most = std::max({most, double(box[k]) - p[k], double(p[k]) - box[k + 3]});
+        const std::array<double, 3> at = inward(p);
+        for (int k = 0; k < 3; ++k) most = std::max({most, double(box[k]) - at[k], at[k] - box[k + 3]});
         return most;
     }
 };
@@ -93,6 +114,18 @@ std::vector<Volume> volumes_of(const rt_plugin& plugin, const rt_built& built, r
         v.sphere = true;
         std::copy_n(center, 3, v.box.begin());
         v.box[3] = radius;
+        static_cast<Collected*>(ctx)->volumes.push_back(v);
+    };
+    sink.oriented_box = [](void* ctx, const float center[3], const float halves[9]) {
+        Volume v;
+        v.oriented = true;
+        std::copy_n(center, 3, v.center.begin());
+        std::copy_n(halves, 9, v.halves.begin());
+        for (int a = 0; a < 3; ++a) {
+            const float* const h = halves + 3 * a;
+            v.box[3 + a] = std::hypot(h[0], h[1], h[2]);
+            v.box[a] = -v.box[3 + a];
+        }
         static_cast<Collected*>(ctx)->volumes.push_back(v);
     };
     Progress progress;

@@ -151,6 +151,11 @@ Traced CheckedScene::count(const Variant& variant, const std::vector<rt_ray>& ra
     return trace(*prepared(variant), rays, query);
 }
 
+AllHits CheckedScene::trace_all(const Variant& variant, const std::vector<rt_ray>& rays, bool count_only) {
+    Progress progress;
+    return queries_->trace_all(*prepared(variant), rays, {count_only, true}, progress);
+}
+
 Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, RayQuery query) {
     Traced traced;
     query.quiet = true;  // the checks say it

@@ -55,6 +55,7 @@ class CheckedScene {
     Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
     // The same by another program, which also fills in what rays count.
     Traced count(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
+    AllHits trace_all(const Variant& variant, const std::vector<rt_ray>& rays, bool count_only);
     // For scenes that move on the device: the structure as it was built, what rays need of it, and rays in a copy of that.
     const std::shared_ptr<const AccelData>& accel() const { return accel_; }
     std::shared_ptr<const Prepared> prepared(const Variant& variant);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "check/hits/all_hits_checks.hpp"
 #include "check/hits/bench.hpp"
 #include "check/hits/built_checks.hpp"
 #include "check/hits/device_hits.hpp"
@@ -113,6 +114,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
     const RaySet crowd = crowd_ray_sets(BuildScene(), 0).front();
     checks.push_back({crowd.name, crowd.tried, [=](const Step& step) { return crowd_check(input, step); }});
     for (Check& check : built_checks(input)) checks.push_back(std::move(check));
+    checks.push_back(all_hits_check(input));
     checks.push_back(device_hits_check(plugin, layout, open));
     return checks;
 }

@@ -33,6 +33,21 @@ void add_box(void* ctx, const float lo[3], const float hi[3]) {
     sink.volumes.boxes.push_back(corners);
 }
 
+void add_oriented_box(void* ctx, const float center[3], const float halves[9]) {
+    Sink& sink = *static_cast<Sink*>(ctx);
+    if (sink.full()) return;
+    std::array<std::array<float, 3>, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        float p[3];
+        for (int k = 0; k < 3; ++k) {
+            p[k] = center[k];
+            for (int a = 0; a < 3; ++a) p[k] += i >> a & 1 ? halves[3 * a + k] : -halves[3 * a + k];
+        }
+        corners[i] = transform_point(sink.world, p);
+    }
+    sink.volumes.boxes.push_back(corners);
+}
+
 void add_sphere(void* ctx, const float center[3], float radius) {
     Sink& sink = *static_cast<Sink*>(ctx);
     if (sink.full()) return;
@@ -57,7 +72,7 @@ Volumes accel_volumes(const AccelData& accel, rt_u32 level, size_t limit) {
     Progress progress;
     const auto add_group = [&](rt_u32 group, const Affine& world) {
         Sink sink{volumes, world, limit};
-        const rt_volume_sink calls{sizeof(rt_volume_sink), &sink, add_box, add_sphere};
+        const rt_volume_sink calls{sizeof(rt_volume_sink), &sink, add_box, add_sphere, add_oriented_box};
         HostServices services(std::string("accel ") + accel.plugin->id, progress);
         services.check(1, [&] { return table.levels(services.host(), &built, group, level, &calls); });
     };

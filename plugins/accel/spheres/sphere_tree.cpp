@@ -2,25 +2,8 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <cmath>
 
 namespace spheres {
-
-Box::Box() : lo{FLT_MAX, FLT_MAX, FLT_MAX}, hi{-FLT_MAX, -FLT_MAX, -FLT_MAX} {}
-
-void Box::add(const Box& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-        lo[axis] = std::min(lo[axis], other.lo[axis]);
-        hi[axis] = std::max(hi[axis], other.hi[axis]);
-    }
-}
-
-int Box::longest_axis() const {
-    int longest = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (double{hi[axis]} - lo[axis] > double{hi[longest]} - lo[longest]) longest = axis;
-    return longest;
-}
 
 Item make_item(const rt_prim& prim) {
     Item item;
@@ -57,19 +40,34 @@ Sizes tree_sizes(const Rules& rules, uint64_t n, uint32_t depth) {
 
 constexpr uint32_t kParallel = 16384;  // smallest number of items for which two threads build the halves
 
-void build_node(const Forest& forest, uint32_t first, uint32_t count, uint32_t at, uint32_t level, uint32_t depth) {
+class ItemTriangles final : public Triangles {
+ public:
+    ItemTriangles(const Forest& forest, uint32_t first, uint32_t count)
+        : items_(forest.items + first), triangles_(forest.triangles), count_(count) {}
+    rt_u32 count() const override { return count_; }
+    const rt_packed_prim* operator[](rt_u32 i) const override {
+        const rt_u32 ref = items_[i].ref;
+        return triangles_ && RT_REF_KIND(ref) == RT_REF_TRIANGLE ? triangles_ + RT_REF_INDEX(ref) : nullptr;
+    }
+
+ private:
+    const Item* const items_;
+    const rt_packed_prim* const triangles_;
+    const uint32_t count_;
+};
+
+void build_node(const Forest& forest, uint32_t first, uint32_t count, uint32_t at, uint32_t depth) {
     Box box;
     for (uint32_t i = first; i < first + count; ++i) box.add(forest.items[i].box);
     spheres_node& node = forest.nodes[at];
-    set_sphere(node, box);
-    node.level = level;
+    forest.volumes.fit(at, box, ItemTriangles(forest, first, count));
     const uint64_t size = tree_size(forest.rules, count, depth);
-    node.skip = at + static_cast<uint32_t>(size);
     if (size == 1) {
-        node.first = first;
+        node.link = first;
         node.count = count;
         return;
     }
+    node.link = at + static_cast<uint32_t>(size);
     const int axis = box.longest_axis();
     const uint32_t left = count / 2, right = count - left;
     Item* const items = forest.items + first;
@@ -78,9 +76,9 @@ void build_node(const Forest& forest, uint32_t first, uint32_t count, uint32_t a
     const uint32_t right_at = at + 1 + static_cast<uint32_t>(tree_size(forest.rules, left, depth + 1));
     const auto child = [&](rt_u32 which) {
         if (which == 0)
-            build_node(forest, first, left, at + 1, level + 1, depth + 1);
+            build_node(forest, first, left, at + 1, depth + 1);
         else
-            build_node(forest, first + left, right, right_at, level + 1, depth + 1);
+            build_node(forest, first + left, right, right_at, depth + 1);
     };
     if (count >= kParallel) {
         rt::progress(forest.host, 0.5f);  // the true progress is unknown; the call is here to notice a cancelled build
@@ -97,20 +95,8 @@ uint64_t tree_size(const Rules& rules, uint64_t count, uint32_t depth) {
     return tree_sizes(rules, count, depth).of_n;
 }
 
-void set_sphere(spheres_node& node, const Box& box) {
-    double square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        node.center[axis] = box.center(axis);
-        const double half = std::max(double{box.hi[axis]} - node.center[axis], node.center[axis] - double{box.lo[axis]});
-        square += half * half;
-    }
-    const double radius = std::sqrt(square) * (1 + 4 * DBL_EPSILON);
-    node.radius = static_cast<float>(radius);
-    if (node.radius < radius) node.radius = std::nextafter(node.radius, INFINITY);
-}
-
-void build_tree(const Forest& forest, uint32_t first, uint32_t count, uint32_t at, uint32_t level) {
-    build_node(forest, first, count, at, level, 0);
+void build_tree(const Forest& forest, uint32_t first, uint32_t count, uint32_t at) {
+    build_node(forest, first, count, at, 0);
 }
 
 }  // namespace spheres

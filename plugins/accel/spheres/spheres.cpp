@@ -2,8 +2,10 @@
 //
 // A node takes 32 bytes, and the traversal needs no stack. The structure is quick to build, cheap to test and small. But
 // spheres overlap more than boxes do, splitting by count ignores empty space, nodes are not visited in the order of distance,
-// and every ray tests the root of every mesh.
+// and every ray tests the root of every mesh. The thesis asked how other volumes perform: `volume` puts boxes (32 bytes) or
+// oriented boxes (68 bytes) into the same tree.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "refit.hpp"
@@ -12,7 +14,8 @@
 namespace spheres {
 namespace {
 
-enum Param { kMaxLeaf, kMaxDepth, kTopLevel, kLoneSpheres };
+enum Param { kMaxLeaf, kMaxDepth, kTopLevel, kLoneSpheres, kVolume };
+constexpr const char* kVolumes[] = {"sphere", "box", "oriented", nullptr};  // SPHERES_SPHERE, ...
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives at which parting stops", 1, 256, 4),
     rt::int_param("max_depth", "Max depth", "levels below a mesh's root at which parting stops, whatever is left", 0, 32, 32),
@@ -23,6 +26,10 @@ constexpr rt_param kParams[] = {
         "analytic spheres are tried one by one, as in the thesis, where each is its own volume; else they get a tree. "
         "Without effect under a tree above meshes",
         false),
+    rt::enum_param(
+        "volume", "Volume",
+        "what bounds the primitives of a node: a sphere as in the thesis, a box, or a box that is turned as they lie", kVolumes,
+        SPHERES_SPHERE),
 };
 
 // The primitives of one mesh within a group.
@@ -32,10 +39,18 @@ struct Run {
     bool lone;  // of spheres that rays test one by one, without a tree
 };
 
-// The tree of a mesh, the index of its first node, and the level of its root.
+// The tree of a mesh, and the index of its first node.
 struct Job {
     Run run;
-    uint32_t at, level;
+    uint32_t at;
+};
+
+// A node that is above the trees of meshes, or the leaf of lone spheres.
+struct Ready {
+    uint32_t at;
+    spheres_node node;
+    Box box;
+    bool everywhere;
 };
 
 // Lays out the nodes before they are built: the heads of the groups, the nodes above the meshes, and the trees of the meshes.
@@ -46,7 +61,7 @@ class Plan {
     std::vector<rt_u32> roots;
     std::vector<Job> jobs;
     std::vector<Run> lone;
-    std::vector<std::pair<uint32_t, spheres_node>> ready;  // index and node
+    std::vector<Ready> ready;
     uint64_t size = 0;
 
     void add_group(std::vector<Run> runs) {
@@ -55,39 +70,33 @@ class Plan {
         Box box;
         for (const Run& run : runs) box.add(run.box);
         if (top_level_ && !runs.empty())
-            add_halves(runs.data(), runs.size(), 0);
+            add_halves(runs.data(), runs.size());
         else
-            for (const Run& run : runs) add_run(run, 0);
-        spheres_node node{};
-        if (!runs.empty()) set_sphere(node, box);
-        finish(node, head);
+            for (const Run& run : runs) add_run(run);
+        if (runs.empty()) std::fill_n(box.lo, 3, 0.0f), std::fill_n(box.hi, 3, 0.0f);
+        finish(head, box);
     }
 
  private:
-    void add_run(const Run& run, uint32_t level) {
+    void add_run(const Run& run) {
         if (run.lone) {
-            add_lone(run, level);
+            add_lone(run);
             return;
         }
-        jobs.push_back({run, static_cast<uint32_t>(size), level});
+        jobs.push_back({run, static_cast<uint32_t>(size)});
         size += tree_size(rules_, run.count);
     }
 
     // Adds one leaf that every ray enters.
-    void add_lone(const Run& run, uint32_t level) {
-        const uint64_t place = size++;
-        spheres_node node{};
-        node.radius = kEverywhere;
-        node.level = level;
-        node.first = run.first;
-        node.count = run.count;
-        finish(node, place);
+    void add_lone(const Run& run) {
+        const auto place = static_cast<uint32_t>(size++);
+        ready.push_back({place, {{}, run.first, run.count}, {}, true});
         lone.push_back(run);
     }
 
-    void add_halves(Run* runs, size_t count, uint32_t level) {
+    void add_halves(Run* runs, size_t count) {
         if (count == 1) {
-            add_run(*runs, level);
+            add_run(*runs);
             return;
         }
         Box box;
@@ -96,18 +105,15 @@ class Plan {
         std::nth_element(runs, runs + count / 2, runs + count,
                          [axis](const Run& a, const Run& b) { return a.box.center(axis) < b.box.center(axis); });
         const uint64_t place = size++;
-        add_halves(runs, count / 2, level + 1);
-        add_halves(runs + count / 2, count - count / 2, level + 1);
-        spheres_node node{};
-        set_sphere(node, box);
-        node.level = level;
-        finish(node, place);
+        add_halves(runs, count / 2);
+        add_halves(runs + count / 2, count - count / 2);
+        finish(place, box);
     }
 
-    void finish(spheres_node& node, uint64_t place) {
+    // The node at `place`, which all nodes since then are below.
+    void finish(uint64_t place, const Box& box) {
         if (size > RT_NONE) throw rt::fail(host_, "needs more than 2^32 nodes: raise max_leaf");
-        node.skip = static_cast<rt_u32>(size);
-        ready.emplace_back(static_cast<uint32_t>(place), node);
+        ready.push_back({static_cast<uint32_t>(place), {{}, static_cast<rt_u32>(size), 0}, box, false});
     }
 
     const rt_host* host_;
@@ -129,6 +135,22 @@ std::vector<Run> gather(const rt_build_input& input, const rt_group& group, bool
     return runs;
 }
 
+// Tells the levels of nodes that are visited one after the other.
+class Levels {
+ public:
+    explicit Levels(const spheres_node* nodes) : nodes_(nodes) {}
+    uint32_t next(uint32_t at) {
+        while (!ends_.empty() && ends_.back() <= at) ends_.pop_back();
+        const auto level = static_cast<uint32_t>(ends_.size());
+        if (nodes_[at].count == 0) ends_.push_back(nodes_[at].link);
+        return level;
+    }
+
+ private:
+    const spheres_node* const nodes_;
+    std::vector<uint32_t> ends_;  // of the nodes above
+};
+
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
     const double* const params = input->params;
     const Rules rules{static_cast<uint32_t>(params[kMaxLeaf]), static_cast<uint32_t>(params[kMaxDepth])};
@@ -144,46 +166,82 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     rt::progress(host, 0.1f);
 
     auto* const nodes = rt::alloc<spheres_node>(out, 0, plan.size);
+    const auto kind = static_cast<rt_u32>(params[kVolume]);
+    auto* const axes = rt::alloc<spheres_axes>(out, 1, kind == SPHERES_ORIENTED ? plan.size : 0);
+    *rt::alloc<rt_u32>(out, 2, 1) = kind;
+    const Volumes volumes(kind, nodes, axes);
     rt_u32* const leaves = rt::leaves(out, count);
-    for (const auto& [place, node] : plan.ready) nodes[place] = node;
+    for (const Ready& one : plan.ready) {
+        nodes[one.at] = one.node;
+        if (one.everywhere)
+            volumes.fill_space(one.at);
+        else
+            volumes.enclose(one.at, one.box);
+    }
     for (const Run& run : plan.lone)
         for (uint32_t i = run.first; i < run.first + run.count; ++i) leaves[i] = items[i].ref;
-    const Forest forest{host, rules, items.data(), nodes};
+    const Forest forest{host, rules, items.data(), input->geometry->triangles, nodes, volumes};
     rt::parallel_for(host, static_cast<rt_u32>(plan.jobs.size()), [&](rt_u32 j) {
         const Job& job = plan.jobs[j];
-        build_tree(forest, job.run.first, job.run.count, job.at, job.level);
+        build_tree(forest, job.run.first, job.run.count, job.at);
         for (uint32_t i = job.run.first; i < job.run.first + job.run.count; ++i) leaves[i] = items[i].ref;
     });
     for (rt_u32 g = 0; g < input->group_count; ++g) rt::root(out, g, plan.roots[g]);
 
-    uint64_t leaf_count = 0;
+    uint64_t leaf_count = 0, turned = 0;
     uint32_t depth = 0;
-    for (uint64_t i = 0; i < plan.size; ++i)
-        if (nodes[i].count > 0) {
+    Levels level_of(nodes);
+    for (uint32_t g = 0; g < input->group_count; ++g)
+        for (uint32_t head = plan.roots[g], i = head + 1; i < nodes[head].link; ++i) {
+            const uint32_t level = level_of.next(i);
+            turned += volumes.is_turned(i);
+            if (nodes[i].count == 0) continue;
             ++leaf_count;
-            depth = std::max(depth, nodes[i].level + 1);
+            depth = std::max(depth, level + 1);
         }
+    rt::define(out, "SPHERES_VOLUME", kind);
     rt::stat(out, "nodes", static_cast<double>(plan.size));
     rt::stat(out, "leaves", static_cast<double>(leaf_count));
     rt::stat(out, "depth", depth);
     rt::stat(out, "meshes", static_cast<double>(plan.jobs.size()));
+    if (kind == SPHERES_ORIENTED) rt::stat(out, "turned boxes", static_cast<double>(turned));
     return RT_OK;
+}
+
+void show(rt_u32 kind, const spheres_node& node, const spheres_axes* axes, const rt_volume_sink* sink) {
+    const float* const v = node.volume;
+    if (v[3] >= kEverywhere) return;
+    if (kind == SPHERES_SPHERE) return sink->sphere(sink->ctx, v, v[3]);
+    if (kind == SPHERES_BOX) return sink->box(sink->ctx, v, v + 3);
+    float halves[9];
+    for (int k = 0; k < 9; ++k) halves[k] = v[3 + k / 3] * axes->axis[k];
+    if (RT_HAS(sink, rt_volume_sink, oriented_box)) return sink->oriented_box(sink->ctx, v, halves);
+    float lo[3], hi[3];
+    for (int k = 0; k < 3; ++k) {
+        const float reach = std::fabs(halves[k]) + std::fabs(halves[3 + k]) + std::fabs(halves[6 + k]);
+        lo[k] = v[k] - reach, hi[k] = v[k] + reach;
+    }
+    sink->box(sink->ctx, lo, hi);
 }
 
 int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* sink) {
     if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const auto* const nodes = static_cast<const spheres_node*>(built->slots[0]);
-    const rt_u32 head = built->roots[group];
-    for (rt_u32 i = head + 1; i < nodes[head].skip; ++i)
-        if (nodes[i].radius < kEverywhere && (level == RT_LEVEL_BOTTOM ? nodes[i].count > 0 : nodes[i].level == level))
-            sink->sphere(sink->ctx, nodes[i].center, nodes[i].radius);
+    const auto* const axes = static_cast<const spheres_axes*>(built->slots[1]);
+    const rt_u32 head = built->roots[group], kind = *static_cast<const rt_u32*>(built->slots[2]);
+    Levels level_of(nodes);
+    for (rt_u32 i = head + 1; i < nodes[head].link; ++i) {
+        const rt_u32 at = level_of.next(i);
+        if (level == RT_LEVEL_BOTTOM ? nodes[i].count > 0 : at == level) show(kind, nodes[i], axes ? axes + i : nullptr, sink);
+    }
     return RT_OK;
 }
 
 constexpr rt_cl_file kFiles[] = {
 #include "spheres.inc"
 };
-constexpr rt_slot kSlots[] = {rt::slot<spheres_node>("spheres_nodes", "spheres_node")};
+constexpr rt_slot kSlots[] = {rt::slot<spheres_node>("spheres_nodes", "spheres_node"),
+                              rt::slot<spheres_axes>("spheres_axes", "spheres_axes"), rt::host_slot<rt_u32>("spheres_kind")};
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "spheres_types.h"), rt::file(kFiles, "spheres.cl"),
                                       rt::guarded<build>, rt::guarded<levels>, rt::Traits().merit(0.3f, 0));
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);

@@ -183,6 +183,13 @@ std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 
         v.radius = radius;
         static_cast<std::vector<Volume>*>(ctx)->push_back(v);
     };
+    sink.oriented_box = [](void* ctx, const float center[3], const float halves[9]) {
+        Volume v{};
+        std::copy_n(center, 3, v.center);
+        std::copy_n(halves, 9, v.halves);
+        v.radius = -1;
+        static_cast<std::vector<Volume>*>(ctx)->push_back(v);
+    };
     const rt_built view = built.view();
     if (plugin.accel->levels(&host, &view, group, level, &sink) != RT_OK) throw std::runtime_error(host_context.why);
     return result;

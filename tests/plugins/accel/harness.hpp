@@ -60,6 +60,7 @@ bool same_tree(const rt_plugin& plugin, const Built& a, const Built& b);
 struct Volume {
     float lo[3], hi[3];            // for a box
     float center[3], radius = -1;  // for a sphere, if radius >= 0
+    float halves[9];               // for an oriented box, with `center`, if not all of them 0
 };
 std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 group, rt_u32 level);
 

@@ -39,11 +39,11 @@ class SpheresChecker {
         seen_.clear();
         const spheres_node& head = nodes_[built_.roots[group]];
         if (head.count != 0) return "the head has primitives";
-        if (head.skip > built_.slot_counts[0]) return "the group ends out of range";
-        for (rt_u32 at = built_.roots[group] + 1; at < head.skip; at = nodes_[at].skip) {
+        if (head.link > built_.slot_counts[0]) return "the group ends out of range";
+        for (rt_u32 at = built_.roots[group] + 1; at < head.link; at = end_of(at)) {
             ++roots;
             std::set<uint32_t> meshes;
-            const std::string why = visit(at, head.skip, 0, meshes);
+            const std::string why = visit(at, head.link, 0, meshes);
             if (!why.empty()) return why;
         }
         if (seen_.size() != input_.groups[group].count) return std::to_string(seen_.size()) + " primitives found";
@@ -51,43 +51,60 @@ class SpheresChecker {
     }
 
  private:
+    rt_u32 end_of(rt_u32 at) const { return nodes_[at].count > 0 ? at + 1 : nodes_[at].link; }
+    // How far a point is outside of a node's volume.
+    double outside(rt_u32 at, const double* p) const {
+        const float* const v = nodes_[at].volume;
+        const rt_u32 kind = *built_.slot<rt_u32>(2);
+        double most = 0, square = 0;
+        for (int a = 0; a < 3; ++a) {
+            double along = 0;
+            for (int k = 0; k < 3 && kind == SPHERES_ORIENTED; ++k)
+                along += built_.slot<spheres_axes>(1)[at].axis[3 * a + k] * (p[k] - v[k]);
+            if (kind == SPHERES_ORIENTED) most = std::max(most, std::fabs(along) - v[3 + a]);
+            if (kind == SPHERES_BOX) most = std::max({most, v[a] - p[a], p[a] - v[3 + a]});
+            square += (p[a] - v[a]) * (p[a] - v[a]);
+        }
+        return kind == SPHERES_SPHERE ? std::sqrt(square) - v[3] : most;
+    }
     std::string visit(rt_u32 at, rt_u32 end, uint32_t level, std::set<uint32_t>& meshes) {
         const spheres_node& node = nodes_[at];
         std::ostringstream why;
         ++sphere_count;
-        if (node.skip <= at || node.skip > end) why << "node " << at << " skips to " << node.skip << " of " << end;
-        if (node.level != level) why << "node " << at << " says level " << node.level << ", is " << level;
+        if (end_of(at) <= at || end_of(at) > end) why << "node " << at << " skips to " << end_of(at) << " of " << end;
         if (!why.str().empty()) return why.str();
         const size_t first_below = below_.size();
         if (node.count > 0) {
-            if (node.skip != at + 1) return "leaf " + std::to_string(at) + " skips something";
             leaf_sizes.insert(node.count);
             if (node.count > max_leaf_ && level < max_depth_) return "leaf of " + std::to_string(node.count);
-            for (rt_u32 i = node.first; i < node.first + node.count; ++i) {
+            for (rt_u32 i = node.link; i < node.link + node.count; ++i) {
                 if (i >= built_.leaves.size() || !seen_.insert(built_.leaves[i]).second)
                     return "position " + std::to_string(i) + " twice, or out of range";
                 below_.push_back(by_ref_[built_.leaves[i]]);
                 meshes.insert(input_.prims[below_.back()].mesh);
             }
         } else {
-            const rt_u32 second = nodes_[at + 1].skip;
-            if (second >= node.skip || nodes_[second].skip != node.skip)
+            const rt_u32 second = end_of(at + 1);
+            if (second >= node.link || end_of(second) != node.link)
                 return "node " + std::to_string(at) + " has not two children";
             for (const rt_u32 child : {at + 1, second}) {
-                const std::string deeper = visit(child, node.skip, level + 1, meshes);
+                const std::string deeper = visit(child, node.link, level + 1, meshes);
                 if (!deeper.empty()) return deeper;
             }
         }
-        // Every corner of every box below is inside.
+        // Every corner of every triangle below is inside, or of its box where there is none.
         for (size_t b = first_below; b < below_.size(); ++b) {
             const rt_prim& prim = input_.prims[below_[b]];
-            for (int corner = 0; corner < 8; ++corner) {
-                double square = 0;
+            const bool boxes = input_.triangles.empty();
+            for (int corner = 0; corner < (boxes ? 8 : 3); ++corner) {
+                double p[3];
                 for (int a = 0; a < 3; ++a) {
-                    const double x = corner >> a & 1 ? prim.hi[a] : prim.lo[a];
-                    square += (x - node.center[a]) * (x - node.center[a]);
+                    p[a] = corner >> a & 1 ? prim.hi[a] : prim.lo[a];
+                    if (boxes) continue;
+                    const rt_packed_prim& t = input_.triangles[RT_REF_INDEX(prim.ref)];
+                    p[a] = (corner == 0 ? t.a : corner == 1 ? t.b : t.c)[a];
                 }
-                if (!(std::sqrt(square) <= node.radius)) return "node " + std::to_string(at) + " does not hold what is below";
+                if (!(outside(at, p) <= 0)) return "node " + std::to_string(at) + " does not hold what is below";
             }
         }
         return {};
@@ -183,13 +200,12 @@ TEST(Spheres, PrimitivesWithoutAMeshShareOneLeaf) {
     const Built built = build(spheres(), input, {{{"lone_spheres", 1}}, 2, {}});
     ASSERT_EQ(built.status, RT_OK);
     const spheres_node* nodes = built.slot<spheres_node>();
-    const rt_u32 head = built.roots[0], first = head + 1, second = nodes[first].skip;
+    const rt_u32 head = built.roots[0], first = head + 1, second = nodes[first].link;
     EXPECT_EQ(nodes[second].count, 30u);
-    EXPECT_GT(nodes[second].radius, 1e29f);
-    EXPECT_EQ(nodes[second].skip, second + 1);
-    EXPECT_EQ(nodes[head].skip, second + 1);
+    EXPECT_GT(nodes[second].volume[3], 1e29f);
+    EXPECT_EQ(nodes[head].link, second + 1);
     std::set<rt_u32> found;
-    for (rt_u32 i = 0; i < 30; ++i) found.insert(built.leaves[nodes[second].first + i]);
+    for (rt_u32 i = 0; i < 30; ++i) found.insert(built.leaves[nodes[second].link + i]);
     EXPECT_EQ(found.size(), 30u);
     for (const rt_u32 ref : found) EXPECT_EQ(RT_REF_KIND(ref), RT_REF_SPHERE);
     // The leaf that every ray enters bounds nothing, so it is not drawn.
@@ -197,7 +213,7 @@ TEST(Spheres, PrimitivesWithoutAMeshShareOneLeaf) {
     // With a tree above the meshes, the spheres get a tree too.
     const Built above = build(spheres(), input, {{{"lone_spheres", 1}, {"top_level", 1}}, 2, {}});
     ASSERT_EQ(above.status, RT_OK);
-    for (uint64_t i = 0; i < above.slot_counts[0]; ++i) EXPECT_LT(above.slot<spheres_node>()[i].radius, 10);
+    for (uint64_t i = 0; i < above.slot_counts[0]; ++i) EXPECT_LT(above.slot<spheres_node>()[i].volume[3], 10);
 }
 
 TEST(Spheres, GroupsMayBeEmptyOrMany) {
@@ -208,7 +224,7 @@ TEST(Spheres, GroupsMayBeEmptyOrMany) {
     for (const double top_level : {0, 1}) {
         const Built built = build(spheres(), input, {{{"top_level", top_level}}, 2, {}});
         expect_spheres(input, built);
-        EXPECT_EQ(built.slot<spheres_node>()[built.roots[0]].skip, built.roots[0] + 1);
+        EXPECT_EQ(built.slot<spheres_node>()[built.roots[0]].link, built.roots[0] + 1);
         EXPECT_TRUE(volumes(spheres(), built, 0, RT_LEVEL_BOTTOM).empty());
     }
 }
@@ -235,7 +251,7 @@ TEST(Spheres, BoundsHoldDespiteRounding) {
     broken.prims[8].hi[2] = INFINITY;
     const Built built = build(spheres(), broken);
     EXPECT_EQ(built.status, RT_OK);
-    for (size_t i = 0; i < built.slot_counts[0]; ++i) EXPECT_FALSE(std::isnan(built.slot<spheres_node>()[i].radius));
+    for (size_t i = 0; i < built.slot_counts[0]; ++i) EXPECT_FALSE(std::isnan(built.slot<spheres_node>()[i].volume[3]));
 }
 
 TEST(Spheres, BuildTheSameTreeOnAnyNumberOfThreads) {
@@ -252,5 +268,75 @@ TEST(Spheres, StopWhenCancelled) {
     for (const int stop_at : {1, 4}) {
         int n = 0;
         EXPECT_EQ(build(spheres(), input, {{}, 2, [&](float) { return ++n < stop_at; }}).status, RT_CANCELLED);
+    }
+}
+
+// The bumpy sphere, with its triangles.
+Input of_triangles(uint32_t count) {
+    std::vector<float> corners;
+    Input input;
+    input.add_group(bumpy_sphere(count, &corners));
+    number(input);
+    for (size_t i = 0; i < input.prims.size(); ++i) {
+        rt_packed_prim t{};
+        std::copy_n(&corners[9 * i], 3, t.a);
+        std::copy_n(&corners[9 * i + 3], 3, t.b);
+        std::copy_n(&corners[9 * i + 6], 3, t.c);
+        t.ref = input.prims[i].ref;
+        input.triangles.push_back(t);
+    }
+    return input;
+}
+
+// Half the surface of all volumes of the leaves.
+double leaf_surface(const Built& built) {
+    double sum = 0;
+    for (const Volume& v : volumes(spheres(), built, 0, RT_LEVEL_BOTTOM)) {
+        double side[3];
+        for (int a = 0; a < 3; ++a) {
+            const float* const h = v.halves + 3 * a;
+            side[a] = v.halves[0] != 0 ? 2 * std::hypot(h[0], h[1], h[2]) : double(v.hi[a]) - v.lo[a];
+        }
+        sum += v.radius >= 0 ? 2 * 3.14159265 * v.radius * v.radius : side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+    }
+    return sum;
+}
+
+TEST(Spheres, OtherVolumesAreInTheSameTreeAndTighter) {
+    const Input input = of_triangles(3000);
+    double before = INFINITY;
+    std::vector<rt_u32> leaves;
+    for (const int kind : {0, 1, 2}) {
+        const Built built = build(spheres(), input, {{{"volume", kind}}, 2, {}});
+        expect_spheres(input, built);
+        EXPECT_EQ(built.slot_counts[1], kind == 2 ? built.slot_counts[0] : 0u);
+        EXPECT_EQ(built.defines.at("SPHERES_VOLUME"), rt_u32(kind));
+        if (kind > 0) {
+            EXPECT_EQ(built.leaves, leaves);
+        }
+        leaves = built.leaves;
+        const double surface = leaf_surface(built);
+        EXPECT_LT(surface, 0.8 * before) << kind;
+        before = surface;
+        if (kind == 2) {
+            EXPECT_GT(built.stats.at("turned boxes"), 0.9 * double(built.stats.at("leaves")));
+        }
+    }
+}
+
+TEST(Spheres, OtherVolumesHoldWhatIsNoTriangleAndWhatIsFlat) {
+    for (const int kind : {1, 2}) {
+        const Input input = meshes({1000, 1, 30});
+        expect_spheres(input, build(spheres(), input, {{{"volume", kind}, {"top_level", 1}}, 2, {}}));
+        Input flat = of_triangles(500);
+        for (rt_packed_prim& t : flat.triangles)
+            for (float* p : {t.a, t.b, t.c}) p[0] = 3 * p[1] - p[2];  // all in a plane, and some become lines
+        for (size_t i = 0; i < flat.prims.size(); ++i)
+            for (int k = 0; k < 3; ++k) {
+                const rt_packed_prim& t = flat.triangles[i];
+                flat.prims[i].lo[k] = std::min({t.a[k], t.b[k], t.c[k]});
+                flat.prims[i].hi[k] = std::max({t.a[k], t.b[k], t.c[k]});
+            }
+        expect_spheres(flat, build(spheres(), flat, {{{"volume", kind}}, 2, {}}));
     }
 }

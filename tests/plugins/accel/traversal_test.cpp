@@ -73,22 +73,22 @@ double trace_bvh2(const Scene& scene, const Built& built, const Ray& ray, uint32
 double trace_spheres(const Scene& scene, const Built& built, const Ray& ray) {
     double t = INFINITY;
     const auto* nodes = built.slot<spheres_node>();
-    for (rt_u32 at = built.roots[0] + 1; at < nodes[built.roots[0]].skip;) {
+    for (rt_u32 at = built.roots[0] + 1; at < nodes[built.roots[0]].link;) {
         const spheres_node& node = nodes[at];
         double dd = 0, ld = 0, ll = 0;
         for (int a = 0; a < 3; ++a) {
-            const double l = node.center[a] - ray.o[a];
+            const double l = node.volume[a] - ray.o[a];
             dd += ray.d[a] * ray.d[a];
             ld += l * ray.d[a];
             ll += l * l;
         }
-        const double r2 = double{node.radius} * node.radius * (1 + 1e-9), miss2 = ll - ld * ld / dd;
+        const double r2 = double{node.volume[3]} * node.volume[3] * (1 + 1e-9), miss2 = ll - ld * ld / dd;
         const bool behind = ld < 0 && ll > r2;
         if (miss2 > r2 || behind) {
-            at = node.skip;
+            at = node.count > 0 ? at + 1 : node.link;
             continue;
         }
-        for (rt_u32 i = node.first; i < node.first + node.count; ++i) t = std::min(t, scene.hit(built.leaves[i], ray));
+        for (rt_u32 i = node.link; i < node.link + node.count; ++i) t = std::min(t, scene.hit(built.leaves[i], ray));
         ++at;
     }
     return t;

@@ -1,0 +1,62 @@
+// volumes.hpp -- the volumes that a node may have: a sphere, a box, or a box with axes of its own.
+//
+// The sphere encloses the box: same centre, radius half the diagonal. An oriented box is fitted to the corners of triangles:
+// of several frames the one whose box has the least surface. Nodes with other primitives keep the axes of space.
+#pragma once
+#include "rt_plugin.hpp"
+// needs the types of rt_shared.h, so it must follow the headers above:
+#include "spheres_types.h"
+
+namespace spheres {
+
+struct Box {
+    float lo[3], hi[3];
+    Box();
+    void add(const Box& other);
+    int longest_axis() const;
+    float center(int axis) const { return 0.5f * lo[axis] + 0.5f * hi[axis]; }
+};
+
+// Half the extent of a leaf that every ray enters. It is finite, so that the ray test computes no NaN.
+constexpr float kEverywhere = 1e30f;
+
+class Triangles;
+
+// Writes the volumes of nodes.
+class Volumes {
+ public:
+    // axes: one for each node, or nullptr if they are not oriented.
+    Volumes(rt_u32 kind, spheres_node* nodes, spheres_axes* axes) : kind_(kind), nodes_(nodes), axes_(axes) {}
+
+    // Encloses the box.
+    void enclose(rt_u32 at, const Box& box) const;
+    // Encloses a box of triangles as tightly as the kind allows.
+    void fit(rt_u32 at, const Box& box, const Triangles& triangles) const;
+    // The same with the axes that the node has.
+    void refit(rt_u32 at, const Box& box, const Triangles& triangles) const;
+    void fill_space(rt_u32 at) const;
+
+    bool is_oriented() const { return kind_ == SPHERES_ORIENTED; }
+    bool is_everywhere(rt_u32 at) const { return nodes_[at].volume[3] >= kEverywhere; }
+    // Whether the node's axes are not those of space.
+    bool is_turned(rt_u32 at) const;
+    // A length of the order of the volume's size.
+    float size(rt_u32 at) const;
+
+ private:
+    const rt_u32 kind_;
+    spheres_node* const nodes_;
+    spheres_axes* const axes_;
+};
+
+// Some triangles. Not all primitives need be triangles: those that are none are nullptr.
+class Triangles {
+ public:
+    virtual rt_u32 count() const = 0;
+    virtual const rt_packed_prim* operator[](rt_u32 i) const = 0;
+
+ protected:
+    ~Triangles() = default;
+};
+
+}  // namespace spheres
