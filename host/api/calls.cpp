@@ -19,6 +19,7 @@ Watched watched(const clarity_watch* watch) {
 
 clarity_scene* new_scene(Scene scene, const std::vector<std::string>& files) {
     auto made = std::make_unique<clarity_scene>();
+    made->of_arrays = files.empty();
     made->imported = std::make_shared<const Scene>(std::move(scene));
     made->placed =
         made->imported->edits.empty() ? made->imported : std::make_shared<const Scene>(with_scene_edits(*made->imported));
@@ -165,6 +166,13 @@ CLARITY_EXPORT int32_t clarity_all(clarity_tracer* tracer, const clarity_rays* r
 
 CLARITY_EXPORT void clarity_all_hits_free(clarity_all_hits* hits) {
     if (hits && !is_forked()) take_back_hits(*hits);
+}
+
+CLARITY_EXPORT int32_t clarity_move(clarity_tracer* tracer, const clarity_places* places, const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").move(copy_of(places, "clarity_places"), progress);
+    });
 }
 
 CLARITY_EXPORT int32_t clarity_render(clarity_tracer* tracer, clarity_picture* picture, const clarity_watch* watch) {

@@ -111,6 +111,16 @@ typedef struct clarity_all_hits {
     void *owner; /* of the arrays */
 } clarity_all_hits;
 
+/* Where vertices and instances are. The arrays are copied. */
+typedef struct clarity_places {
+    uint32_t struct_bytes;
+    int32_t type;          /* of both arrays */
+    const void *positions; /* of a scene of clarity_scene_from_mesh(): x, y, z of each vertex; NULL: they stay */
+    uint64_t vertex_count;
+    const void *transforms; /* of each instance: world from object, three rows of four numbers; NULL: they stay */
+    uint64_t instance_count;
+} clarity_places;
+
 /* A picture. Rows follow each other without gaps, the top row first. */
 typedef struct clarity_picture {
     uint32_t struct_bytes;
@@ -155,6 +165,9 @@ int32_t clarity_pack(clarity_tracer *tracer, const clarity_rays *rays, const cla
 void clarity_packed_free(clarity_packed *packed);
 /* 1 for rays that hit anything between t_min and t_max, else 0. */
 int32_t clarity_any(clarity_tracer *tracer, const clarity_rays *rays, uint8_t *occluded, const clarity_watch *watch);
+/* Moves what this tracer traces; its scene stays as it is for others. The structure is refitted where it can follow, and built anew
+ * where it cannot or where rays have become dear, as the setting `poses` says. A failed or cancelled call moves nothing. */
+int32_t clarity_move(clarity_tracer *tracer, const clarity_places *places, const clarity_watch *watch);
 /* How many hits each ray has with t_min <= t < t_max, not only the nearest: a triangle is hit once, a sphere on both sides. */
 int32_t clarity_count(clarity_tracer *tracer, const clarity_rays *rays, int64_t *counts, const clarity_watch *watch);
 /* Which they are. Rays with many hits need much memory: 40 bytes a hit. */

@@ -13,12 +13,14 @@
 #include "render/edit/edit.hpp"
 #include "render/frame/frame_renderer.hpp"
 #include "render/frame/preparer.hpp"
+#include "render/moving/follow/pose_follower.hpp"
 #include "render/tracers/rays/ray_queries.hpp"
 
 struct clarity_scene {
     std::shared_ptr<const clarity::Scene> imported;  // with the edits of its files
     std::shared_ptr<const clarity::Scene> placed;    // with these edits in force: what is traced
     std::string info;                                // JSON
+    bool of_arrays = false;                          // of the caller
 };
 
 namespace clarity::api {
@@ -53,12 +55,15 @@ struct clarity_tracer {
     void closest(const clarity_rays& rays, const clarity_hits& hits, clarity::Progress& progress);
     std::unique_ptr<clarity_packed> pack(const clarity_rays& rays, clarity::Progress& progress);
     void any(const clarity_rays& rays, uint8_t* occluded, clarity::Progress& progress);
+    void move(const clarity_places& places, clarity::Progress& progress);
     void count(const clarity_rays& rays, int64_t* counts, clarity::Progress& progress);
     std::unique_ptr<clarity::api::HitArrays> all(const clarity_rays& rays, clarity::Progress& progress);
     // Writes the members of `picture` that are the call's.
     void render(const clarity_picture& asked, clarity_picture& picture, clarity::Progress& progress);
 
  private:
+    // The scene with these places. Throws Error(usage).
+    clarity::Pose pose_of(const clarity_places& places) const;
     // take: gets the number of a first ray, and hits of it and the next ones, on any thread.
     void trace(const clarity_rays& rays, bool any_hit, clarity::Progress& progress, const clarity::TakeHits& take);
     // Of the rays from `begin` on.
@@ -77,6 +82,10 @@ struct clarity_tracer {
     clarity::Preparer preparer_;
     std::shared_ptr<const clarity::Prepared> prepared_;  // for ray queries
     clarity::RayQueries queries_;
+    bool of_arrays_;  // the scene is one mesh of the caller's
+    clarity::PoseFollower follower_;
+    bool vertices_moved_ = false;
+    double traced_ms_ = 0;                  // since the last move
     uint64_t id_ = clarity::new_packing();  // of this tracer, and of rays that it packs for one call
     size_t batch_;                          // rays that are traced in one go
     std::optional<clarity::FrameRenderer> frames_;

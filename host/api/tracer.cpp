@@ -66,6 +66,7 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
       device_(open_device(text_of(options.device))),
       preparer_(plugins(), device_),
       queries_(device_),
+      of_arrays_(scene.of_arrays),
       batch_(kFirstBatch) {
     const auto accel = preparer_.build(placed_, settings_, progress);
     prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
@@ -88,7 +89,7 @@ void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& pro
     const auto trace_some = [&](RayArrays some) {
         if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
         some.take = [&](size_t i, size_t count, const rt_hit* hits) { take(first + i, count, hits); };
-        queries_.trace(*prepared_, some, query);
+        traced_ms_ += queries_.trace(*prepared_, some, query);
         first += some.count;
     };
     if (rays.packed) {

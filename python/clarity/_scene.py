@@ -137,6 +137,31 @@ class Tracer:
         self._trace(library.clarity_closest, rays, ctypes.byref(hit._struct_for(rays)), progress)
         return hit
 
+    def move(self, vertices=None, *, instances=None, progress=None):
+        """Moves what this tracer traces: its structure is refitted, or built anew where that pays. vertices: of a scene of arrays, in
+        the shape they had. instances: world from object of each instance, in the shape (n, 3, 4) or (n, 4, 4). scene.bounds and
+        cameras stay."""
+        values = {}
+        arrays = {}
+        if vertices is not None:
+            arrays["positions"] = as_array(vertices, "vertices")
+            if arrays["positions"].ndim != 2 or arrays["positions"].shape[1] != 3:
+                raise UsageError(f"vertices: expected an array of shape (n, 3), found {arrays['positions'].shape}")
+            values["vertex_count"] = len(arrays["positions"])
+        if instances is not None:
+            array = as_array(instances, "instances")
+            if array.ndim != 3 or array.shape[1:] not in ((3, 4), (4, 4)):
+                raise UsageError(f"instances: expected an array of shape (n, 3, 4) or (n, 4, 4), found {array.shape}")
+            arrays["transforms"] = array[:, :3]
+            values["instance_count"] = len(array)
+        if not arrays:
+            raise UsageError("move: expected vertices or instances")
+        dtype = max(array.dtype for array in arrays.values())
+        arrays = {name: np.ascontiguousarray(array, dtype) for name, array in arrays.items()}
+        values.update((name, address_of(array)) for name, array in arrays.items())
+        places = struct("clarity_places", type=constants["CLARITY_FLOAT64" if dtype == np.float64 else "CLARITY_FLOAT32"], **values)
+        call(library.clarity_move, self._handle, ctypes.byref(places), progress=progress)
+
     def pack(self, origins, directions, t_min=None, t_max=None, *, progress=None):
         """Rays that are traced often: they are read from the arrays once, and stay on the device, 32 bytes each. closest() and
         any() of this tracer take them instead of origins and directions."""

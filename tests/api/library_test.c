@@ -195,6 +195,48 @@ static void test_far(void) {
     clarity_tracer_free(tracer);
 }
 
+/* The square, at z = 0, is lifted by its vertices, and then by its instance. */
+static void test_move(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer* tracer = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    const float origin[] = {0.75f, 0.25f, 4}, direction[] = {0, 0, -1};
+    float t = 0, positions[12];
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.count = 1;
+    query.origins = origin;
+    query.directions = direction;
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
+    clarity_places places = {0};
+    for (int i = 0; i < 12; ++i) positions[i] = square[i] + (i % 3 == 2 ? 1 : 0);
+    places.positions = positions;
+    places.vertex_count = 4;
+    FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "clarity_places::struct_bytes");
+    places.struct_bytes = sizeof places;
+    WORKS(clarity_move(tracer, &places, NULL));
+    memset(positions, 0, sizeof positions); /* they were copied */
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 3);
+    const double lifted[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5};
+    places.type = CLARITY_FLOAT64;
+    places.positions = NULL;
+    places.transforms = lifted;
+    places.instance_count = 1;
+    WORKS(clarity_move(tracer, &places, NULL));
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 2.5f);
+    places.type = 9;
+    FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "unknown type 9");
+    places.type = CLARITY_FLOAT64;
+    places.instance_count = 2;
+    FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "nothing was moved");
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 2.5f);
+    clarity_tracer_free(tracer);
+}
+
 /* Rays that lie on the device. */
 static void test_packed(const clarity_scene* scene) {
     const clarity_options options = options_of("bvh2", NULL);
@@ -482,6 +524,7 @@ int main(int argc, char** argv) {
     test_rays(scene, "grid", "lanes=8");
     test_all_hits(scene);
     test_packed(scene);
+    test_move(scene);
     test_far();
     test_pictures(scene);
     test_watch(scene);
