@@ -7,6 +7,7 @@
 >>> ray, t, prim = rt.all(origins, directions)        # each hit of each ray, in order; rt.count(), rt.any()
 >>> depth = rt.render(1024, 768, aov="t")
 """
+from . import trimesh
 from ._binding import library as _library
 from ._errors import Cancelled, DeviceError, Error, ForkError, ImportFailed, KernelError, UsageError
 from ._rays import AllHits, Hit, Packed
@@ -27,4 +28,5 @@ __all__ = [
     "Tracer",
     "UsageError",
     "load",
+    "trimesh",
 ]
