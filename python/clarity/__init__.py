@@ -11,6 +11,7 @@ from . import trimesh
 from ._binding import library as _library
 from ._errors import Cancelled, DeviceError, Error, ForkError, ImportFailed, KernelError, UsageError
 from ._rays import AllHits, Hit, Packed
+from ._rows import bench, check
 from ._scene import Scene, Tracer, load
 
 __version__ = _library.clarity_version().decode()
@@ -27,6 +28,8 @@ __all__ = [
     "Scene",
     "Tracer",
     "UsageError",
+    "bench",
+    "check",
     "load",
     "trimesh",
 ]

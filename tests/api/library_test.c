@@ -237,6 +237,31 @@ static void test_move(const clarity_scene* scene) {
     clarity_tracer_free(tracer);
 }
 
+static void on_row(void* user, const char* json) {
+    if (strstr(json, "\"status\":\"passed\"") && !strchr(json, '\n')) ++*(int*)user;
+}
+
+/* Rows of a process of its own. */
+static void test_rows(void) {
+    int rows = 0;
+    const char* words[] = {"check", "bvh2", "--quick", "--only", "builds.parameters", NULL};
+    WORKS(clarity_rows(words, on_row, &rows, NULL));
+    CHECK(rows == 1);
+    WORKS(clarity_rows(words, NULL, NULL, NULL));
+    words[1] = "no_such_plugin";
+    FAILS(clarity_rows(words, on_row, &rows, NULL), CLARITY_USAGE, "no_such_plugin: no plugin of this id");
+    words[0] = "info";
+    FAILS(clarity_rows(words, on_row, &rows, NULL), CLARITY_USAGE, "clarity bench");
+    FAILS(clarity_rows(NULL, on_row, &rows, NULL), CLARITY_USAGE, "`words` is null");
+    int32_t cancel = 1;
+    clarity_watch watch = {0};
+    watch.struct_bytes = sizeof watch;
+    watch.cancel = &cancel;
+    words[0] = "check";
+    words[1] = "bvh2";
+    CHECK(clarity_rows(words, on_row, &rows, &watch) == CLARITY_CANCELLED && rows == 1);
+}
+
 /* Rays that lie on the device. */
 static void test_packed(const clarity_scene* scene) {
     const clarity_options options = options_of("bvh2", NULL);
@@ -525,6 +550,7 @@ int main(int argc, char** argv) {
     test_all_hits(scene);
     test_packed(scene);
     test_move(scene);
+    test_rows();
     test_far();
     test_pictures(scene);
     test_watch(scene);
