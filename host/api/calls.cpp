@@ -5,6 +5,7 @@
 #include "api/handles.hpp"
 #include "api/library.hpp"
 #include "api/mesh_scene.hpp"
+#include "api/rows.hpp"
 #include "api/watched.hpp"
 #include "import/import.hpp"
 #include "scene/motion/pose.hpp"
@@ -172,6 +173,21 @@ CLARITY_EXPORT int32_t clarity_move(clarity_tracer* tracer, const clarity_places
     return run_call([&] {
         Watched progress = watched(watch);
         not_null(tracer, "tracer").move(copy_of(places, "clarity_places"), progress);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_rows(const char* const* words, void (*row)(void*, const char*), void* user,
+                                    const clarity_watch* watch) {
+    return run_call([&] {
+        std::vector<std::string> texts;
+        for (const char* const* word = &not_null(words, "words"); *word; ++word) texts.emplace_back(*word);
+        Watched progress = watched(watch);
+        give_rows(
+            std::move(texts),
+            [&](const std::string& json) {
+                if (row) row(user, json.c_str());
+            },
+            progress);
     });
 }
 

@@ -175,6 +175,10 @@ int32_t clarity_all(clarity_tracer *tracer, const clarity_rays *rays, clarity_al
 void clarity_all_hits_free(clarity_all_hits *hits); /* sets the members to 0 that clarity_all() has written */
 /* Renders as `clarity render` does; the pixels are those of its .pfm, the top row first. Settings of the tracer hold, too. */
 int32_t clarity_render(clarity_tracer *tracer, clarity_picture *picture, const clarity_watch *watch);
+/* What `clarity bench` or `clarity check` finds, each row as JSON in one line, in the order of their --json. words: of the command
+ * line, with NULL behind the last: "check", "./my_tree.so", "--quick". They run in a process of their own, which a plugin may crash.
+ * Rows tell for themselves whether they passed: the call works if there are rows. */
+int32_t clarity_rows(const char *const *words, void (*row)(void *user, const char *json), void *user, const clarity_watch *watch);
 
 #ifdef __cplusplus
 }

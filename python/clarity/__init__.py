@@ -7,9 +7,11 @@
 >>> ray, t, prim = rt.all(origins, directions)        # each hit of each ray, in order; rt.count(), rt.any()
 >>> depth = rt.render(1024, 768, aov="t")
 """
+from . import trimesh
 from ._binding import library as _library
 from ._errors import Cancelled, DeviceError, Error, ForkError, ImportFailed, KernelError, UsageError
 from ._rays import AllHits, Hit, Packed
+from ._rows import bench, check
 from ._scene import Scene, Tracer, load
 
 __version__ = _library.clarity_version().decode()
@@ -26,5 +28,8 @@ __all__ = [
     "Scene",
     "Tracer",
     "UsageError",
+    "bench",
+    "check",
     "load",
+    "trimesh",
 ]

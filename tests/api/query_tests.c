@@ -1,0 +1,245 @@
+/* query_tests.c -- hits, lists of hits, packed rays, moves, and rows of processes. */
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include "fixtures.h"
+
+/* Hits of the square by rays in a struct of the caller's, by all numbers of lanes. */
+void test_rays(const clarity_scene* scene, const char* accel, const char* lanes) {
+    struct ray {
+        float direction[3], label, t_max, origin[3];
+    } rays[3] = {{{0, 0, -2}, 0, INFINITY, {0.75f, 0.25f, 4}}, {{0, 0, -2}, 0, 1.5f, {0.75f, 0.25f, 4}}, {{0, 0, -2}, 0, 9, {3, 0, 4}}};
+    const char* const settings[] = {lanes, NULL};
+    const clarity_options options = options_of(accel, settings);
+    clarity_tracer* tracer = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.count = 3;
+    query.origins = rays[0].origin;
+    query.directions = rays[0].direction;
+    query.t_max = &rays[0].t_max;
+    query.origin_steps[0] = query.direction_steps[0] = query.t_max_step = sizeof rays[0];
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    float t[3], uv[6];
+    int32_t prim[3], instance[3];
+    uint8_t occluded[3] = {9, 9, 9};
+    clarity_hits hits = hits_into(t, prim, instance, uv);
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t[0] == 2 && prim[0] == 0 && fabsf(uv[0] - 0.5f) < 1e-6f && fabsf(uv[1] - 0.25f) < 1e-6f);
+    CHECK(isinf(t[1]) && prim[1] == -1 && isinf(t[2]) && prim[2] == -1);
+    WORKS(clarity_any(tracer, &query, occluded, NULL));
+    CHECK(occluded[0] == 1 && occluded[1] == 0 && occluded[2] == 0);
+
+    /* Doubles, z before y before x, and one direction for all. */
+    const double backwards[] = {4, 0.25, 0.75, 3.5, 0.5, 0.5, 2.5, 0.5, 0.5}, down[] = {0, 0, -2}, t_min = 1.5, t_max = 2.5;
+    query.type = CLARITY_FLOAT64;
+    query.count = 3;
+    query.origins = backwards + 2;
+    query.origin_steps[0] = 3 * sizeof(double);
+    query.origin_steps[1] = -(int64_t)sizeof(double);
+    query.directions = down;
+    query.direction_steps[0] = 0;
+    query.direction_steps[1] = sizeof(double);
+    query.t_min = &t_min;
+    query.t_max = &t_max;
+    query.t_min_step = query.t_max_step = 0;
+    hits = hits_into(t, NULL, NULL, NULL);
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t[0] == 2 && t[1] == 1.75f && isinf(t[2]));
+
+    query.type = 5;
+    FAILS(clarity_closest(tracer, &query, &hits, NULL), CLARITY_USAGE, "unknown type 5");
+    query.type = CLARITY_FLOAT64;
+    query.directions = NULL;
+    FAILS(clarity_any(tracer, &query, occluded, NULL), CLARITY_USAGE, "no directions");
+    query.directions = down;
+    FAILS(clarity_any(tracer, &query, NULL, NULL), CLARITY_USAGE, "`occluded` is null");
+    FAILS(clarity_closest(tracer, NULL, &hits, NULL), CLARITY_USAGE, "clarity_rays is null");
+    FAILS(clarity_closest(NULL, &query, &hits, NULL), CLARITY_USAGE, "`tracer` is null");
+    query.count = 0;
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    clarity_tracer_free(tracer);
+}
+
+/* A square of 1 at 5e6: floats there have steps of a half. */
+void test_far(void) {
+    double positions[12], lo[3], hi[3];
+    for (int i = 0; i < 12; ++i) positions[i] = square[i] + 5e6;
+    const clarity_mesh mesh = mesh_of(CLARITY_FLOAT64, positions);
+    clarity_scene* scene = NULL;
+    clarity_tracer* tracer = NULL;
+    WORKS(clarity_scene_from_mesh(&mesh, NULL, &scene));
+    memset(positions, 0, sizeof positions); /* they were copied */
+    WORKS(clarity_scene_bounds(scene, lo, hi));
+    CHECK(lo[0] == 5e6 && hi[1] == 5e6 + 1 && hi[2] == 5e6);
+    const clarity_options options = options_of("bvh2", NULL);
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    const double origin[] = {5e6 + 0.125, 5e6 + 0.0625, 5e6 + 0.375}, direction[] = {0, 0, -1};
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.type = CLARITY_FLOAT64;
+    query.count = 1;
+    query.origins = origin;
+    query.directions = direction;
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(double);
+    float t = 0, uv[2];
+    const clarity_hits hits = hits_into(&t, NULL, NULL, uv);
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 0.375f && fabsf(uv[0] - 0.0625f) < 1e-6f && fabsf(uv[1] - 0.0625f) < 1e-6f);
+    clarity_scene_free(scene); /* the tracer keeps what it needs */
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    clarity_tracer_free(tracer);
+}
+
+/* The square, at z = 0, is lifted by its vertices, and then by its instance. */
+void test_move(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer* tracer = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    const float origin[] = {0.75f, 0.25f, 4}, direction[] = {0, 0, -1};
+    float t = 0, positions[12];
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.count = 1;
+    query.origins = origin;
+    query.directions = direction;
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
+    clarity_places places = {0};
+    for (int i = 0; i < 12; ++i) positions[i] = square[i] + (i % 3 == 2 ? 1 : 0);
+    places.positions = positions;
+    places.vertex_count = 4;
+    FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "clarity_places::struct_bytes");
+    places.struct_bytes = sizeof places;
+    WORKS(clarity_move(tracer, &places, NULL));
+    memset(positions, 0, sizeof positions); /* they were copied */
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 3);
+    const double lifted[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5};
+    places.type = CLARITY_FLOAT64;
+    places.positions = NULL;
+    places.transforms = lifted;
+    places.instance_count = 1;
+    WORKS(clarity_move(tracer, &places, NULL));
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 2.5f);
+    places.type = 9;
+    FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "unknown type 9");
+    places.type = CLARITY_FLOAT64;
+    places.instance_count = 2;
+    FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "nothing was moved");
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t == 2.5f);
+    clarity_tracer_free(tracer);
+}
+
+static void on_row(void* user, const char* json) {
+    if (strstr(json, "\"status\":\"passed\"") && !strchr(json, '\n')) ++*(int*)user;
+}
+
+/* Rows of a process of its own. */
+void test_rows(void) {
+    int rows = 0;
+    const char* words[] = {"check", "bvh2", "--quick", "--only", "builds.parameters", NULL};
+    WORKS(clarity_rows(words, on_row, &rows, NULL));
+    CHECK(rows == 1);
+    WORKS(clarity_rows(words, NULL, NULL, NULL));
+    words[1] = "no_such_plugin";
+    FAILS(clarity_rows(words, on_row, &rows, NULL), CLARITY_USAGE, "no_such_plugin: no plugin of this id");
+    words[0] = "info";
+    FAILS(clarity_rows(words, on_row, &rows, NULL), CLARITY_USAGE, "clarity bench");
+    FAILS(clarity_rows(NULL, on_row, &rows, NULL), CLARITY_USAGE, "`words` is null");
+    int32_t cancel = 1;
+    clarity_watch watch = {0};
+    watch.struct_bytes = sizeof watch;
+    watch.cancel = &cancel;
+    words[0] = "check";
+    words[1] = "bvh2";
+    CHECK(clarity_rows(words, on_row, &rows, &watch) == CLARITY_CANCELLED && rows == 1);
+}
+
+/* Rays that lie on the device. */
+void test_packed(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer *tracer = NULL, *other = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    WORKS(clarity_tracer_new(scene, &options, NULL, &other));
+    float origins[] = {0.75f, 0.25f, 4, 3, 3, 4}, t[2], direction[] = {0, 0, -2};
+    clarity_rays arrays = {0}, query = {0};
+    arrays.struct_bytes = query.struct_bytes = sizeof query;
+    arrays.count = query.count = 2;
+    arrays.origins = origins;
+    arrays.directions = direction;
+    arrays.origin_steps[0] = 3 * sizeof(float);
+    arrays.origin_steps[1] = arrays.direction_steps[1] = sizeof(float);
+    clarity_packed* packed = NULL;
+    FAILS(clarity_pack(tracer, &arrays, NULL, NULL), CLARITY_USAGE, "`packed` is null");
+    WORKS(clarity_pack(tracer, &arrays, NULL, &packed));
+    memset(origins, 0, sizeof origins); /* they were read */
+    query.packed = packed;
+    const clarity_hits hits = hits_into(t, NULL, NULL, NULL);
+    uint8_t occluded[2] = {9, 9};
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t[0] == 2 && isinf(t[1]));
+    WORKS(clarity_any(tracer, &query, occluded, NULL));
+    CHECK(occluded[0] == 1 && occluded[1] == 0);
+    FAILS(clarity_closest(other, &query, &hits, NULL), CLARITY_USAGE, "another tracer");
+    query.count = 3;
+    FAILS(clarity_closest(tracer, &query, &hits, NULL), CLARITY_USAGE, "count is 3, and the packed rays are 2");
+    int64_t counts[2];
+    query.count = 2;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "give the arrays");
+    clarity_tracer_free(tracer); /* before its rays */
+    clarity_packed_free(packed);
+    clarity_packed_free(NULL);
+    clarity_tracer_free(other);
+}
+
+/* All hits of two rays, as counts and as lists, and with a struct of the first release. */
+void test_all_hits(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer* tracer = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    /* On the common edge of both triangles, past them, and in one of them. */
+    const float origins[] = {0.5f, 0.5f, 4, 3, 3, 4, 0.75f, 0.25f, 4}, direction[] = {0, 0, -2};
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.count = 3;
+    query.origins = origins;
+    query.directions = direction;
+    query.origin_steps[0] = 3 * sizeof(float);
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    int64_t counts[3] = {9, 9, 9};
+    WORKS(clarity_count(tracer, &query, counts, NULL));
+    CHECK(counts[0] == 2 && counts[1] == 0 && counts[2] == 1);
+    clarity_all_hits hits = {0};
+    FAILS(clarity_all(tracer, &query, &hits, NULL), CLARITY_USAGE, "clarity_all_hits::struct_bytes is 0");
+    hits.struct_bytes = sizeof hits;
+    WORKS(clarity_all(tracer, &query, &hits, NULL));
+    CHECK(hits.count == 3 && hits.first[0] == 0 && hits.first[1] == 2 && hits.first[2] == 2 && hits.first[3] == 3);
+    CHECK(hits.ray[1] == 0 && hits.ray[2] == 2 && hits.t[0] == 2 && hits.t[2] == 2 && hits.instance[0] == -1);
+    CHECK(hits.prim[0] == 0 && hits.prim[1] == 1 && hits.prim[2] == 0 && fabsf(hits.uv[4] - 0.5f) < 1e-6f);
+    clarity_all_hits_free(&hits);
+    CHECK(hits.count == 0 && !hits.t && !hits.owner && hits.struct_bytes == sizeof hits);
+    clarity_all_hits_free(&hits);
+    clarity_all_hits_free(NULL);
+
+    query.mask = 256;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "mask 256");
+    query.struct_bytes = offsetof(clarity_rays, mask); /* what lies behind is not read */
+    WORKS(clarity_count(tracer, &query, counts, NULL));
+    query.struct_bytes -= 1;
+    FAILS(clarity_count(tracer, &query, counts, NULL), CLARITY_USAGE, "clarity_rays::struct_bytes");
+    query.struct_bytes = sizeof query;
+    query.mask = 0;
+    FAILS(clarity_count(tracer, &query, NULL, NULL), CLARITY_USAGE, "`counts` is null");
+    FAILS(clarity_all(tracer, &query, NULL, NULL), CLARITY_USAGE, "clarity_all_hits is null");
+    int32_t cancel = 1;
+    clarity_watch watch = {0};
+    watch.struct_bytes = sizeof watch;
+    watch.cancel = &cancel;
+    CHECK(clarity_all(tracer, &query, &hits, &watch) == CLARITY_CANCELLED && !hits.owner);
+    clarity_tracer_free(tracer);
+}
