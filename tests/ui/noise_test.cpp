@@ -59,6 +59,32 @@ TEST_F(Noise, AButtonExplainsThePixelAndDrawsItsPaths) {
     EXPECT_GT(changed, 300u);
 }
 
+// The Stats tab shows how the error falls. Pixels that rest are seen in the mean number of samples.
+TEST_F(Noise, TheErrorIsSeenToFall) {
+    for (const char* line : {"set sampler independent", "tab Stats"}) ASSERT_EQ(window->command(line), "");
+    window->settle();
+    const auto all = window->state()["convergence"];
+    EXPECT_LT(double(all["slope"]), -0.1) << all << "the first samples have found few bright paths";
+    const auto& points = all["points"];
+    ASSERT_EQ(points.size(), 15u) << all;  // 2, 3, 4, 6, 8 ... 256
+    EXPECT_EQ(points[0][0], 2);
+    EXPECT_EQ(points[6][0], 16);
+    EXPECT_EQ(points.back()[0], 256);
+    EXPECT_NEAR(double(points[6][2]) / double(points.back()[2]), 4, 1.5) << all;
+    for (size_t i = 1; i < points.size(); ++i) EXPECT_GT(double(points[i][1]), double(points[i - 1][1])) << "seconds";
+    for (const char* plot : {"error by samples", "error by seconds"})
+        EXPECT_GT(double(window->query(std::string("find ") + plot)["w"]), 100) << plot;
+    ASSERT_EQ(window->command("set adaptive 0.5"), "");
+    nlohmann::json some;
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) {
+        const auto& now = state["convergence"]["points"];
+        return now.size() == 15 && (some = now.back()) != points.back();
+    }));
+    EXPECT_LT(double(some[0]), 200) << some;
+    EXPECT_GT(double(some[0]), 32) << some;
+    EXPECT_GE(double(some[2]), 0.9 * double(points.back()[2])) << some;
+}
+
 TEST_F(Noise, WhatCannotBeExplainedIsSaid) {
     ASSERT_EQ(window->command("why 32 24"), "");
     window->settle();

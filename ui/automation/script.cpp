@@ -379,6 +379,9 @@ std::string Script::state_text(ScriptedWindow& window) const {
         json["depth"] = s.depth;
         json["size"] = std::to_string(s.width) + "x" + std::to_string(s.height);
         json["samples"] = picture->main.stats.samples;
+        json["convergence"] = {{"slope", picture->main.convergence.slope()}, {"points", nlohmann::json::array()}};
+        for (const Convergence::Point& point : picture->main.convergence.points())
+            json["convergence"]["points"].push_back({point.samples, point.seconds, point.error});
         json["spp"] = s.spp;
         json["triangles"] = picture->job.ready->loaded->placed_triangles;
         json["primary"] = picture->main.stats.primary;

@@ -8,6 +8,7 @@
 #include "ui/panel/panel.hpp"
 #include "ui/session/figures.hpp"
 #include "ui/widgets/frame_graph.hpp"
+#include "ui/widgets/log_plot.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -70,6 +71,36 @@ void frame_rows(Session& session) {
     row_text("Kernels", kernels.text, "kernels and copies of a frame by the device's clock: median of the last 30 frames");
     row_label("Keep tracing", "trace the same picture again and again, to measure");
     ImGui::Checkbox("##continuous", &session.desired.continuous);
+}
+
+// How the estimated error falls, with samples and with seconds.
+void convergence_rows(const std::vector<const PictureSide*>& sides) {
+    std::vector<LogSeries> over_samples, over_seconds;
+    Sides error, slope, samples;
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        const Convergence& side = sides[i]->convergence;
+        LogSeries of_samples{{}, ImGui::GetColorU32(side_color(i))}, of_seconds = of_samples;
+        for (const Convergence::Point& point : side.points()) {
+            of_samples.points.emplace_back(point.samples, point.error);
+            if (point.seconds > 0) of_seconds.points.emplace_back(point.seconds, point.error);
+        }
+        over_samples.push_back(of_samples);
+        over_seconds.push_back(of_seconds);
+        char text[32] = "\u2013";
+        if (!side.points().empty()) std::snprintf(text, sizeof text, "%.3g %%", 100 * side.points().back().error);
+        error.add(text);
+        std::snprintf(text, sizeof text, std::isfinite(side.slope()) ? "%.2f" : "\u2013", side.slope());
+        slope.add(text);
+        samples.add(side.points().empty() ? "\u2013" : number_text(std::round(side.points().back().samples * 10) / 10));
+    }
+    draw_log_plot("error by samples", over_samples, -0.5, "samples", 120 * ui_scale());
+    tooltip("estimated error of the picture, by its mean light; dashed line: as errors of independent samples fall");
+    draw_log_plot("error by seconds", over_seconds, -0.5, "seconds", 120 * ui_scale());
+    tooltip("the same, by the seconds that its samples took");
+    row_text("Estimated error", error.text,
+             "the root of the mean squared standard error of the pixels, by their mean light: that of independent samples");
+    row_text("Samples", samples.text, "a pixel, when the error was estimated; the mean, where pixels rest (`Adaptive`)");
+    row_text("Slope", slope.text, "the power of the samples by which the error falls; of independent samples -0.5");
 }
 
 void kernel_bars(const PictureSide& side, unsigned which) {
@@ -241,6 +272,9 @@ void draw_statistics_tab(Session& session) {
     const auto sides = picture_sides(picture);
     section("FRAMES");
     frame_rows(session);
+    const bool converges =
+        std::any_of(sides.begin(), sides.end(), [](const PictureSide* side) { return !side->convergence.points().empty(); });
+    if (converges && folding_section("CONVERGENCE")) convergence_rows(sides);
     if (!sides.empty() && folding_section("TIME BY KERNEL")) kernel_rows(sides);
     if (!sides.empty() && folding_section("RAYS OF THE LAST SAMPLE")) ray_rows(session, sides);
     const auto ready = session.ready();

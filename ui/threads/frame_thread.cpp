@@ -255,6 +255,8 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
             if (finish(false)) wake_();
         };
         side.stats = tracer.frames->trace(prepared, settings, view, order.sample, true, progress, 1, show_last);
+        if (tracer.convergence.add(order.sample, side.stats.wall_ms) && tracer.frames->planes() > 1)
+            tracer.convergence.put(film_noise(tracer.frames->read_sums()));
     } else if (last) {
         side.stats = traced_part(last->stats);
     }
@@ -265,6 +267,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
         side.image = tracer.frames->read_display(settings, &side.stats, &side.scale);
     }
     side.frame_ms = ms_since(begin);
+    side.convergence = tracer.convergence;
     if (side.scale.map != FalseColorScale::Map::none)
         side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
     if (!order.retrace && last) side.frame_ms = last->frame_ms;

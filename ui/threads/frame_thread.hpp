@@ -70,6 +70,7 @@ class FrameThread {
         uint64_t kernel_revision = 0;  // revision of the film's kernels
         std::unique_ptr<MotionBlur> blur;
         std::shared_ptr<const Ready> blur_of;  // what it was made for
+        Convergence convergence;               // of its film
     };
     struct Save {
         Saved outcome;

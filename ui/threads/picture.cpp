@@ -38,6 +38,7 @@ void keep_image(PictureSide& side, const PictureSide& finished) {
     side.image = finished.image;
     side.scale = finished.scale;
     side.values = finished.values;
+    side.convergence = finished.convergence;
     side.stats.samples = finished.stats.samples;
 }
 

@@ -6,6 +6,7 @@
 
 #include "render/film/false_colors.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "ui/threads/convergence.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
@@ -39,6 +40,7 @@ struct PictureSide {
     // known.
     std::shared_ptr<const FloatImage> distance;
     std::shared_ptr<const FloatImage> values;  // the values behind a false-color picture; otherwise nullptr
+    Convergence convergence;                   // of `path`
 };
 
 // How much two images differ.
