@@ -47,7 +47,7 @@ bool Workbench::is_default(const rt_plugin& plugin) const {
 std::vector<std::string> Workbench::accels() const {
     std::vector<std::string> ids;
     for (const rt_plugin* plugin : plugins_.accels())
-        if (plugin->accel->ray_cost == RT_RAY_COST_LINEAR || !quick() || is_default(*plugin)) ids.push_back(plugin->id);
+        if (plugin->id == std::string("linear") || !quick() || is_default(*plugin)) ids.push_back(plugin->id);
     return ids;
 }
 

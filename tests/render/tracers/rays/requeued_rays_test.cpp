@@ -19,9 +19,9 @@ constexpr unsigned kTries = 15;
 constexpr rt_u32 kLong = 64;  // steps: a node or two triangles each
 
 // Rays towards the rubble from all sides. Some are horizontal, some reach only half-way, some are inactive.
-std::vector<rt_ray> rays_at_rubble() {
+std::vector<rt_ray> rays_at_rubble(int count) {
     std::vector<rt_ray> rays;
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < count; ++i) {
         const float a = 0.7f * float(i), b = 1.9f * float(i), x = 6 * std::sin(a), y = 2 * std::cos(b), z = 6 * std::cos(a);
         const float tx = 2 * std::sin(3 * b), ty = 2 * std::cos(5 * a), tz = 2 * std::sin(7 * a);
         const float dx = tx - x, dy = i % 5 ? ty - y : 0, dz = tz - z, length = std::sqrt(dx * dx + dy * dy + dz * dz);
@@ -44,9 +44,9 @@ ScenePtr heap() {
     return shared_scene(scene);
 }
 
-void expect_same_each_time(const ScenePtr& scene) {
-    const std::vector<rt_ray> rays = rays_at_rubble();
-    const Settings settings = make_settings({{"accel", "bvh4"}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}});
+void expect_same_each_time(const ScenePtr& scene, const char* accel = "bvh4", int count = 3000) {
+    const std::vector<rt_ray> rays = rays_at_rubble(count);
+    const Settings settings = make_settings({{"accel", accel}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}});
     const auto counted = Workbench::get().rays(scene, settings, rays, RayQuery{false, true});
     EXPECT_GT(
         std::count_if(counted.begin(), counted.end(), [](const rt_hit& hit) { return hit.steps + hit.leaf_tests / 2 > kLong; }),
@@ -85,6 +85,12 @@ TEST(RequeuedRays, GiveTheHitsOfOneLaunch) {
 
 TEST(RequeuedRays, GiveTheHitsOfOneLaunchWithInstances) {
     expect_same_each_time(heap());
+}
+
+// Each work-item of a group tests some of the primitives.
+TEST(RequeuedRays, GiveTheHitsOfOneLaunchWhereWorkItemsShareAList) {
+    expect_same_each_time(rubble(), "brute", 1000);
+    expect_same_each_time(heap(), "brute", 100);
 }
 
 TEST(Autotuner, UsesTheMinimumTimeWithoutTheWarmUp) {
