@@ -89,7 +89,7 @@ void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::ve
 
 void expect_everywhere(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, size_t allowed) {
     for (const std::string& accel : bench().accels())
-        for (const int lanes : lane_counts()) expect_as_oracle(scene, oracle, rays, accel, lanes, allowed);
+        for (const int lanes : lane_counts(accel)) expect_as_oracle(scene, oracle, rays, accel, lanes, allowed);
 }
 
 // A sphere, a torus and boxes that touch: few triangles, so that `linear`, which tests all of them, is fast enough.
@@ -258,7 +258,7 @@ TEST(Rays, ZeroNanAndInfiniteDirectionsDoNotDisturbOtherRays) {
     for (size_t i = 0; i < sane.size(); ++i) mixed.push_back(i % 5 == 2 ? strange[i / 5 % strange.size()] : sane[i]);
     const int triangles = static_cast<int>(shapes()->triangle_count());
     for (const std::string& accel : bench().accels())
-        for (const int lanes : lane_counts())
+        for (const int lanes : lane_counts(accel))
             for (const bool any : {false, true}) {
                 const std::string what = accel + ", " + std::to_string(lanes) + " lanes" + (any ? ", any" : ", closest");
                 const std::vector<rt_hit> alone = bench().rays(shapes(), settings_of(accel, lanes), sane, any),

@@ -27,6 +27,12 @@ std::vector<int> lane_counts() {
     return quick() ? std::vector<int>{1, 16} : std::vector<int>{1, 4, 8, 16};
 }
 
+std::vector<int> lane_counts(const std::string& accel) {
+    const rt_plugin* const plugin = Workbench::get().plugins().accel(accel);
+    const bool is_spread = plugin && (plugin->accel->capabilities & RT_TRAVERSES_SINGLE_RAYS);
+    return is_spread ? std::vector<int>{1, 16} : lane_counts();
+}
+
 Workbench::Workbench()
     : plugins_(PluginRegistry::discover()),
       device_(std::make_shared<Device>(choose_device(""))),
@@ -131,7 +137,7 @@ std::vector<Configuration> each_accel_and_lanes(const std::vector<std::string>& 
     std::vector<Configuration> all;
     size_t p = 0;
     for (const std::string& accel : accels)
-        for (const int lanes : lane_counts()) {
+        for (const int lanes : lane_counts(accel)) {
             const auto packet = packets()[p++ % packets().size()];
             all.push_back({accel, lanes, packet[0], packet[1]});
         }

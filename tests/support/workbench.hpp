@@ -57,6 +57,9 @@ class Workbench {
 bool quick();
 // The numbers of lanes that tests of kernels try.
 std::vector<int> lane_counts();
+// Of a structure: the narrowest and the widest if its traversal is written for one ray, since the host spreads packets over it
+// by the same text for all of them.
+std::vector<int> lane_counts(const std::string& accel);
 
 // Settings by key: make_settings({{"accel", "bvh2"}, {"lanes", "16"}, {"packet", "4x4"}, {"size", "256x192"}}).
 Settings make_settings(const std::vector<std::pair<std::string, std::string>>& pairs);
