@@ -69,7 +69,7 @@ RT_INLINE rt_sampler rt_sampler_of(const constant rt_frame *frame, const rt_path
 
 /* Begins a path in each lane whose path has ended: of the next sample of its pixel, or of the next pixel of the packet. *next:
  * the first slot that no lane has had. */
-RT_INLINE void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *p, uint *next)
+RT_PART void rt_refill(const constant rt_frame *frame, uint2 origin, rt_path *p, uint *next)
 {
     const uint slots = RT_BLOCKS(frame) * RT_LANES;
     int slot[RT_LANES], sample[RT_LANES], pixel[RT_LANES], xs[RT_LANES], ys[RT_LANES];
