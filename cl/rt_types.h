@@ -165,7 +165,7 @@ typedef struct rt_emitter_run {
     rt_u32 first_prim, first_emitter;
 } rt_emitter_run;
 
-/* The table of emitters as a whole, and the sky. 96 B. */
+/* The table of emitters as a whole, and the sky. 100 B. */
 typedef struct rt_lighting {
     rt_u32 emitter_count, cell_bits; /* the table has 2^cell_bits entries; those beyond emitter_count are cells only */
     rt_u32 run_count;                /* another run follows these, as their end */
@@ -180,6 +180,7 @@ typedef struct rt_lighting {
     rt_u32 sky_below;                /* of RT_PICKS: how many draw a direction below a gradient's horizon */
     rt_f32 sky_horizon_share;        /* of a gradient: mean color of horizon / (horizon + zenith) */
     rt_f32 background[3];
+    rt_f32 sky_scale;                /* of a picture: by which its halves are multiplied */
 } rt_lighting;
 
 /* A picture in the texel buffer: width x height RGBA8, top row first, starting at texel `first`. Behind it are `levels` smaller

@@ -15,11 +15,19 @@
 #define RT_PICTURE_KERNEL kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 #endif
 #define RT_NOINLINE static __attribute__((noinline))
-/* A long function that several places call. Compiled once, programs of a CPU are ready in a third of the time. A GPU has no cheap calls. */
+/* A long function that several places call, or one of the parts of a long kernel. Compiled once, programs of a CPU are ready in a third of the
+ * time: PoCL compiles what stands in a kernel itself three times (the kernel, and two functions that loop over its work-groups), and the time of
+ * a function grows faster than its length. A GPU has no cheap calls. */
 #if RT_CPU
 #define RT_CALLED RT_NOINLINE
 #else
 #define RT_CALLED RT_INLINE
+#endif
+/* A part of a kernel that is long only if surfaces have layers. A call costs the others more than it saves. */
+#if defined(RT_LOBES) && (RT_LOBES & RT_LOBE_LAYERS)
+#define RT_PART RT_CALLED
+#else
+#define RT_PART RT_INLINE
 #endif
 #define RT_CAT_(a, b) a##b
 #define RT_CAT(a, b) RT_CAT_(a, b)

@@ -34,7 +34,7 @@ typedef struct rt_numbers {
 } rt_numbers;
 
 /* The four numbers of a set. With Sobol's points each set is a point of four dimensions, and sets are independent. */
-RT_INLINE rt_numbers rt_draw_set(const rt_sampler *s, vint set)
+RT_PART rt_numbers rt_draw_set(const rt_sampler *s, vint set)
 {
     const vuint sample = rt_as_vuint(s->sample);
     rt_hashes bits = rt_hash(rt_as_vuint(s->pixel), s->sobol != 0u ? rt_vuint(0x68bc21ebu) : sample, rt_as_vuint(set), rt_vuint(s->seed));

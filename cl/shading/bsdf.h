@@ -271,7 +271,7 @@ RT_INLINE vmask rt_takes_lobe(vmask of, vfloat p, vfloat *u)
 }
 
 /* Draws a direction. u_lobe, u1, u2: in [0, 1). Lanes that get none, or are not in `lanes`, are not valid. */
-RT_INLINE rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe, vfloat u1, vfloat u2, vmask lanes)
+RT_PART rt_bsdf_sample rt_bsdf_draw(const rt_bsdf *b, rt_vec wo, vfloat u_lobe, vfloat u1, vfloat u2, vmask lanes)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const vmask smooth = RT_MASK(b->facets.alpha <= zero);

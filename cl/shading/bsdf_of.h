@@ -44,7 +44,7 @@ RT_INLINE void rt_load_matter(const rt_ctx *ctx, const rt_surface *s, int id, vm
 
 /* The surfaces of the lanes in `bits`. entering: the ray comes from the side that the normal points to. around: ior on that side. at: the
  * points, world. */
-RT_INLINE rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask entering, vfloat around, uint bits, rt_vec at)
+RT_PART rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask entering, vfloat around, uint bits, rt_vec at)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     rt_bsdf out;

@@ -71,7 +71,7 @@ RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfl
 }
 
 /* The radiance that the surfaces of hits emit towards the rays' origins. pdf is 0 where no light is drawn from that surface. */
-RT_INLINE rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, const rt_surface *surface, vmask lanes, vfloat *pdf)
+RT_PART rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, const rt_surface *surface, vmask lanes, vfloat *pdf)
 {
     const vfloat zero = rt_vfloat(0.0f);
     const rt_vec direction = rt_vec_of(ray->dx, ray->dy, ray->dz);

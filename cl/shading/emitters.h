@@ -181,7 +181,7 @@ RT_INLINE rt_vec rt_drawn_map(const rt_ctx *ctx, const rt_lit *lit, vfloat u1, v
 #endif
 
 /* Draws a light and a direction towards it from the points `at`, by three random numbers of [0, 1). */
-RT_INLINE rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec at, vfloat u_pick, vfloat u1, vfloat u2,
+RT_PART rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec at, vfloat u_pick, vfloat u1, vfloat u2,
                                         vmask lanes)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);

@@ -33,6 +33,7 @@ RT_INLINE vfloat rt_sky_density_of_place(vfloat share, vfloat sine)
 RT_INLINE rt_vec rt_sky_picture(const rt_ctx *ctx, rt_vec direction, vmask lanes, vfloat *density)
 {
     const global rt_lighting *sky = ctx->lighting;
+    const global half *texels = (const global half *)ctx->sky_texels;
     const int w = (int)sky->sky_width, h = (int)sky->sky_height;
     vfloat u, v, sine;
     rt_sky_place(sky, direction, &u, &v, &sine);
@@ -52,16 +53,16 @@ RT_INLINE rt_vec rt_sky_picture(const rt_ctx *ctx, rt_vec direction, vmask lanes
         if (!(bits >> l & 1u)) continue;
         for (int k = 0; k < 4; ++k) {
             const int dx = k & 1, dy = k >> 1, at_x = column[l] + dx, at_y = min(max(row[l] + dy, 0), h - 1);
-            const global float *texel = ctx->sky_texels + 3ul * ((ulong)at_y * (ulong)w + (ulong)(at_x < 0 ? at_x + w : at_x >= w ? at_x - w : at_x));
+            const ulong texel = 3ul * ((ulong)at_y * (ulong)w + (ulong)(at_x < 0 ? at_x + w : at_x >= w ? at_x - w : at_x));
             const float weight = (dx ? fx[l] : 1.0f - fx[l]) * (dy ? fy[l] : 1.0f - fy[l]);
-            red[l] = fma(weight, texel[0], red[l]);
-            green[l] = fma(weight, texel[1], green[l]);
-            blue[l] = fma(weight, texel[2], blue[l]);
+            red[l] = fma(weight, vload_half(texel, texels), red[l]);
+            green[l] = fma(weight, vload_half(texel + 1ul, texels), green[l]);
+            blue[l] = fma(weight, vload_half(texel + 2ul, texels), blue[l]);
         }
         share[l] = rt_sky_share(ctx->sky_picks, (uint)w, (uint)h, (uint)min(max(cell_row[l], 0), h - 1), (uint)min(max(cell_column[l], 0), w - 1));
     }
     *density = rt_sky_density_of_place(rt_load(share), sine);
-    return rt_mul(rt_spread(sky->sky_color), rt_vec_of(rt_load(red), rt_load(green), rt_load(blue)));
+    return rt_mul(rt_scale(rt_vfloat(sky->sky_scale), rt_spread(sky->sky_color)), rt_vec_of(rt_load(red), rt_load(green), rt_load(blue)));
 }
 
 /* The number of the last of sums[0 .. count] that is at most `number`, of those before the last. */

@@ -28,6 +28,8 @@ show specular SpecularTest.glb 360x250 -.19,0,1.2,-.19,0,0,38 "$sun"
 show rough_glass TransmissionRoughnessTest.glb 370x176 0,.1,2.6,0,0,0,22 "$sky" 200
 show attenuation AttenuationTest.glb 280x280 0,0,32,0,0,0,37 "$sky" 200
 show sunglasses SunglassesKhronos.glb 400x280 .13,.12,.2,0,.025,-.05,36 "$sky"
+show anisotropy_rotation AnisotropyRotationTest.glb 400x380 0,0,11,0,0,0,28 "$sun" 200
+show anisotropy_strength AnisotropyStrengthTest.glb 320x320 -.45,2.7,14,-.45,2.7,0,33 "$sun" 100
 show cesium_man CesiumMan.glb 260x400 2.4,1.2,2,0,.76,0,33 "$sun"
 show fox Fox.glb 400x320 170,80,140,0,36,-8,38 "$sun"
 kaykit=$here/../../scenes/kaykit_dungeon

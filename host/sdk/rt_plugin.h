@@ -391,9 +391,8 @@ enum {
     RT_SPACE_LINEAR, /* all channels are numbers */
     RT_SPACE_HEIGHT, /* r is a height, and the host makes a map of normals of it: white stands out of black by a fiftieth of the picture's
                       * width. A picture that is not grey is a map of normals already. For RT_MAP_NORMAL */
-    /* Appended, for RT_MAP_OPACITY: the host puts the opacity into r, g and b. */
-    RT_SPACE_ALPHA,    /* it is the picture's alpha */
-    RT_SPACE_CLEARNESS /* it is 1 minus the picture's brightness, 0.2127 r + 0.7152 g + 0.0721 b (BT.709) */
+    RT_SPACE_ALPHA,    /* appended, for RT_MAP_OPACITY: the host puts the alpha into all channels */
+    RT_SPACE_CLEARNESS /* appended, for RT_MAP_OPACITY: the host puts 1 minus the brightness, 0.2127 r + 0.7152 g + 0.0721 b, into all channels */
 };
 enum { RT_FILTER_SMOOTH, RT_FILTER_NEAREST }; /* between texels */
 typedef struct rt_texture_desc {

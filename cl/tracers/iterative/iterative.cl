@@ -10,12 +10,10 @@ typedef float rt_film;
 typedef float4 rt_film;
 #endif
 
-RT_PICTURE_KERNEL
-trace_iterative(const constant rt_frame *frame, const uint first_group, global rt_film *film, global uint4 *counters,
-                global float *distances, RT_CTX_PARAMS)
+RT_CALLED void rt_iterative_group(const rt_ctx *scene, const constant rt_frame *frame, uint launched, global rt_film *film,
+                                  global uint4 *counters, global float *distances)
 {
-    RT_CTX_INIT(ctx);
-    const uint launched = first_group + (uint)get_group_id(0);
+    const rt_ctx ctx = *scene;
     uint group = launched;
     const uint layer = rt_layer_of(frame, &group);
     const uint rays = RT_BLOCKS(frame) * RT_LANES;
@@ -41,4 +39,12 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global r
 #endif
         counters[launched * RT_GROUP_PACKETS(frame) + packet] = (uint4)(tally.shadow, tally.secondary, tally.dropped, tally.overflow);
     }
+}
+
+RT_PICTURE_KERNEL
+trace_iterative(const constant rt_frame *frame, const uint first_group, global rt_film *film, global uint4 *counters,
+                global float *distances, RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    rt_iterative_group(&ctx, frame, first_group + (uint)get_group_id(0), film, counters, distances);
 }

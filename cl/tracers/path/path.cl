@@ -3,14 +3,13 @@
  * A lane whose path has ended takes the next pixel of the packet (state.h), so that all lanes have work until few pixels are
  * left. There is no queue of rays. A work-item of one lane does the same with the samples of its pixel. */
 
-/* film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's, samples that are not finite, and full stacks.
- * distances: those of sample 0's camera rays, as in iterative.cl. */
-RT_PICTURE_KERNEL
-trace_path(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters, global float *distances,
-           RT_CTX_PARAMS)
+/* Traces the packets of a group of the launch. film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's,
+ * samples that are not finite, and full stacks. distances: those of sample 0's camera rays, as in iterative.cl. */
+RT_CALLED void rt_path_group(const rt_ctx *scene, const constant rt_frame *frame, uint group, global float4 *film, global uint4 *counters,
+                             global float *distances)
 {
-    RT_CTX_INIT(ctx);
-    const uint group = first_group + (uint)get_group_id(0), rays = RT_BLOCKS(frame) * RT_LANES;
+    const rt_ctx ctx = *scene;
+    const uint rays = RT_BLOCKS(frame) * RT_LANES;
     RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
@@ -27,4 +26,12 @@ trace_path(const constant rt_frame *frame, const uint first_group, global float4
         }
         counters[number] = (uint4)(tally.shadow, tally.secondary, not_finite, tally.overflow);
     }
+}
+
+RT_PICTURE_KERNEL
+trace_path(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters, global float *distances,
+           RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    rt_path_group(&ctx, frame, first_group + (uint)get_group_id(0), film, counters, distances);
 }

@@ -78,7 +78,7 @@ RT_INLINE bool rt_working_pixel_of_slot(const constant rt_frame *frame, const gl
 
 /* Begins a path in each lane whose path has ended: of the next sample of its pixel, or of the next pixel of the packet that takes
  * samples. *next: the first slot that no lane has had. film: of the picture; 0 if all slots have been had. */
-RT_INLINE void rt_refill(const constant rt_frame *frame, const global float4 *film, uint2 origin, rt_path *p, uint *next)
+RT_PART void rt_refill(const constant rt_frame *frame, const global float4 *film, uint2 origin, rt_path *p, uint *next)
 {
     const uint slots = RT_BLOCKS(frame) * RT_LANES;
     int slot[RT_LANES], sample[RT_LANES], pixel[RT_LANES], xs[RT_LANES], ys[RT_LANES];

@@ -242,6 +242,7 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
     }
     const SkyValues& values = sky_of(scene, view);
     set_sky(values, view, out.lighting);
+    out.lighting.sky_scale = sky.scale;
     if (const double flux = flux_of_sky(out.lighting, sky); flux > 0) {
         out.lighting.sky_emitter = rt_u32(out.emitters.size());
         rt_emitter emitter{};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "base/half.hpp"
 #include "base/parallel_for.hpp"
 #include "render/emitters/pick_table.hpp"
 
@@ -25,6 +26,8 @@ void append_sums(const std::vector<double>& weights, rt_u32* sums) {
 
 SkyTable make_sky_table(const Sky& sky) {
     SkyTable table;
+    for (const float texel : sky.texels)
+        while (texel > kLargestHalf * table.scale) table.scale *= 2;
     const size_t w = sky.values.width, h = sky.values.height;
     if (sky.values.kind != RT_SKY_PICTURE || w == 0 || h == 0) return table;
     const float* const texels = sky.texels.data();
@@ -33,6 +36,7 @@ SkyTable make_sky_table(const Sky& sky) {
         return (double(rgb[0]) + rgb[1] + rgb[2]) / 3;
     };
     table.picks.resize(h + 1 + h * (w + 1));
+    table.halves.resize(3 * w * h);
     std::vector<double> rows(h);
     parallel_for(static_cast<uint32_t>(h), [&](uint32_t y) {
         // The mean of a bilinear function over a cell around a texel: weights 1, 6, 1 of 8 along each axis.
@@ -48,6 +52,7 @@ SkyTable make_sky_table(const Sky& sky) {
         const double solid_angle =
             2 * kPi / double(w) * 2 * std::sin(kPi * (y + 0.5) / double(h)) * std::sin(kPi / (2 * double(h)));
         rows[y] = sum * solid_angle;
+        for (size_t i = 3 * w * y; i < 3 * w * (y + 1); ++i) table.halves[i] = to_half(texels[i] / table.scale);
     });
     for (const double row : rows) table.flux += row;
     append_sums(rows, table.picks.data());

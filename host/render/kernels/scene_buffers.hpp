@@ -42,7 +42,7 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), nullptr, true},
     {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, nullptr, true},
     {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), nullptr, true},
-    {"float", "sky_texels", "picture of the sky", 0, nullptr, true},
+    {"ushort", "sky_texels", "picture of the sky", 0, nullptr, true},
     {"uint", "sky_picks", "tables of the sky", 0, nullptr, true},
 };
 

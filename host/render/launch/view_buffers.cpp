@@ -66,7 +66,8 @@ void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::sh
     if (!sky_of_.shares(scene.sky.texels) || !sky_texels_.get()()) {
         sky_of_ = scene.sky.texels;
         sky_ = make_sky_table(scene.sky);
-        upload(sky_texels_, sky_of_);
+        upload(sky_texels_, sky_.halves);
+        std::vector<uint16_t>().swap(sky_.halves);
         upload(sky_picks_, sky_.picks);
     }
     MovedPrims prims;

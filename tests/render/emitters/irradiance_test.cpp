@@ -215,6 +215,25 @@ TEST(Irradiance, PictureTurnsAboutTheZenith) {
     }
 }
 
+// Texels are halves of 11 digits; of a picture that is too bright for them all are divided by a power of two.
+TEST(Irradiance, PictureIsRoundedToHalves) {
+    for (const float brightest : {0.1f, 1000.3f, 65504.0f, 65536.0f, 1e6f, 3e9f}) {
+        Scene scene = empty_scene();
+        SkyValues& sky = scene.sky.values;
+        sky.kind = RT_SKY_PICTURE;
+        sky.width = 64;
+        sky.height = 32;
+        std::vector<float> texels(3 * 64 * 32, brightest);
+        for (size_t i = 0; i < texels.size(); i += 3) texels[i] = brightest * 1e-5f;
+        scene.sky.texels = texels;
+        LightBench bench(scene, dark_view());
+        for (const LightDraw& ray : bench.find({0, 0, 0}, even_numbers(64, 1))) {
+            EXPECT_NEAR(ray.found[1] / brightest, 1, std::ldexp(1, -11)) << brightest;
+            EXPECT_NEAR(ray.found[0] / (brightest * 1e-5), 1, brightest < 1 ? 0.04 : std::ldexp(1, -10)) << brightest;
+        }
+    }
+}
+
 // Between middles of texels the radiance is bilinear, across the seam at u = 0 too; beyond the last rows it is that of the
 // rows.
 TEST(Irradiance, PictureIsBilinear) {
