@@ -85,6 +85,29 @@ TEST_F(Noise, TheErrorIsSeenToFall) {
     EXPECT_GE(double(some[2]), 0.9 * double(points.back()[2])) << some;
 }
 
+// A side whose samples are cheaper gets more of them, in the same seconds.
+TEST_F(Noise, SidesGetTheSameTime) {
+    window->key("c");
+    ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state.contains("other"); }));
+    for (const char* line : {"set size 256x192", "set spp 100", "compare b", "set depth 1", "tab Render"})
+        ASSERT_EQ(window->command(line), "");
+    window->settle();
+    EXPECT_EQ(window->state()["caption"]["noise"], "");
+    window->click_on("Equal time");
+    nlohmann::json a, b;
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) {
+        a = state["convergence"]["points"], b = state["other"]["convergence"]["points"];
+        return state["samples"] == 100 && !a.empty() && a.back()[0] == 100 && !b.empty() &&
+               state["other"]["caption"]["noise"] != "";
+    }));
+    EXPECT_GT(double(b.back()[0]), 130) << b;
+    EXPECT_GE(double(b.back()[1]), double(a.back()[1])) << a << b;
+    EXPECT_LT(double(b.back()[1]), double(a.back()[1]) + 1) << a << b << "a sample more, on a busy machine";
+    window->settle();
+    const auto state = window->state();
+    EXPECT_NE(std::string(state["caption"]["noise"]).find("of error, 100 samples in"), std::string::npos) << state["caption"];
+}
+
 TEST_F(Noise, WhatCannotBeExplainedIsSaid) {
     ASSERT_EQ(window->command("why 32 24"), "");
     window->settle();

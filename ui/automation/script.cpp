@@ -46,8 +46,15 @@ void choose_accel(Session& session, const std::string& text) {
     }
 }
 
+nlohmann::json convergence_json(const Convergence& convergence) {
+    nlohmann::json json = {{"slope", convergence.slope()}, {"points", nlohmann::json::array()}};
+    for (const Convergence::Point& point : convergence.points())
+        json["points"].push_back({point.samples, point.seconds, point.error});
+    return json;
+}
+
 nlohmann::json caption_json(const Caption& caption) {
-    return {{"speed", caption.speed}, {"verdict", caption.verdict}};
+    return {{"speed", caption.speed}, {"noise", caption.noise}, {"verdict", caption.verdict}};
 }
 
 long resident_kilobytes() {
@@ -363,6 +370,7 @@ std::string Script::state_text(ScriptedWindow& window) const {
                          {"depth", picture->other->settings.depth},
                          {"samples", picture->other->stats.samples},
                          {"frame_ms", picture->other->frame_ms},
+                         {"convergence", convergence_json(picture->other->convergence)},
                          {"caption", caption_json(caption_of(session, *picture, 1))}};
         json["caption"] = caption_json(caption_of(session, *picture, 0));
         if (picture->difference)
@@ -379,9 +387,7 @@ std::string Script::state_text(ScriptedWindow& window) const {
         json["depth"] = s.depth;
         json["size"] = std::to_string(s.width) + "x" + std::to_string(s.height);
         json["samples"] = picture->main.stats.samples;
-        json["convergence"] = {{"slope", picture->main.convergence.slope()}, {"points", nlohmann::json::array()}};
-        for (const Convergence::Point& point : picture->main.convergence.points())
-            json["convergence"]["points"].push_back({point.samples, point.seconds, point.error});
+        json["convergence"] = convergence_json(picture->main.convergence);
         json["spp"] = s.spp;
         json["triangles"] = picture->job.ready->loaded->placed_triangles;
         json["primary"] = picture->main.stats.primary;

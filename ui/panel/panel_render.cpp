@@ -31,6 +31,10 @@ void compare_rows(Session& session, UiState& state) {
             if (option(kCompareNames[i], static_cast<int>(state.compare_mode) == i)) state.compare_mode = CompareMode(i);
         ImGui::EndCombo();
     }
+    row_label("Equal time",
+              "B gets as many samples as fit into the seconds of A's samples; the captions then compare their errors");
+    ImGui::Checkbox("##equal time", &session.desired.equal_time);
+    note_rect("Equal time");
     row_label("");
     const float width = share_of_line(2);
     if (button("Swap", "A becomes B and B becomes A (X)", width)) session.swap_sides();

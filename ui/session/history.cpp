@@ -48,15 +48,16 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
     return names;
 }
 
-// Restores all but the camera, the time within a clip, and the flag `continuous`, which is only for measuring.
+// Restores all but the camera, the time within a clip, and what is only for measuring.
 void restore(DesiredState& desired, const DesiredState& from) {
     const Camera camera = desired.camera;
-    const bool continuous = desired.continuous;
+    const bool continuous = desired.continuous, equal_time = desired.equal_time;
     const PoseTime pose = desired.pose;
     desired = from;
     if (desired.pose.clip == pose.clip) desired.pose = pose;
     desired.camera = camera;
     desired.continuous = continuous;
+    desired.equal_time = equal_time;
 }
 
 }  // namespace

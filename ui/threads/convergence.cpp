@@ -17,7 +17,8 @@ bool Convergence::add(unsigned sample, double ms) {
 
 void Convergence::put(const FilmNoise& noise) {
     // Neither has a logarithm.
-    if (noise.error > 0 && std::isfinite(noise.error)) points_.push_back({noise.mean_samples, seconds_, noise.error});
+    const bool known = !points_.empty() && points_.back().samples == noise.mean_samples;
+    if (noise.error > 0 && std::isfinite(noise.error) && !known) points_.push_back({noise.mean_samples, seconds_, noise.error});
 }
 
 double Convergence::slope() const {

@@ -41,6 +41,7 @@ struct DesiredState {
     std::array<double, 2> loop{};  // the seconds of the clip that are played, again and again
     float speed = 1;               // of the clip's clock while it plays
     bool continuous = false;       // trace again and again, to measure
+    bool equal_time = false;       // the second side gets the seconds of the first, and not its samples
     float resolution_scale = 1;    // factor for the picture's width and height
     // Target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels.
     float moving_fps = kMovingFps;

@@ -249,17 +249,22 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
                                     Progress& progress, AsyncReadback& image) {
     PictureSide side;
     side.settings = settings;
-    const auto begin = Clock::now();
+    auto begin = Clock::now();
     if (order.retrace) {
         const auto show_last = [this] {
             if (finish(false)) wake_();
         };
-        side.stats = tracer.frames->trace(prepared, settings, view, order.sample, true, progress, 1, show_last);
-        if (tracer.convergence.add(order.sample, side.stats.wall_ms) && tracer.frames->planes() > 1)
-            tracer.convergence.put(film_noise(tracer.frames->read_sums()));
+        tracer.samples = order.sample;
+        do {
+            begin = Clock::now();
+            side.stats = tracer.frames->trace(prepared, settings, view, tracer.samples, true, progress, 1, show_last);
+            if (tracer.convergence.add(tracer.samples++, side.stats.wall_ms) && tracer.frames->planes() > 1)
+                tracer.convergence.put(film_noise(tracer.frames->read_sums()));
+        } while (tracer.convergence.seconds() < order.until_s);
     } else if (last) {
         side.stats = traced_part(last->stats);
     }
+    if (order.last && tracer.frames->planes() > 1) tracer.convergence.put(film_noise(tracer.frames->read_sums()));
     if (tracer.frames->overlaps_copies()) {
         image = tracer.frames->begin_display(settings);
         if (!order.overlaps) side.image = std::exchange(image, {}).wait(&side.stats.kernels);
@@ -396,6 +401,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     Order order;
     order.sample = sample;
     order.retrace = retrace;
+    order.last = job.equal_time && retrace && sample + 1 >= unsigned(job.settings.spp);
     order.distance = distance;
     order.overlaps = !two;
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
@@ -408,6 +414,11 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     picture->main = side_of(0, job.ready->main, *on_main, job.settings);
     double ms = picture->main.frame_ms;
     if (two) {
+        if (job.equal_time && sample > 0) {
+            order.sample = tracers_[1].samples;
+            order.until_s = tracers_[0].convergence.seconds();
+            order.retrace = retrace && tracers_[1].convergence.seconds() < order.until_s;
+        }
         picture->other = side_of(1, *job.ready->other, *on_other, *job.other_settings);
         ms += picture->other->frame_ms;
     }

@@ -71,6 +71,7 @@ class FrameThread {
         std::unique_ptr<MotionBlur> blur;
         std::shared_ptr<const Ready> blur_of;  // what it was made for
         Convergence convergence;               // of its film
+        unsigned samples = 0;                  // in its film
     };
     struct Save {
         Saved outcome;
@@ -91,6 +92,8 @@ class FrameThread {
     struct Order {  // what is to be done for a side
         unsigned sample = 0;
         bool retrace = false, distance = false;
+        bool last = false;      // all samples are traced then
+        double until_s = 0;     // further samples follow until it has so many seconds
         bool overlaps = false;  // the image may be copied while the next picture is traced
     };
     PictureSide trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,

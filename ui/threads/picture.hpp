@@ -23,6 +23,7 @@ struct FrameJob {
     uint64_t revision = 0;          // when it changes, the films start again from sample 0
     uint64_t display_revision = 0;  // when it changes, the films are displayed again
     bool continuous = false;        // trace again and again, to measure
+    bool equal_time = false;        // of two sides: DesiredState::equal_time
     float resolution_scale = 1;     // factor for the settings' width and height
     float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
 };

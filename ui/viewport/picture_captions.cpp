@@ -70,6 +70,14 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
         std::snprintf(text, sizeof text, "%s of kernels, %.1f Mrays/s", time_text(ms).c_str(), mrays_per_second(session, side));
         caption.speed = text;
     }
+    const Convergence& convergence = picture_side(picture, side).convergence;
+    if (picture.job.equal_time && !convergence.points().empty()) {
+        const Convergence::Point& last = convergence.points().back();
+        char text[96];
+        std::snprintf(text, sizeof text, "%.3g %% of error, %.4g samples in %s", 100 * last.error, last.samples,
+                      time_text(1000 * last.seconds).c_str());
+        caption.noise = text;
+    }
     caption.verdict = speed_verdict(mine, others);
     caption.faster = !caption.verdict.empty() && caption.verdict != kAboutTheSame;
     return caption;
@@ -80,6 +88,7 @@ std::vector<HudText> caption_lines(const Caption& caption) {
     if (!caption.speed.empty()) lines.push_back({caption.speed, colors::kText, false, true});
     if (!caption.verdict.empty())
         lines.push_back({caption.verdict, caption.faster ? colors::kGreen : colors::kDim, caption.faster, true});
+    if (!caption.noise.empty()) lines.push_back({caption.noise, colors::kText, false, true});
     if (!caption.details.empty()) lines.push_back({caption.details, colors::kDim});
     return lines;
 }
