@@ -8,16 +8,11 @@ namespace {
 
 using namespace clarity::bvh;
 
-Box box_of(const RefitBox& from) {
-    Box box;
+void set_sphere(spheres_node& node, const RefitBox& box) {
     alignas(16) float lo[4], hi[4];
-    store(lo, from.lo);
-    store(hi, from.hi);
-    for (int k = 0; k < 3; ++k) {
-        box.lo[k] = lo[k];
-        box.hi[k] = hi[k];
-    }
-    return box;
+    store(lo, box.lo);
+    store(hi, box.hi);
+    spheres::set_sphere(node, lo, hi);
 }
 
 // A node's sphere is that of the box around its primitives, as in a build, so it does not grow from level to level.
@@ -61,7 +56,7 @@ class SpheresRefit {
             box = node_box(at + 1);
             box.add(node_box(nodes_[at + 1].skip));
         }
-        if (node.radius < kEverywhere) set_sphere(node, box_of(box));
+        if (node.radius < kEverywhere) set_sphere(node, box);
         const Vec4 area = unit.area(box);
         if (node.count > 0)
             areas.primitives = areas.primitives + area * splat(static_cast<float>(node.count));
@@ -71,7 +66,7 @@ class SpheresRefit {
     }
     void finish(uint32_t group, const RefitBox& box) const {
         spheres_node& head = nodes_[in_->roots[group]];
-        if (head.skip > in_->roots[group] + 1) set_sphere(head, box_of(box));
+        if (head.skip > in_->roots[group] + 1) set_sphere(head, box);
     }
 
  private:
