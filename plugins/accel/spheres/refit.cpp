@@ -8,11 +8,16 @@ namespace {
 
 using namespace clarity::bvh;
 
-void set_sphere(spheres_node& node, const RefitBox& box) {
+Box box_of(const RefitBox& from) {
+    Box box;
     alignas(16) float lo[4], hi[4];
-    store(lo, box.lo);
-    store(hi, box.hi);
-    spheres::set_sphere(node, lo, hi);
+    store(lo, from.lo);
+    store(hi, from.hi);
+    for (int k = 0; k < 3; ++k) {
+        box.lo[k] = lo[k];
+        box.hi[k] = hi[k];
+    }
+    return box;
 }
 
 // A node's sphere is that of the box around its primitives, as in a build, so it does not grow from level to level.
@@ -56,7 +61,7 @@ class SpheresRefit {
             box = node_box(at + 1);
             box.add(node_box(nodes_[at + 1].skip));
         }
-        if (node.radius < kEverywhere) set_sphere(node, box);
+        if (node.radius < kEverywhere) set_sphere(node, box_of(box));
         const Vec4 area = unit.area(box);
         if (node.count > 0)
             areas.primitives = areas.primitives + area * splat(static_cast<float>(node.count));
@@ -66,7 +71,7 @@ class SpheresRefit {
     }
     void finish(uint32_t group, const RefitBox& box) const {
         spheres_node& head = nodes_[in_->roots[group]];
-        if (head.skip > in_->roots[group] + 1) set_sphere(head, box);
+        if (head.skip > in_->roots[group] + 1) set_sphere(head, box_of(box));
     }
 
  private:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <cstring>
 
 namespace spheres {
 
@@ -98,21 +97,16 @@ uint64_t tree_size(const Rules& rules, uint64_t count, uint32_t depth) {
     return tree_sizes(rules, count, depth).of_n;
 }
 
-void set_sphere(spheres_node& node, const float lo[3], const float hi[3]) {
+void set_sphere(spheres_node& node, const Box& box) {
     double square = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const float center = 0.5f * lo[axis] + 0.5f * hi[axis];
-        node.center[axis] = center;
-        const double half = std::max(double{hi[axis]} - center, center - double{lo[axis]});
+        node.center[axis] = box.center(axis);
+        const double half = std::max(double{box.hi[axis]} - node.center[axis], node.center[axis] - double{box.lo[axis]});
         square += half * half;
     }
     const double radius = std::sqrt(square) * (1 + 4 * DBL_EPSILON);
-    const auto nearest = static_cast<float>(radius);
-    // The next float above a number that is not negative. A refit does this for each node, and std::nextafter() is slow.
-    uint32_t bits;
-    std::memcpy(&bits, &nearest, sizeof bits);
-    bits += nearest < radius;
-    std::memcpy(&node.radius, &bits, sizeof bits);
+    node.radius = static_cast<float>(radius);
+    if (node.radius < radius) node.radius = std::nextafter(node.radius, INFINITY);
 }
 
 void build_tree(const Forest& forest, uint32_t first, uint32_t count, uint32_t at, uint32_t level) {

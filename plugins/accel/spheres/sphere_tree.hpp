@@ -37,12 +37,8 @@ struct Rules {
 // number of steps proportional to the depth.
 uint64_t tree_size(const Rules& rules, uint64_t count, uint32_t depth = 0);
 
-// Sets the centre and the radius of a node: those of a box. The radius is rounded up, so that every corner of the box is
-// inside.
-void set_sphere(spheres_node& node, const float lo[3], const float hi[3]);
-inline void set_sphere(spheres_node& node, const Box& box) {
-    set_sphere(node, box.lo, box.hi);
-}
+// Sets the centre and the radius of a node. The radius is rounded up, so that every corner of the box is inside.
+void set_sphere(spheres_node& node, const Box& box);
 
 struct Forest {
     const rt_host* host;
