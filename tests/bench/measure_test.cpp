@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <ctime>
 #include <thread>
 
 #include "base/error.hpp"
@@ -81,6 +82,35 @@ TEST(Measure, SteadyContendersEndEarly) {
     EXPECT_DOUBLE_EQ(measured[0].time_ms.median, 4);
     EXPECT_DOUBLE_EQ(measured[0].wall_ms.median, 5);
     EXPECT_DOUBLE_EQ(measured[1].time_ms.median, 8);
+}
+
+// Of a busy machine a thread gets less than a processor, so the two contenders are compared with each other.
+TEST(Measure, BusyProcessorsAreCounted) {
+    const auto works = [](double ms) {
+        const auto used_ms = [] {
+            timespec used{};
+            clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+            return 1e3 * double(used.tv_sec) + 1e-6 * double(used.tv_nsec);
+        };
+        for (const double begin = used_ms(); used_ms() - begin < ms;) {
+        }
+    };
+    const Contender sleeps{"sleeps", [] {
+                               std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                               return Sample{20, 20};
+                           }};
+    const Contender busy{"busy", [=] {
+                             std::thread other([&] { works(10); });
+                             works(10);
+                             other.join();
+                             return Sample{10, 10};
+                         }};
+    Progress progress;
+    const auto results = measure_interleaved({sleeps, busy}, MeasureRules{}, progress);
+    EXPECT_GE(results[0].processors, 0);
+    EXPECT_LT(results[0].processors, 0.2);
+    EXPECT_GT(results[1].processors, 4 * results[0].processors);
+    EXPECT_GT(results[1].processors, 0);
 }
 
 TEST(Measure, OnlyTheUnsteadyContenderIsRefused) {

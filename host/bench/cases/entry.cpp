@@ -54,6 +54,7 @@ void set_result(BenchRecord& row, const Measured& measured) {
     row.why = measured.why;
     row.time_ms = measured.time_ms;
     row.wall_ms = measured.wall_ms;
+    row.processors = measured.processors;
 }
 
 void set_rates(BenchRecord& row) {

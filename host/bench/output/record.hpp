@@ -93,9 +93,10 @@ struct BenchRecord {
     std::string why;  // unless ok: the reason, and what to do
 
     // ---- figures; withheld if the row is refused
-    Summary time_ms;  // by the device's clock: kernels only. build: builder and packing
-    Summary wall_ms;  // by the host's clock. frame: from the call to pixels in host memory; else: time of the call
-    double fps = 0;   // frames only: frames a second, from the median wall time
+    Summary time_ms;        // by the device's clock: kernels only. build: builder and packing
+    Summary wall_ms;        // by the host's clock. frame: from the call to pixels in host memory; else: time of the call
+    double processors = 0;  // that this process kept busy during a repetition, median; 0: not known
+    double fps = 0;         // frames only: frames a second, from the median wall time
     uint64_t rays_primary = 0, rays_shadow = 0, rays_secondary = 0, rays_dropped = 0;  // per repetition; active rays only
     uint64_t hits = 0;                                                                 // of rows which trace rays
     double mrays_per_s = 0;  // million rays a second, all rays and median device time

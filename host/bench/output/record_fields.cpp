@@ -254,6 +254,7 @@ const Fields<BenchRecord>& record_fields() {
         times("time_ms", &R::time_ms),
         times("wall_ms", &R::wall_ms),
         {"frame_ms", [](const R& r) { return r.measure == "frame" ? summary_json(r, r.time_ms) : Json(); }, {}},
+        figure_of(unless_empty("processors", &R::processors, {"procs", "processors"})),
         figure_of(unless_empty("fps", &R::fps, {"fps", "fps"})),
         count_of({"rays",
                   [](const R& r) { return write_fields(rays_fields(), r); },

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
@@ -18,8 +19,13 @@ struct Runner {
     Measured result;
     double once_s = 0;     // wall time of the last repetition of the warm-up, seconds
     unsigned variant = 0;  // variant which the samples were taken with
-    std::vector<double> time_ms, wall_ms;
+    std::vector<double> time_ms, wall_ms, processors;
     bool running() const { return result.status == RowStatus::ok; }
+    void forget() {
+        time_ms.clear();
+        wall_ms.clear();
+        processors.clear();
+    }
 };
 
 // If a contender's tuning does not settle, the contender is measured as it is after so many trials.
@@ -37,6 +43,13 @@ bool run_once(Runner& runner, Sample& result) {
         runner.result.why = failure_text(e);
         return false;
     }
+}
+
+// Of all threads of this process, in ms.
+double processor_ms() {
+    timespec used{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return 1e3 * double(used.tv_sec) + 1e-6 * double(used.tv_nsec);
 }
 
 // Runs each contender at least twice: the first repetition compiles, loads pages and wakes threads, the second tells how long
@@ -75,17 +88,21 @@ bool all_steady(const std::vector<Runner>& runners, double spread) {
 // than before, the samples of the old variant are dropped.
 void take_sample(Runner& runner) {
     Sample sample;
+    double processors = 0;
     for (unsigned i = 0; i < kMostTrials; ++i) {
+        const double before_ms = processor_ms();
+        const auto begin = Clock::now();
         if (!run_once(runner, sample)) return;
+        processors = (processor_ms() - before_ms) / std::max(ms_since(begin), 1e-6);
         if (!sample.trial) break;
     }
     if (sample.variant != runner.variant) {
-        runner.time_ms.clear();
-        runner.wall_ms.clear();
+        runner.forget();
         runner.variant = sample.variant;
     }
     runner.time_ms.push_back(sample.time_ms);
     runner.wall_ms.push_back(sample.wall_ms);
+    runner.processors.push_back(processors);
 }
 
 bool all_have(const std::vector<Runner>& runners, size_t samples) {
@@ -96,10 +113,7 @@ bool all_have(const std::vector<Runner>& runners, size_t samples) {
 // Takes rounds of samples until all contenders are steady or the budget is used up.
 void take_rounds(std::vector<Runner>& runners, const MeasureRules& rules, double budget_s, Progress& progress) {
     const auto begin = Clock::now();
-    for (Runner& runner : runners) {
-        runner.time_ms.clear();
-        runner.wall_ms.clear();
-    }
+    for (Runner& runner : runners) runner.forget();
     for (unsigned round = 0; round < rules.max_rounds; ++round) {
         if (round >= rules.few_rounds && all_have(runners, rules.few_rounds)) {
             const double used = seconds_since(begin), next = used / round;
@@ -148,6 +162,7 @@ std::vector<Measured> measure_interleaved(const std::vector<Contender>& contende
     for (Runner& runner : runners) {
         runner.result.time_ms = summarize(runner.time_ms);
         runner.result.wall_ms = summarize(runner.wall_ms);
+        runner.result.processors = summarize(runner.processors).median;
         refuse_unsteady(runner.result, rules);
         results.push_back(runner.result);
     }

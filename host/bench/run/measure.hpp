@@ -39,6 +39,7 @@ struct Measured {
     RowStatus status = RowStatus::ok;
     std::string why;  // reason, unless status is ok
     Summary time_ms, wall_ms;
+    double processors = 0;  // that this process kept busy, median: 1.0 where one of two threads waits; 0: not known
     double spread() const;  // the larger one of both
 };
 

@@ -8,11 +8,10 @@
 namespace cwbvh {
 namespace {
 
-using clarity::bvh::Grid;
-using clarity::bvh::kEmpty;
+using namespace clarity::bvh;
 
 constexpr int kExponentBias = CWBVH_EXPONENT_BIAS;  // as in a float
-constexpr clarity::bvh::GridRule kRule{CWBVH_BIAS, CWBVH_MARGIN, CWBVH_LEAST_EXPONENT, CWBVH_MOST_EXPONENT};
+constexpr GridRule kRule{CWBVH_BIAS, CWBVH_MARGIN, CWBVH_LEAST_EXPONENT, CWBVH_MOST_EXPONENT};
 
 // Eight numbers of 0..255 as bytes, the first one lowest.
 uint64_t bytes_of(const int numbers[8]) {
@@ -28,38 +27,34 @@ uint64_t bytes_of(const int numbers[8]) {
 #endif
 }
 
+// Bit i of eight becomes the bits of byte i.
+uint64_t spread(uint32_t bits) {
+    const uint64_t far = (bits | uint64_t{bits} << 28) & 0x0000000F0000000Fu, two = (far | far << 14) & 0x0003000300030003u;
+    return ((two | two << 7) & 0x0101010101010101u) * 255u;
+}
+
 }  // namespace
 
-void quantize(const WideNode& from, cwbvh_node& to) {
-    rt_u32 is_empty[8];
-    uint64_t empty_bytes = 0;  // of a slot: 255, or 0
-    for (int slot = 0; slot < 8; ++slot) {
-        is_empty[slot] = from.child[slot] == kEmpty;
-        empty_bytes |= uint64_t{is_empty[slot] ? 255u : 0u} << 8 * slot;
-    }
+void quantize(const Bounds8& from, uint32_t used, cwbvh_node& to) {
+    const Vec4 used_lanes[2] = {mask_of(used), mask_of(used >> 4)};
+    const uint64_t empty_bytes = ~spread(used);
     to.cells &= 0xFF000000u;
     for (int a = 0; a < 3; ++a) {
-        float low[8], high[8], lo = FLT_MAX, hi = -FLT_MAX;
-        for (int slot = 0; slot < 8; ++slot) {
-            low[slot] = is_empty[slot] ? FLT_MAX : from.plane[a][slot];
-            high[slot] = is_empty[slot] ? -FLT_MAX : from.plane[3 + a][slot];
-            lo = low[slot] < lo ? low[slot] : lo;
-            hi = hi < high[slot] ? high[slot] : hi;
-        }
-        if (empty_bytes == ~uint64_t{0}) lo = hi = 0;
+        const auto chosen = [&](const Vec4 rows[2], int half, float otherwise) {
+            return select(used_lanes[half], rows[half], splat(otherwise));
+        };
+        float lo = least(min(chosen(from.lo[a], 0, FLT_MAX), chosen(from.lo[a], 1, FLT_MAX)));
+        float hi = greatest(max(chosen(from.hi[a], 0, -FLT_MAX), chosen(from.hi[a], 1, -FLT_MAX)));
+        if (used == 0) lo = hi = 0;
         const Grid grid = Grid::around(kRule, lo, hi);
         to.origin[a] = grid.origin();
         to.cells |= static_cast<rt_u32>(grid.exponent() + kExponentBias) << 8 * a;
-        // Empty slots take a bound of the node meanwhile, because every coordinate must be within the grid.
         int lower[8] = {}, upper[8] = {};
-        for (int slot = 0; slot < 8; ++slot) {
-            low[slot] = is_empty[slot] ? lo : low[slot];
-            high[slot] = is_empty[slot] ? hi : high[slot];
-        }
         if (!grid.unbounded()) {
-            for (int slot = 0; slot < 8; slot += 4) {
-                grid.lower_four(low + slot, lower + slot);
-                grid.upper_four(high + slot, upper + slot);
+            // Empty slots take a bound of the node meanwhile, because every coordinate must be within the grid.
+            for (int half = 0; half < 2; ++half) {
+                grid.lower_four(chosen(from.lo[a], half, lo), lower + 4 * half);
+                grid.upper_four(chosen(from.hi[a], half, hi), upper + 4 * half);
             }
         }
         const uint64_t none = empty_bytes | (grid.unbounded() ? ~uint64_t{0} : 0);
@@ -69,6 +64,19 @@ void quantize(const WideNode& from, cwbvh_node& to) {
         to.planes[a][2] = static_cast<rt_u32>(highs);
         to.planes[a][3] = static_cast<rt_u32>(highs >> 32);
     }
+}
+
+void quantize(const WideNode& from, cwbvh_node& to) {
+    Bounds8 bounds;
+    uint32_t used = 0;
+    for (int a = 0; a < 3; ++a) {
+        for (int half = 0; half < 2; ++half) {
+            bounds.lo[a][half] = load_any(from.plane[a] + 4 * half);
+            bounds.hi[a][half] = load_any(from.plane[3 + a] + 4 * half);
+        }
+    }
+    for (uint32_t slot = 0; slot < 8; ++slot) used |= uint32_t{from.child[slot] != kEmpty} << slot;
+    quantize(bounds, used, to);
 }
 
 void box_of(const cwbvh_node& node, uint32_t slot, double lo[3], double hi[3]) {

@@ -81,15 +81,13 @@ class CompressedRefit {
     template <class NodeBox, class LeafBox>
     RefitBox update(uint32_t at, NodeBox&& node_box, LeafBox&& leaf_box, const RefitUnit& unit, RefitAreas& areas) const {
         cwbvh_node& node = nodes_[at];
-        cwbvh::WideNode boxes;  // only its planes, and which slots are empty
-        RefitBox whole;
-        uint32_t child = node.first_child, first = node.first_leaf;
+        RefitBox whole, boxes[kWidth];
+        uint32_t child = node.first_child, first = node.first_leaf, used = 0;
         for (uint32_t slot = 0; slot < kWidth; ++slot) {
             const uint32_t count = primitives_of(node.primitives >> 4 * slot & 15u);
             const bool inner = CWBVH_INNER(&node) >> slot & 1u;
-            boxes.child[slot] = inner || count > 0 ? 0 : kEmpty;
             if (!inner && count == 0) continue;
-            RefitBox fresh;
+            RefitBox& fresh = boxes[slot];
             if (inner) {
                 fresh = node_box(child++);
                 areas.nodes = areas.nodes + unit.area(fresh);
@@ -99,15 +97,15 @@ class CompressedRefit {
                 areas.primitives = areas.primitives + unit.area(fresh) * splat(static_cast<float>(count));
             }
             whole.add(fresh);
-            alignas(16) float bounds[8];
-            store(bounds, fresh.lo);
-            store(bounds + 4, fresh.hi);
-            for (uint32_t k = 0; k < 3; ++k) {
-                boxes.plane[k][slot] = bounds[k];
-                boxes.plane[3 + k][slot] = bounds[4 + k];
-            }
+            used |= 1u << slot;
         }
-        quantize(boxes, node);
+        Bounds8 rows;
+        for (int half = 0; half < 2; ++half) {
+            const RefitBox* const four = boxes + 4 * half;
+            transpose4(four[0].lo, four[1].lo, four[2].lo, four[3].lo, rows.lo[0][half], rows.lo[1][half], rows.lo[2][half]);
+            transpose4(four[0].hi, four[1].hi, four[2].hi, four[3].hi, rows.hi[0][half], rows.hi[1][half], rows.hi[2][half]);
+        }
+        quantize(rows, used, node);
         return whole;
     }
     void finish(uint32_t, const RefitBox&) const {}

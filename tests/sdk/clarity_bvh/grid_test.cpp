@@ -19,8 +19,8 @@ TEST(Grid, FourPlanesAtOnceAreTheSame) {
     for (int i = 0; i < 1000; ++i) {
         const float planes[4] = {any(random), any(random), any(random), any(random)};
         int low[4], high[4];
-        grid.lower_four(planes, low);
-        grid.upper_four(planes, high);
+        grid.lower_four(load_any(planes), low);
+        grid.upper_four(load_any(planes), high);
         for (int k = 0; k < 4; ++k) {
             EXPECT_EQ(low[k], grid.lower(planes[k])) << planes[k];
             EXPECT_EQ(high[k], grid.upper(planes[k])) << planes[k];

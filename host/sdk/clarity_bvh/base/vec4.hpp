@@ -1,6 +1,7 @@
 // vec4.hpp -- four floats in a register, by SSE2 where it exists, else by plain loops. Both variants give the same bits: all
 // operations have the same order, and min and max are `a < b ? a : b`, as in MINPS and MAXPS.
 #pragma once
+#include <algorithm>
 #include <cfloat>
 #include <cstdint>
 #include <cstring>
@@ -68,6 +69,11 @@ inline Vec4 less(Vec4 a, Vec4 b) {
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return {_mm_or_ps(_mm_and_ps(mask.m, a.m), _mm_andnot_ps(mask.m, b.m))};
 }
+// The mask of the lanes whose bits are set, lane 0 the lowest bit.
+inline Vec4 mask_of(uint32_t bits) {
+    const __m128i lanes = _mm_setr_epi32(1, 2, 4, 8);
+    return {_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), lanes), lanes))};
+}
 // Where a < b: b = a and index_b = index_a. index_a must not be below any index so far.
 inline void keep_less(Vec4 a, Vec4 index_a, Vec4& b, Vec4& index_b) {
     index_b = max(index_b, {_mm_and_ps(less(a, b).m, index_a.m)});
@@ -115,6 +121,22 @@ inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     x.m = _mm_movelh_ps(low, c.m);
     y.m = _mm_shuffle_ps(low, c.m, _MM_SHUFFLE(1, 1, 3, 2));
     z.m = _mm_shuffle_ps(high, c.m, _MM_SHUFFLE(2, 2, 1, 0));
+}
+// Transposes the rows a, b, c, d: x = (a.x b.x c.x d.x), and so on.
+inline void transpose4(Vec4 a, Vec4 b, Vec4 c, Vec4 d, Vec4& x, Vec4& y, Vec4& z) {
+    const __m128 low = _mm_unpacklo_ps(a.m, b.m), low2 = _mm_unpacklo_ps(c.m, d.m);
+    x.m = _mm_movelh_ps(low, low2);
+    y.m = _mm_movehl_ps(low2, low);
+    z.m = _mm_movelh_ps(_mm_unpackhi_ps(a.m, b.m), _mm_unpackhi_ps(c.m, d.m));
+}
+// The least and the greatest lane.
+inline float least(Vec4 a) {
+    const __m128 two = _mm_min_ps(a.m, _mm_movehl_ps(a.m, a.m));
+    return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+inline float greatest(Vec4 a) {
+    const __m128 two = _mm_max_ps(a.m, _mm_movehl_ps(a.m, a.m));
+    return _mm_cvtss_f32(_mm_max_ss(two, _mm_shuffle_ps(two, two, 1)));
 }
 // Four unsigned counters, each below 2^31; to_float() relies on this limit.
 struct Count4 {
@@ -184,6 +206,9 @@ inline Vec4 less(Vec4 a, Vec4 b) {
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return each_lane([&](int i) { return mask.v[i] != 0.0f ? a.v[i] : b.v[i]; });
 }
+inline Vec4 mask_of(uint32_t bits) {
+    return each_lane([&](int i) { return static_cast<float>(bits >> i & 1u); });
+}
 inline void keep_less(Vec4 a, Vec4 index_a, Vec4& b, Vec4& index_b) {
     index_b = max(index_b, select(less(a, b), index_a, splat(0.0f)));
     b = min(a, b);
@@ -220,6 +245,17 @@ inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     x = {{a.v[0], b.v[0], c.v[0], 0.0f}};
     y = {{a.v[1], b.v[1], c.v[1], 0.0f}};
     z = {{a.v[2], b.v[2], c.v[2], 0.0f}};
+}
+inline void transpose4(Vec4 a, Vec4 b, Vec4 c, Vec4 d, Vec4& x, Vec4& y, Vec4& z) {
+    x = {{a.v[0], b.v[0], c.v[0], d.v[0]}};
+    y = {{a.v[1], b.v[1], c.v[1], d.v[1]}};
+    z = {{a.v[2], b.v[2], c.v[2], d.v[2]}};
+}
+inline float least(Vec4 a) {
+    return std::min(std::min(a.v[0], a.v[1]), std::min(a.v[2], a.v[3]));
+}
+inline float greatest(Vec4 a) {
+    return std::max(std::max(a.v[0], a.v[1]), std::max(a.v[2], a.v[3]));
 }
 struct Count4 {
     uint32_t v[4];

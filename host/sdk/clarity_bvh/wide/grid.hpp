@@ -44,26 +44,26 @@ class Grid {
         return static_cast<int>(at) + (static_cast<int>(at) < at);
     }
     // The bytes of four coordinates.
-    void lower_four(const float* planes, int* bytes) const {
+    void lower_four(Vec4 planes, int* bytes) const {
 #ifdef CLARITY_BVH_SSE2
-        const auto two = [&](const float* p) { return _mm_cvttpd_epi32(_mm_sub_pd(cells(p), both(margin_))); };
-        store_four(bytes, two(planes), two(planes + 2));
+        const auto two = [&](__m128 p) { return _mm_cvttpd_epi32(_mm_sub_pd(cells(p), both(margin_))); };
+        store_four(bytes, two(planes.m), two(_mm_movehl_ps(planes.m, planes.m)));
 #else
-        for (int i = 0; i < 4; ++i) bytes[i] = lower(planes[i]);
+        for (int i = 0; i < 4; ++i) bytes[i] = lower(planes.v[i]);
 #endif
     }
-    void upper_four(const float* planes, int* bytes) const {
+    void upper_four(Vec4 planes, int* bytes) const {
 #ifdef CLARITY_BVH_SSE2
-        const auto two = [&](const float* p) {
+        const auto two = [&](__m128 p) {
             const __m128d at = _mm_add_pd(cells(p), both(margin_));
             const __m128i whole = _mm_cvttpd_epi32(at);
             // A lane of the comparison is -1 if there is a rest.
             const __m128d rest = _mm_cmplt_pd(_mm_cvtepi32_pd(whole), at);
             return _mm_sub_epi32(whole, _mm_shuffle_epi32(_mm_castpd_si128(rest), _MM_SHUFFLE(3, 3, 2, 0)));
         };
-        store_four(bytes, two(planes), two(planes + 2));
+        store_four(bytes, two(planes.m), two(_mm_movehl_ps(planes.m, planes.m)));
 #else
-        for (int i = 0; i < 4; ++i) bytes[i] = upper(planes[i]);
+        for (int i = 0; i < 4; ++i) bytes[i] = upper(planes.v[i]);
 #endif
     }
     // The coordinate of a byte, in double precision: its rounding error is far below any sensible margin.
@@ -80,8 +80,7 @@ class Grid {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm_unpacklo_epi64(a, b));
     }
     // Two coordinates in cells from byte 0 on.
-    __m128d cells(const float* planes) const {
-        const __m128 two = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(planes)));
+    __m128d cells(__m128 two) const {
         return _mm_mul_pd(_mm_sub_pd(_mm_cvtps_pd(two), both(base_)), both(per_cell_));
     }
 #endif
