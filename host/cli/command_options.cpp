@@ -176,7 +176,7 @@ void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
 void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("what", bench.what,
                    "thesis (its six tests, then and now), packets, accel (every structure and peer), zoo (every structure on "
-                   "eight scenes), scale, large (up to 100 M "
+                   "eight scenes), shapes (as themselves and as meshes), scale, large (up to 100 M "
                    "triangles), cpu (side by side with the best of each peer), devices (one picture by one, two, ... of "
                    "--device), mpi (one picture by 1, 2, 4 processes that mpirun starts), light (paths of light: errors over "
                    "samples and seconds), moving (refits and rebuilds while "

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "bench/run/bench.hpp"
+#include "bench/suites/shape_meshes.hpp"
 #include "bench/suites/zoo_scenes.hpp"
 #include "support/scenes.hpp"
 
@@ -130,6 +131,57 @@ TEST(Zoo, ScenesAreSoundAndOfAboutTheirSize) {
         }
     Scene none;
     EXPECT_THROW(add_zoo_scene("none", 1, none), std::out_of_range);
+}
+
+// Each mesh is on its shape, as closely as it says: errors fall by the square of the number of parts.
+TEST(Shapes, MeshesComeNearerTheMorePartsTheyHave) {
+    for (const MeshedShape& kind : meshed_shapes()) {
+        double before = 0;
+        for (const unsigned parts : {16u, 64u}) {
+            Scene scene;
+            const double error = add_shape_mesh(kind.name, parts, scene);
+            EXPECT_EQ(validate(scene), Problem()) << kind.name;
+            if (before > 0) {
+                EXPECT_GT(before, 10 * error) << kind.name;
+                EXPECT_LT(before, 22 * error) << kind.name;
+            }
+            before = error;
+        }
+    }
+    Scene none;
+    EXPECT_THROW(add_shape_mesh("none", 8, none), std::out_of_range);
+}
+
+// Rays that hit a shape hit its finest mesh at the same distance, but for its error and the slant of the surface.
+TEST(Shapes, AreTheSameAsTheirMeshes) {
+    const SceneCatalog catalog(source_file("scenes"), "");
+    Progress progress;
+    for (const MeshedShape& kind : meshed_shapes()) {
+        std::vector<rt_hit> hits[2];
+        Scene mesh;
+        const double error = add_shape_mesh(kind.name, 128, mesh);
+        const BenchScene shape = catalog.project(std::string("shapes/") + kind.name);
+        ASSERT_EQ(shape.missing, "");
+        const ScenePtr scenes[2] = {load_scene(Workbench::get().plugins(), shape, 1, ImportOptions{}, progress).scene,
+                                    std::make_shared<const Scene>(std::move(mesh))};
+        std::vector<rt_ray> rays;
+        for (int i = 0; i < 400; ++i) {
+            const float x = 1.8f * float(i % 20) / 19 - 0.9f, y = 1.6f * float(i / 20) / 19;
+            rays.push_back({{0.3f * x, y + 0.2f, 3}, 0, {0.1f * x, -0.1f, -1}, INFINITY});
+        }
+        Settings settings;
+        settings.accel = "bvh2";
+        settings.lanes = 1;
+        for (int i = 0; i < 2; ++i) hits[i] = Workbench::get().rays(scenes[i], settings, rays, RayQuery{});
+        size_t both = 0, one = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const bool a = hits[0][i].prim >= 0, b = hits[1][i].prim >= 0;
+            both += a && b && std::fabs(hits[0][i].t - hits[1][i].t) < 5 * error + 1e-4;
+            one += a || b;
+        }
+        EXPECT_GT(one, 40u) << kind.name;
+        EXPECT_GT(both, 0.93 * double(one)) << kind.name;
+    }
 }
 
 TEST(Suites, AllHaveValidSettings) {

@@ -26,6 +26,8 @@ std::string devices_table(const BenchReport& report);
 std::string moving_table(const BenchReport& report);
 // Part of bench_table(): animations by one rule for refits and builds after another.
 std::string policy_table(const BenchReport& report);
+// Part of bench_table(): shapes and meshes of them, and their crossing points.
+std::string shapes_table(const BenchReport& report);
 // Part of bench_table(): paths of light.
 std::string light_table(const BenchReport& report);
 // Part of bench_table(): our speed compared with the fastest baseline's.

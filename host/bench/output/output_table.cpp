@@ -273,7 +273,7 @@ std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
            accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + speedup_table(report) +
            light_table(report) + devices_table(report) + ranks_table(report) + moving_table(report) + policy_table(report) +
-           analysis_table(report) + dropped_table(report) + left_out(report);
+           shapes_table(report) + analysis_table(report) + dropped_table(report) + left_out(report);
 }
 
 }  // namespace clarity::bench

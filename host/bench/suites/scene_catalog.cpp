@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/packed_file.hpp"
+#include "bench/suites/shape_meshes.hpp"
 #include "bench/suites/zoo_scenes.hpp"
 #include "render/edit/edit.hpp"
 
@@ -211,6 +212,25 @@ std::vector<BenchScene> SceneCatalog::zoo(uint64_t triangles) const {
     return scenes;
 }
 
+std::vector<BenchScene> SceneCatalog::shapes() const {
+    std::vector<BenchScene> scenes;
+    for (const MeshedShape& kind : meshed_shapes()) {
+        BenchScene shape = project(std::string("shapes/") + kind.name);
+        shape.name = kind.name;
+        scenes.push_back(shape);
+        for (const unsigned parts : kind.parts) {
+            BenchScene mesh;
+            mesh.name = kind.name + (", " + std::to_string(parts)) + (parts == 1 ? " part" : " parts");
+            mesh.shape = kind.name;
+            mesh.parts = parts;
+            mesh.camera = "1.6,1.9,2.6,0,0.7,0,40";  // those of the files
+            mesh.light = "6,9,7";
+            scenes.push_back(mesh);
+        }
+    }
+    return scenes;
+}
+
 BenchScene scene_of_file(const std::string& path) {
     BenchScene scene;
     scene.name = fs::path(name_without_gz(path)).stem().string();
@@ -224,6 +244,7 @@ LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, f
     const auto begin = std::chrono::steady_clock::now();
     Scene made;
     if (!scene.files.empty()) made = with_scene_edits(import::import_scene(plugins, scene.files, options, progress));
+    if (!scene.shape.empty()) add_shape_mesh(scene.shape, scene.parts, made);
     if (!scene.computed.empty()) add_zoo_scene(scene.computed, scene.triangles, made);
     loaded.scene = std::make_shared<const Scene>(std::move(made));
     loaded.import_ms = ms_since(begin);

@@ -108,8 +108,9 @@ class Planner {
                 if (word == "views" || view.scene.name == word) views.push_back(view);
             return views;
         }
-        if (word == "zoo") {
-            for (const BenchScene& scene : catalog_.zoo(request_.max_triangles)) views.push_back({scene, 0});
+        if (word == "zoo" || word == "shapes") {
+            for (const BenchScene& scene : word == "zoo" ? catalog_.zoo(request_.max_triangles) : catalog_.shapes())
+                views.push_back({scene, 0});
             return views;
         }
         // One of the shared models; with "+ FILE", under the sky of that scene of the project.
@@ -180,10 +181,10 @@ class Planner {
         return variants;
     }
 
-    // Without those that test every primitive: on large scenes they would take minutes. An unknown structure stays: its rows
-    // say that it is unknown.
+    // Those asked for, or all but those that test every primitive: on large scenes they would take minutes.
     std::vector<Variant> every_tree() const {
         std::vector<Variant> variants = every_accel();
+        if (!request_.accels.empty()) return variants;
         const auto tests_everything = [&](const Variant& variant) {
             const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
             return plugin && plugin->accel->ray_cost == RT_RAY_COST_LINEAR;
@@ -260,6 +261,9 @@ class Planner {
 
     // Every structure on scenes that are hard in different ways.
     void zoo(size_t scene) { add_cases(scene, {"build", "primary", "shadow", "reflection", "diffuse"}, every_tree()); }
+
+    // Shapes and meshes of them, each by itself.
+    void shapes(size_t scene) { add_cases(scene, {"primary", "diffuse"}, asked_or("bvh2")); }
 
     void scale(size_t scene) { add_cases(scene, {"build", "primary", "shadow", "diffuse", "frame"}, every_tree(), {"medium"}); }
 
@@ -417,6 +421,7 @@ const std::vector<Planner::Row>& Planner::rows() {
         {"moving", 0, 240, {"thesis/aim_100k", "shared"}, {}, &Planner::moving},
         {"policy", 0, 600, {"thesis/models/skull"}, {}, &Planner::policy},
         {"zoo", 3600, 450, {"zoo"}, {}, &Planner::zoo},
+        {"shapes", 900, 60, {"shapes"}, {}, &Planner::shapes},
         {"quick", 55, 0, {"thesis/2_two_spheres", "thesis/6_2406_triangles", "thesis/models/skull"}, {}, &Planner::quick}};
     return rows;
 }
