@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,52 +15,28 @@
 #include "api/library.hpp"
 #include "base/elapsed.hpp"
 #include "worker/process.hpp"
+#include "worker/spawn.hpp"
 
 extern char** environ;
 
 namespace clarity::api {
 namespace {
 
-struct SpawnFiles {
-    posix_spawn_file_actions_t actions;
-    SpawnFiles() { posix_spawn_file_actions_init(&actions); }
-    ~SpawnFiles() { posix_spawn_file_actions_destroy(&actions); }
-};
-struct SpawnAttributes {
-    posix_spawnattr_t attributes;
-    SpawnAttributes() { posix_spawnattr_init(&attributes); }
-    ~SpawnAttributes() { posix_spawnattr_destroy(&attributes); }
-};
-
 // A program with its two outputs in pipes. The destructor ends it.
 class Child {
  public:
     explicit Child(std::vector<std::string>& words) {
-        SpawnFiles files;
+        worker::Spawn spawn;
         std::array<worker::FileDescriptor, 2> theirs;
-        posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
         for (int i = 0; i < 2; ++i) {
             int ends[2];
             if (pipe2(ends, O_CLOEXEC) != 0) fail(words[0], errno);
             outputs_[i] = worker::FileDescriptor(ends[0]);
             theirs[i] = worker::FileDescriptor(ends[1]);
             fcntl(ends[0], F_SETFL, O_NONBLOCK);
-            posix_spawn_file_actions_adddup2(&files.actions, ends[1], i + 1);
+            spawn.give(ends[1], i + 1);
         }
-        // A group of its own: Ctrl-C reaches us alone, and becomes a cancel. Its signals have the default handlers.
-        SpawnAttributes spawn;
-        sigset_t none, all;
-        sigemptyset(&none);
-        sigfillset(&all);
-        posix_spawnattr_setsigmask(&spawn.attributes, &none);
-        posix_spawnattr_setsigdefault(&spawn.attributes, &all);
-        posix_spawnattr_setpgroup(&spawn.attributes, 0);
-        posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-        std::vector<char*> argv;
-        for (std::string& word : words) argv.push_back(word.data());
-        argv.push_back(nullptr);
-        const int error = posix_spawn(&pid_, argv[0], &files.actions, &spawn.attributes, argv.data(), environ);
-        if (error != 0) {
+        if (const int error = spawn.start(words, environ, pid_)) {
             pid_ = -1;
             fail(words[0], error);
         }

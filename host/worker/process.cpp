@@ -1,7 +1,6 @@
 #include "worker/process.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -19,6 +18,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "worker/channel.hpp"
+#include "worker/spawn.hpp"
 
 extern char** environ;
 
@@ -47,17 +47,6 @@ FileDescriptor moved_up(int fd) {
     return copied_up(fd);
 }
 
-struct FileActions {
-    posix_spawn_file_actions_t actions;
-    FileActions() { posix_spawn_file_actions_init(&actions); }
-    ~FileActions() { posix_spawn_file_actions_destroy(&actions); }
-};
-struct Attributes {
-    posix_spawnattr_t attributes;
-    Attributes() { posix_spawnattr_init(&attributes); }
-    ~Attributes() { posix_spawnattr_destroy(&attributes); }
-};
-
 }  // namespace
 
 void FileDescriptor::reset() {
@@ -83,37 +72,19 @@ WorkerProcess::WorkerProcess(std::vector<std::string> words, const MemoryFile& a
 
     const FileDescriptor their_result = copied_up(result_.fd()), their_arguments = copied_up(arguments.fd());
 
-    FileActions files;
-    posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 1);
-    posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 2);
-    posix_spawn_file_actions_adddup2(&files.actions, their_channel.get(), kChannelFd);
-    posix_spawn_file_actions_adddup2(&files.actions, their_result.get(), kResultFd);
-    posix_spawn_file_actions_adddup2(&files.actions, their_arguments.get(), kArgumentsFd);
-    // The worker gets a process group of its own, so that Ctrl-C reaches only us and we turn it into a cancel. Its signals have
-    // the default handlers.
-    Attributes spawn;
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&spawn.attributes, &none);
-    posix_spawnattr_setsigdefault(&spawn.attributes, &all);
-    posix_spawnattr_setpgroup(&spawn.attributes, 0);
-    posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-
-    const std::string program = words.front();
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
+    Spawn spawn;
+    for (const int number : {1, 2}) spawn.give(their_output.get(), number);
+    spawn.give(their_channel.get(), kChannelFd);
+    spawn.give(their_result.get(), kResultFd);
+    spawn.give(their_arguments.get(), kArgumentsFd);
     const std::string variable = std::string(kWorkerVariables[0]) + "=1";
     std::vector<char*> environment;
     for (char** entry = environ; *entry; ++entry) environment.push_back(*entry);
     environment.push_back(const_cast<char*>(variable.c_str()));
     environment.push_back(nullptr);
-    const int error = posix_spawn(&pid_, program.c_str(), &files.actions, &spawn.attributes, argv.data(), environment.data());
-    if (error != 0) {
+    if (const int error = spawn.start(words, environment.data(), pid_)) {
         pid_ = -1;
-        fail(program, error);
+        fail(words.front(), error);
     }
 } catch (const StartFailure& failure) {
     throw Error(code, "cannot start the worker process: " + failure.what + ": " + std::strerror(failure.error) +

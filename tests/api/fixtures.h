@@ -36,6 +36,16 @@ static inline clarity_hits hits_into(float* t, int32_t* prim, int32_t* instance,
     return hits;
 }
 
+static inline clarity_rays one_ray(const float origin[3], const float direction[3]) {
+    clarity_rays rays = {0};
+    rays.struct_bytes = sizeof rays;
+    rays.count = 1;
+    rays.origins = origin;
+    rays.directions = direction;
+    rays.origin_steps[1] = rays.direction_steps[1] = sizeof(float);
+    return rays;
+}
+
 void test_rays(const clarity_scene* scene, const char* accel, const char* lanes);
 void test_far(void);
 void test_move(const clarity_scene* scene);

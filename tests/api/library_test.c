@@ -160,12 +160,7 @@ static void test_watch(const clarity_scene* scene) {
     const float origin[] = {0, 0, 1}, direction[] = {0, 0, -1};
     float t = -7;
     const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
-    clarity_rays query = {0};
-    query.struct_bytes = sizeof query;
-    query.count = 1;
-    query.origins = origin;
-    query.directions = direction;
-    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    clarity_rays query = one_ray(origin, direction);
     told.go_on = 1;
     cancel = 1;
     CHECK(clarity_closest(tracer, &query, &hits, &watch) == CLARITY_CANCELLED && t == -7);

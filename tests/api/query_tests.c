@@ -100,12 +100,7 @@ void test_move(const clarity_scene* scene) {
     WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
     const float origin[] = {0.75f, 0.25f, 4}, direction[] = {0, 0, -1};
     float t = 0, positions[12];
-    clarity_rays query = {0};
-    query.struct_bytes = sizeof query;
-    query.count = 1;
-    query.origins = origin;
-    query.directions = direction;
-    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    clarity_rays query = one_ray(origin, direction);
     const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
     clarity_places places = {0};
     for (int i = 0; i < 12; ++i) positions[i] = square[i] + (i % 3 == 2 ? 1 : 0);

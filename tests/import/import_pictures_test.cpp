@@ -1,4 +1,5 @@
-// import_pictures_test.cpp -- large pictures in small files, through the import worker: its limit of memory grows with them.
+// import_pictures_test.cpp -- pictures of surfaces: large ones in small files, through the import worker, and those that lose
+// light.
 #include <gtest/gtest.h>
 
 #include "support/scenes.hpp"
@@ -38,6 +39,20 @@ TEST(ImportPictures, LargeOnesInSmallFiles) {
     EXPECT_EQ(texels, uint64_t(kPictures) << 24);
     EXPECT_LE(double(scene->texels.size()), 1.4 * double(texels)) << "that is what `texture_bytes` of --stats counts";
     EXPECT_EQ(scene->texels[scene->textures[5].first] & 0xff0000u, 0x050000u);
+}
+
+// An HDR picture with a texel of 4 and three of 0.5.
+TEST(ImportPictures, AnHdrPictureOfASurfaceIsCutOffWithAWord) {
+    const Scratch folder;
+    const std::string half("\x80\x80\x80\x80", 4), bright("\x80\x80\x80\x83", 4);
+    folder.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + bright + half + half + half);
+    const ScenePtr scene = load_scene(folder.write("a.scene", "texture t a.hdr\nmaterial m color_map t\nsphere material m\n"));
+    ASSERT_EQ(scene->warnings.size(), 1u);
+    EXPECT_NE(scene->warnings[0].find("texture 'a.hdr': light above 1 is cut off"), std::string::npos) << scene->warnings[0];
+    ASSERT_EQ(scene->textures.size(), 1u);
+    EXPECT_EQ(scene->texels[scene->textures[0].first] & 0xffu, 255u);
+    const ScenePtr sky = load_scene(folder.write("b.scene", "sky a.hdr\nsphere\n"));
+    EXPECT_TRUE(sky->warnings.empty());
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ constexpr size_t kMaxDepth = 16;
 // Bounds the number of placed objects: a few files that each load another one twice could place more than any machine can hold.
 constexpr uint64_t kMaxPlaced = 1u << 22;
 constexpr size_t kMaxWarnings = 100;
+constexpr const char* kLosesLight = "light above 1 is cut off, since surfaces have textures of 8 bits; a sky keeps it";
 
 std::string file_name(const std::string& path) {
     return fs::path(path).filename().string();
@@ -319,6 +320,8 @@ rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_
                                                 : copy_texture(d.bytes, d.byte_count, d.width, d.height, texels, picture),
                                   d, texels, picture);
     if (why) warn(from, "an embedded texture is left out: " + why.text());
+    if (!why && d.height == 0 && loses_light(d.bytes, d.byte_count))
+        warn(from, std::string("an embedded texture: ") + kLosesLight);
     return texture_of(picture, d);
 }
 
@@ -342,6 +345,7 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const rt_texture_d
         const auto* const begin = reinterpret_cast<const uint8_t*>(bytes.data());
         if (observer_) observer_->decoding(memory_of_texture(begin, bytes.size()));
         why = completed(decode_texture(begin, bytes.size(), texels, picture), d, texels, picture);
+        if (!why && loses_light(begin, bytes.size())) warn(from, "texture '" + path + "': " + kLosesLight);
     }
     progress_.stage("importing " + file_name(from));
     return why ? missing(why.text()) : texture_of(picture, d);

@@ -57,6 +57,10 @@ Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<ui
     return {};
 }
 
+bool loses_light(const uint8_t* bytes, uint64_t byte_count) {
+    return byte_count <= INT_MAX && stbi_is_hdr_from_memory(bytes, static_cast<int>(byte_count));
+}
+
 uint64_t memory_of_texture(const uint8_t* bytes, uint64_t byte_count) {
     int width = 0, height = 0, channels = 0;
     if (byte_count > INT_MAX || !stbi_info_from_memory(bytes, static_cast<int>(byte_count), &width, &height, &channels))

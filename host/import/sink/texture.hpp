@@ -20,6 +20,9 @@ inline constexpr uint64_t kMaxPictureFileBytes = 256u << 20;
 // appended.
 Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture);
 
+// Whether the picture has light above 1, which decode_texture() cuts off: Radiance's HDR.
+bool loses_light(const uint8_t* bytes, uint64_t byte_count);
+
 // Bytes that decode_texture() takes for a picture, and what follows it with its smaller ones, while `texels` grows: those that
 // are there are copied then. 0: it is no picture.
 uint64_t memory_of_texture(const uint8_t* bytes, uint64_t byte_count);
