@@ -23,6 +23,12 @@
 #else
 #define RT_CALLED RT_INLINE
 #endif
+/* What a kernel does for a group. With one lane it stands in the kernel: LLVM 15 crashes where such a function has arrays and textures. */
+#if RT_LANES > 1
+#define RT_GROUP_WORK RT_CALLED
+#else
+#define RT_GROUP_WORK RT_INLINE
+#endif
 /* A part of a kernel that is long only if surfaces have layers. A call costs the others more than it saves. */
 #if defined(RT_LOBES) && (RT_LOBES & RT_LOBE_LAYERS)
 #define RT_PART RT_CALLED

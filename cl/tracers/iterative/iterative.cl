@@ -10,7 +10,7 @@ typedef float rt_film;
 typedef float4 rt_film;
 #endif
 
-RT_CALLED void rt_iterative_group(const rt_ctx *scene, const constant rt_frame *frame, uint launched, global rt_film *film,
+RT_GROUP_WORK void rt_iterative_group(const rt_ctx *scene, const constant rt_frame *frame, uint launched, global rt_film *film,
                                   global uint4 *counters, global float *distances)
 {
     const rt_ctx ctx = *scene;
