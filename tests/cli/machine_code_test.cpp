@@ -24,7 +24,7 @@ bool has(const std::string& text, const char* what) {
     return text.find(what) != std::string::npos;
 }
 
-// Counts the instructions of the function which runs a work-group.
+// Counts the instructions of a function.
 Code disassemble(const std::string& library, const std::string& function) {
     Code code;
     const std::string command = "objdump -d --no-show-raw-insn '" + library + "'";
@@ -68,7 +68,7 @@ TEST_P(MachineCode, KeepsPacketsInWideRegisters) {
         if (entry.path().filename() == "trace_iterative.so") library = entry.path().string();
     if (library.empty()) GTEST_SKIP() << "the device is not PoCL, or does not keep its kernels as libraries";
 
-    const Code code = disassemble(library, "_pocl_kernel_trace_iterative_workgroup");
+    const Code code = disassemble(library, "rt_iterative_group");
     ASSERT_GT(code.instructions, 1000);
     EXPECT_GT(code.wide * 3, code.instructions) << "of " << code.instructions << " instructions";
     EXPECT_EQ(code.calls, 0) << "the compiler's library is called, once per lane";
