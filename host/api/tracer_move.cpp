@@ -23,11 +23,6 @@ std::vector<float> rounded_numbers(const void* numbers, int32_t type, size_t cou
     return floats;
 }
 
-bool is_flat(const Affine& m) {
-    const auto minor = [&](int i, int k) { return double(m[4 + i]) * m[8 + k] - double(m[4 + k]) * m[8 + i]; };
-    return m[0] * minor(1, 2) - m[1] * minor(0, 2) + m[2] * minor(0, 1) == 0;
-}
-
 void check_count(const std::string& what, uint64_t found, size_t expected) {
     if (found != expected)
         throw Error(Exit::usage, what + ": there are " + std::to_string(found) + ", and the scene has " +
@@ -64,9 +59,9 @@ Pose clarity_tracer::pose_of(const clarity_places& places) const {
         const auto floats =
             rounded_numbers(places.transforms, places.type, 12 * placed_->instances.size(), {}, "transforms of instances");
         for (size_t i = 0; i < pose.instances.size(); ++i) {
-            Affine& to = pose.instances[i].world_from_object;
+            Affine &to = pose.instances[i].world_from_object, inverse;
             std::copy_n(&floats[12 * i], 12, to.begin());
-            if (is_flat(to))
+            if (!invert(to, inverse))
                 throw Error(Exit::usage, "transform of instance " + std::to_string(i) +
                                              ": it has no inverse, as one that scales by 0; nothing was moved");
         }

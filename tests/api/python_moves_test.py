@@ -94,12 +94,15 @@ class Moves(Case):
         infinite = self.vertices.copy()
         infinite[7, 1] = np.inf
         flat = np.eye(4)[None] * [1, 0, 1, 1]
+        nearly_flat = np.eye(4)[None]
+        nearly_flat[0, :2, 1] = 1, 1e-9
         for words, wrong in (
             ("vertices: there are 7, and the scene has 900", lambda: rt.move(self.vertices[:7])),
             ("vertices: a number is not finite", lambda: rt.move(infinite)),
             (r"vertices: expected an array of shape \(n, 3\)", lambda: rt.move(self.vertices.ravel())),
             ("instances: there are 2, and the scene has 1", lambda: rt.move(instances=np.tile(np.eye(4), (2, 1, 1)))),
             ("transform of instance 0: it has no inverse", lambda: rt.move(instances=flat)),
+            ("transform of instance 0: it has no inverse", lambda: rt.move(instances=nearly_flat)),
             ("expected vertices or instances", lambda: rt.move()),
             ("move the instances", lambda: clarity.load(self.mesh_file).on(accel="bvh2").move(self.vertices)),
         ):
