@@ -13,7 +13,6 @@
 #include <nlohmann/json.hpp>
 
 #include "api/library.hpp"
-#include "base/elapsed.hpp"
 #include "worker/process.hpp"
 #include "worker/spawn.hpp"
 

@@ -129,10 +129,7 @@ void write(const BenchCommand& command, const BenchReport& report, RowsFile* row
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && command.join_files.empty())
-        throw Error(Exit::usage,
-                    "bench: name a suite (thesis, packets, accel, zoo, scale, large, cpu, devices, mpi, light, moving, shapes, "
-                    "quick) or a "
-                    "scene file");
+        throw Error(Exit::usage, "bench: name a suite (" + suite_list() + ") or a scene file");
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {

@@ -22,10 +22,7 @@ ShapeRow row_of_shape(const BenchRecord& record) {
     ShapeRow row{&record, record.scene.substr(0, comma), 0, 0};
     if (comma == std::string::npos) return row;
     row.parts = static_cast<unsigned>(std::strtoul(record.scene.c_str() + comma + 2, nullptr, 10));
-    for (const MeshedShape& kind : meshed_shapes()) {
-        Scene mesh;
-        if (row.kind == kind.name) row.error = add_shape_mesh(kind.name, row.parts, mesh);
-    }
+    row.error = shape_mesh_error(row.kind, row.parts);
     return row;
 }
 

@@ -47,37 +47,56 @@ Vec turned_point(const Turned& shape, double u, double v) {
     return {at.radius * std::cos(kWholeTurn * u), at.height, -at.radius * std::sin(kWholeTurn * u)};
 }
 
-double add_turned(const Turned& shape, unsigned parts, Scene& scene) {
-    const auto rows = std::max(1u, static_cast<unsigned>(std::lround(shape.rows_per_part * parts)));
-    const auto at = [&](double column, double row) { return turned_point(shape, column / parts, row / rows); };
+// A mesh of a turned profile.
+struct TurnedMesh {
+    const Turned& shape;
+    const unsigned parts, rows;  // around the axis, along the profile
+
+    TurnedMesh(const Turned& turned, unsigned wanted)
+        : shape(turned),
+          parts(std::max(3u, wanted)),
+          rows(std::max(1u, static_cast<unsigned>(std::lround(turned.rows_per_part * parts)))) {}
+    Vec at(double column, double row) const { return turned_point(shape, column / parts, row / rows); }
+    // All columns meet there.
+    bool is_tip(unsigned row) const { return shape.at(double(row) / rows).radius == 0; }
+};
+
+void add_turned(const TurnedMesh& grid, Scene& scene) {
     MeshWriter mesh(scene);
     std::vector<rt_u32> before, here;
-    for (unsigned row = 0; row <= rows; ++row, std::swap(before, here)) {
+    for (unsigned row = 0; row <= grid.rows; ++row, std::swap(before, here)) {
         here.clear();
-        for (unsigned column = 0; column < parts; ++column) here.push_back(mesh.vertex(at(column, row)));
-        const bool tip = shape.at(double(row) / rows).radius == 0;
-        for (unsigned column = 0; column < parts && row > 0; ++column) {
-            const unsigned next = (column + 1) % parts;
+        for (unsigned column = 0; column < grid.parts; ++column) here.push_back(mesh.vertex(grid.at(column, row)));
+        for (unsigned column = 0; column < grid.parts && row > 0; ++column) {
+            const unsigned next = (column + 1) % grid.parts;
             mesh.triangle(before[column], before[next], here[next]);
-            if (!tip) mesh.triangle(before[column], here[next], here[column]);
+            if (!grid.is_tip(row)) mesh.triangle(before[column], here[next], here[column]);
         }
     }
     mesh.end_and_place();
+}
+
+double error_of(const TurnedMesh& grid) {
     double error = 0;  // the same in all columns
-    for (unsigned row = 0; row < rows; ++row) {
+    for (unsigned row = 0; row < grid.rows; ++row) {
         const auto edge = [&](double c0, double r0, double c1, double r1) {
-            const Vec middle = 0.5 * (at(c0, r0) + at(c1, r1));
-            error = std::max(error, length(middle - at(0.5 * (c0 + c1), 0.5 * (r0 + r1))));
+            const Vec middle = 0.5 * (grid.at(c0, r0) + grid.at(c1, r1));
+            error = std::max(error, length(middle - grid.at(0.5 * (c0 + c1), 0.5 * (r0 + r1))));
         };
         edge(0, row, 1, row);
         edge(0, row, 0, row + 1);
-        // At a tip all columns meet.
-        if (shape.at(double(row + 1) / rows).radius > 0) edge(0, row, 1, row + 1);
+        if (!grid.is_tip(row + 1)) edge(0, row, 1, row + 1);
     }
     return error;
 }
 
-double add_box(Scene& scene) {
+const Turned* turned_shape(const std::string& name) {
+    for (const Turned& shape : kTurned)
+        if (name == shape.name) return &shape;
+    return nullptr;
+}
+
+void add_box(Scene& scene) {
     MeshWriter mesh(scene);
     rt_u32 corners[8];
     for (int i = 0; i < 8; ++i) corners[i] = mesh.vertex({i & 1 ? 0.8 : -0.8, i & 2 ? 1.4 : 0, i & 4 ? 0.5 : -0.5});
@@ -87,7 +106,6 @@ double add_box(Scene& scene) {
         mesh.triangle(corners[f[0]], corners[f[2]], corners[f[3]]);
     }
     mesh.end_and_place();
-    return 0;
 }
 
 }  // namespace
@@ -101,11 +119,20 @@ const std::vector<MeshedShape>& meshed_shapes() {
     return kinds;
 }
 
+double shape_mesh_error(const std::string& name, unsigned parts) {
+    const Turned* const shape = turned_shape(name);
+    return shape ? error_of(TurnedMesh(*shape, parts)) : 0;
+}
+
 double add_shape_mesh(const std::string& name, unsigned parts, Scene& scene) {
-    if (name == "box") return add_box(scene);
-    for (const Turned& shape : kTurned)
-        if (name == shape.name) return add_turned(shape, std::max(3u, parts), scene);
-    throw std::out_of_range("no shape `" + name + "` has a mesh");
+    const Turned* const shape = turned_shape(name);
+    if (shape)
+        add_turned(TurnedMesh(*shape, parts), scene);
+    else if (name == "box")
+        add_box(scene);
+    else
+        throw std::out_of_range("no shape `" + name + "` has a mesh");
+    return shape_mesh_error(name, parts);
 }
 
 }  // namespace clarity::bench

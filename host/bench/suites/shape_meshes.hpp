@@ -14,8 +14,10 @@ struct MeshedShape {
 };
 const std::vector<MeshedShape>& meshed_shapes();
 
-// Adds the mesh. Throws std::out_of_range for another name. Returns its error: the greatest distance between the middle of an
-// edge and the point of the surface there.
+// The error of a mesh: the greatest distance between the middle of an edge and the point of the surface there. 0: of other
+// names.
+double shape_mesh_error(const std::string& name, unsigned parts);
+// Adds the mesh. Throws std::out_of_range for another name. Returns its error.
 double add_shape_mesh(const std::string& name, unsigned parts, Scene& scene);
 
 }  // namespace clarity::bench

@@ -69,9 +69,7 @@ class Planner {
     void add(const std::string& name) {
         for (const Row& row : rows())
             if (name == row.name) return add(row);
-        std::string known;
-        for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
-        throw Error(Exit::usage, "bench " + name + ": no such suite, and no such file; the suites are " + known);
+        throw Error(Exit::usage, "bench " + name + ": no such suite, and no such file; the suites are " + suite_list());
     }
 
     // Scenes named by the user replace the suite's own.
@@ -435,6 +433,12 @@ const std::vector<std::string>& suite_names() {
         return all;
     }();
     return names;
+}
+
+std::string suite_list() {
+    std::string list;
+    for (const std::string& suite : suite_names()) list += (list.empty() ? "" : ", ") + suite;
+    return list;
 }
 
 Suite make_suite(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins) {

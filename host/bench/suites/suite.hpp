@@ -62,6 +62,7 @@ struct Suite {
 };
 
 const std::vector<std::string>& suite_names();
+std::string suite_list();  // the same, for messages
 
 // Throws Error(usage) for an unknown suite, or if no case is left to measure.
 Suite make_suite(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins);

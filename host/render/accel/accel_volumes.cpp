@@ -22,30 +22,32 @@ float scale_of(const Affine& m) {
     return largest;
 }
 
-void add_box(void* ctx, const float lo[3], const float hi[3]) {
-    Sink& sink = *static_cast<Sink*>(ctx);
+// corner: writes corner i of 0 to 7; bit k of i says on which side it is along axis k.
+template <class Corner>
+void add_corners(Sink& sink, const Corner& corner) {
     if (sink.full()) return;
     std::array<std::array<float, 3>, 8> corners;
     for (int i = 0; i < 8; ++i) {
-        const float p[3] = {i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2]};
+        float p[3];
+        corner(i, p);
         corners[i] = transform_point(sink.world, p);
     }
     sink.volumes.boxes.push_back(corners);
 }
 
+void add_box(void* ctx, const float lo[3], const float hi[3]) {
+    add_corners(*static_cast<Sink*>(ctx), [&](int i, float(&p)[3]) {
+        for (int k = 0; k < 3; ++k) p[k] = i >> k & 1 ? hi[k] : lo[k];
+    });
+}
+
 void add_oriented_box(void* ctx, const float center[3], const float halves[9]) {
-    Sink& sink = *static_cast<Sink*>(ctx);
-    if (sink.full()) return;
-    std::array<std::array<float, 3>, 8> corners;
-    for (int i = 0; i < 8; ++i) {
-        float p[3];
+    add_corners(*static_cast<Sink*>(ctx), [&](int i, float(&p)[3]) {
         for (int k = 0; k < 3; ++k) {
             p[k] = center[k];
             for (int a = 0; a < 3; ++a) p[k] += i >> a & 1 ? halves[3 * a + k] : -halves[3 * a + k];
         }
-        corners[i] = transform_point(sink.world, p);
-    }
-    sink.volumes.boxes.push_back(corners);
+    });
 }
 
 void add_sphere(void* ctx, const float center[3], float radius) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel_for.hpp"
+#include "base/pictures/srgb.hpp"
 #include "render/settings/aov.hpp"
 
 namespace clarity {
@@ -22,9 +23,7 @@ struct Film {
     const float *light, *rest;
 
     double count(size_t i) const { return light[4 * i + 3]; }
-    double luminance(size_t i) const {
-        return (0.2126 * light[4 * i] + 0.7152 * light[4 * i + 1] + 0.0722 * light[4 * i + 2]) / count(i);
-    }
+    double luminance(size_t i) const { return luminance_of(light + 4 * i) / count(i); }
     // Of a sample's luminance. The sign says whether the pixel rests.
     double variance(size_t i) const { return std::fabs(rest[4 * i + 3]) / (count(i) - 1); }
     bool finite(size_t i) const { return std::isfinite(luminance(i)) && std::isfinite(rest[4 * i + 3]); }

@@ -24,8 +24,8 @@ unsigned next_look(unsigned samples);  // the first one after `samples`
 bool is_look(unsigned samples);
 
 // Says which pixels rest until the next look, by the sign of their sum of squared deviations: a pixel rests if its standard
-// error is at most `bound` times its light, or, where that is more, the mean light of the picture. Returns the number of pixels
-// whose error is larger.
+// error is at most `bound` times its light, or, where that is more, the mean light of the picture. Returns how many pixels have
+// a larger error.
 //
 // The variance of a pixel is taken to be at least the mean of those of the 5x5 pixels around it, and a further sample is
 // assumed, of the mean variance of all pixels. So a pixel that was black in all samples rests only after enough of them, and
@@ -35,7 +35,7 @@ uint64_t mark_resting(FloatImage& sums, double bound, unsigned samples);
 // Whether the mark says so. deviations: the pixel's sum of squared deviations.
 bool is_resting(float deviations);
 
-// The setting `adaptive` of a picture whose pixels may rest; of others 0.
+// The setting `adaptive`; 0 for pictures in which no pixel may rest.
 double adaptive_bound(const Settings& settings);
 
 }  // namespace clarity

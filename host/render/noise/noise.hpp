@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/pictures/srgb.hpp"
 #include "render/tracers/replay/replay.hpp"
 
 namespace clarity {
@@ -63,8 +64,6 @@ std::string paths_csv(const Replay& replay, const std::vector<unsigned>& samples
 
 // For noise_report().
 
-// The luminance of a record, or of a sample.
-double luminance_of(const float* rgb);
 // Of each sample the sum over its records; and whether it is finite.
 struct NoiseValues {
     std::vector<double> luminance, deviation;  // from the mean; 0 of samples that are not finite

@@ -99,10 +99,6 @@ std::vector<unsigned> brightest_of(const NoiseValues& values) {
 
 }  // namespace
 
-double luminance_of(const float* rgb) {
-    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-}
-
 const char* lobe_name(rt_u32 first) {
     static const char* const names[] = {"diffuse", "glossy", "transmission"};
     return first < 3 ? names[first] : "none";

@@ -6,6 +6,8 @@
 
 namespace importers {
 
+inline constexpr double kRadPerDegree = 0.017453292519943295;
+
 using Vec3 = std::array<double, 3>;
 // A 3x4 matrix, row-major, in double precision, so that chains of many small rotations stay exact to float precision.
 using Transform = std::array<double, 12>;
@@ -64,7 +66,7 @@ inline Transform rotation(const Vec3& degrees, unsigned order = 0) {
     static constexpr int axes[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
     Transform out = kIdentity;
     for (const int axis : axes[order < 6 ? order : 0]) {
-        const double angle = std::fmod(degrees[axis], 360.0) * 0.017453292519943295, c = std::cos(angle), s = std::sin(angle);
+        const double angle = std::fmod(degrees[axis], 360.0) * kRadPerDegree, c = std::cos(angle), s = std::sin(angle);
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         Transform turn = kIdentity;
         turn[5 * u] = turn[5 * v] = c;

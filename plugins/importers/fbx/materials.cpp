@@ -53,8 +53,7 @@ void lay(const Properties& p, rt_map_desc& out) {
                                      pivot = p.vector("TextureScalingPivot", zero);
     const Vec3 scale = p.vector("Scaling", one), offset = p.vector("Translation", zero), rotation = p.vector("Rotation", zero);
     const Vec3 first_scale = p.vector("ModelUVScaling", one), first_offset = p.vector("ModelUVTranslation", zero);
-    constexpr double kRadians = 0.017453292519943295;
-    const double c = std::cos(rotation[2] * kRadians), s = std::sin(rotation[2] * kRadians);
+    const double c = std::cos(rotation[2] * kRadPerDegree), s = std::sin(rotation[2] * kRadPerDegree);
     const bool is_swapped = p.whole("UVSwap", 0) != 0;
     const auto place = [&](double u, double v) -> std::array<double, 2> {
         u = u * first_scale[0] + first_offset[0], v = v * first_scale[1] + first_offset[1];

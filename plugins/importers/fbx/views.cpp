@@ -56,10 +56,9 @@ LightView light_of(const Context& context, const SceneNode& node, uint32_t attri
     view.intensity = p.number("Intensity", 100) / 100;
     view.scale = meaning.factor;
     // OuterAngle and InnerAngle are whole angles in degrees; before version 7 `Cone angle` is the outer one.
-    constexpr double radians = 0.017453292519943295;
     const double angle = p.number("OuterAngle", p.number("Cone angle", 45)), inner = p.number("InnerAngle", angle);
     lights.add(out, name, {view.color[0], view.color[1], view.color[2]}, meaning.factor * view.intensity, meaning.unit,
-               {angle * radians, inner * radians});
+               {angle * kRadPerDegree, inner * kRadPerDegree});
     return view;
 }
 
@@ -97,7 +96,6 @@ double angle_of_view(const Properties& p, std::string_view moved, double value) 
     const auto number = [&](std::string_view name, double otherwise) {
         return name == moved ? value : p.number(name, otherwise);
     };
-    constexpr double radians = 0.017453292519943295;
     double width = number("AspectWidth", number("AspectW", 0)), height = number("AspectHeight", number("AspectH", 0));
     if (!(width > 0 && height > 0)) width = number("FilmWidth", 0), height = number("FilmHeight", 0);
     const double aspect = width > 0 && height > 0 ? width / height : 4.0 / 3;
@@ -105,8 +103,8 @@ double angle_of_view(const Properties& p, std::string_view moved, double value) 
     const double film = number("FilmHeight", 0), focal = number("FocalLength", 0);
     // Blender moves the focal length also where it states an angle.
     if ((mode == 3 || moved == "FocalLength") && film > 0 && focal > 0) return 2 * std::atan(film * 25.4 / 2 / focal);
-    if (mode == 0 && (p.has("FieldOfViewY") || moved == "FieldOfViewY")) return number("FieldOfViewY", 0) * radians;
-    const double angle = number("FieldOfView", number("FieldOfViewX", number("Aperture", 40))) * radians;
+    if (mode == 0 && (p.has("FieldOfViewY") || moved == "FieldOfViewY")) return number("FieldOfViewY", 0) * kRadPerDegree;
+    const double angle = number("FieldOfView", number("FieldOfViewX", number("Aperture", 40))) * kRadPerDegree;
     const bool is_vertical = mode == 2 && p.number("FieldOfView", 0) != p.number("FieldOfViewX", -1);
     return is_vertical ? angle : 2 * std::atan(std::tan(angle / 2) / aspect);
 }
