@@ -42,7 +42,7 @@ class Lists(Case):
         t_max = np.where(np.arange(500) % 3 == 0, 1.5, 1e9).astype(np.float32)
         ray, prim, t, narrow = brute_force(vertices, faces, origins, directions, t_min[:, None], t_max[:, None])
         self.assertLess(np.count_nonzero(narrow), 50)
-        # Without the narrow rays, whose places in the arrays close up.
+        # Narrow rays are left out: the rays behind them move up in the arrays.
         keep = ~narrow
         sure = keep[ray]
         soup_expected = (np.cumsum(keep) - 1)[ray[sure]], prim[sure], t[sure]

@@ -85,7 +85,7 @@ TEST_F(Noise, TheErrorIsSeenToFall) {
     EXPECT_GE(double(some[2]), 0.9 * double(points.back()[2])) << some;
 }
 
-// A side whose samples are cheaper gets more of them, in the same seconds.
+// In the same seconds a side gets more samples if they are cheaper.
 TEST_F(Noise, SidesGetTheSameTime) {
     window->key("c");
     ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state.contains("other"); }));

@@ -11,7 +11,7 @@ typedef float4 rt_film;
 #endif
 
 RT_GROUP_WORK void rt_iterative_group(const rt_ctx *scene, const constant rt_frame *frame, uint launched, global rt_film *film,
-                                  global uint4 *counters, global float *distances)
+                                      global uint4 *counters, global float *distances)
 {
     const rt_ctx ctx = *scene;
     uint group = launched;

@@ -6,7 +6,7 @@
 /* Traces the packets of a group of the launch. film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's,
  * samples that are not finite, and full stacks. distances: those of sample 0's camera rays, as in iterative.cl. */
 RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *frame, uint group, global float4 *film, global uint4 *counters,
-                             global float *distances)
+                                 global float *distances)
 {
     const rt_ctx ctx = *scene;
     const uint rays = RT_BLOCKS(frame) * RT_LANES;

@@ -76,8 +76,8 @@ RT_INLINE bool rt_working_pixel_of_slot(const constant rt_frame *frame, const gl
     return !(deviations >= 0x80000000u && deviations <= 0xff800000u); /* negative, and -0, but a number */
 }
 
-/* Begins a path in each lane whose path has ended: of the next sample of its pixel, or of the next pixel of the packet that takes
- * samples. *next: the first slot that no lane has had. film: of the picture; 0 if all slots have been had. */
+/* A lane begins a new path where its last one has ended. It takes the next sample of its pixel; after the last of them the packet's next
+ * pixel, but none that rests. *next: the first slot that no lane has had. film: of the picture; 0 if all slots have been had. */
 RT_PART void rt_refill(const constant rt_frame *frame, const global float4 *film, uint2 origin, rt_path *p, uint *next)
 {
     const uint slots = RT_BLOCKS(frame) * RT_LANES;

@@ -8,7 +8,7 @@
 namespace spheres {
 namespace {
 
-constexpr rt_u32 kFew = 8;  // primitives whose planes and edges are tried
+constexpr rt_u32 kFew = 8;  // so many primitives or fewer: the planes and edges of each are tried
 
 struct Vector {
     double x[3];

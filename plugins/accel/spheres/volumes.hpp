@@ -1,7 +1,7 @@
 // volumes.hpp -- the volumes that a node may have: a sphere, a box, or a box with axes of its own.
 //
-// The sphere encloses the box: same centre, radius half the diagonal. An oriented box is fitted to the corners of triangles:
-// of several frames the one whose box has the least surface. Nodes with other primitives keep the axes of space.
+// The sphere encloses the box: same centre, radius half the diagonal. An oriented box is fitted to the corners of triangles
+// in several frames, and the box with the least surface is kept. Nodes with other primitives keep the axes of space.
 #pragma once
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:

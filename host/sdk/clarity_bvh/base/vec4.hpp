@@ -69,7 +69,7 @@ inline Vec4 less(Vec4 a, Vec4 b) {
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return {_mm_or_ps(_mm_and_ps(mask.m, a.m), _mm_andnot_ps(mask.m, b.m))};
 }
-// The mask of the lanes whose bits are set, lane 0 the lowest bit.
+// The mask of lanes: bit i is set for lane i.
 inline Vec4 mask_of(uint32_t bits) {
     const __m128i lanes = _mm_setr_epi32(1, 2, 4, 8);
     return {_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(bits)), lanes), lanes))};
