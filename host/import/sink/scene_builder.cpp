@@ -86,17 +86,16 @@ SceneBuilder::SceneBuilder(const PluginRegistry& plugins, ImporterParameters par
 }
 
 void SceneBuilder::warn(const std::string& file, const std::string& text) {
-    if (scene_.warnings.size() >= kMaxWarnings) {
-        ++warnings_left_out_;
-        return;
-    }
+    std::string warning = file + ": " + text;
     // Importers know a packed file by the name of what is in it.
-    for (const std::string& name : {file, name_without_gz(file)}) {
-        if (text.compare(0, name.size() + 1, name + ":") != 0) continue;
-        scene_.warnings.push_back(file + text.substr(name.size()));
-        return;
-    }
-    scene_.warnings.push_back(file + ": " + text);
+    for (const std::string& name : {file, name_without_gz(file)})
+        if (text.compare(0, name.size() + 1, name + ":") == 0) warning = file + text.substr(name.size());
+    // Of what many parts of a file have wrong alike, as a sampler that several textures name, once is enough.
+    if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) != scene_.warnings.end()) return;
+    if (scene_.warnings.size() < kMaxWarnings)
+        scene_.warnings.push_back(std::move(warning));
+    else
+        ++warnings_left_out_;
 }
 
 void SceneBuilder::add_root(const std::string& path) {
