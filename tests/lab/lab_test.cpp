@@ -70,7 +70,7 @@ const Submission kMedian[] = {
      "probe: no net"},
     {"forks", kBegin, PROBE("if (fork() < 0) throw rt::fail(host, \"probe: no fork\");"), 0, 0, "probe: no fork"},
     {"fills_memory", kBegin, PROBE("for (;;) std::memset(new char[1 << 24], 1, 1 << 24);"), 0, 0, "memory"},
-    {"loops", kBegin, PROBE("for (volatile int i = 0;;) i = i + 1;"), 0, 0, "processor time"},
+    {"loops", kBegin, PROBE("for (volatile int i = 0;;) i = i + 1;"), 0, 0, "the builder"},
     {"sleeps", kBegin, PROBE("for (;;) sleep(1);"), 0, 0, "did not come to its end"},
     {"reports_progress_for_ever", kBegin, PROBE("for (float f = 0;; f += 1e-6f) host->progress(host->ctx, f);"), 0, 0, ""},
     {"keeps_state", kBegin,
@@ -93,7 +93,7 @@ const Submission kOrdered[] = {
     {"slow_file_order", "left_entry <= right_entry", "1", 50, 99, "times the work"},
     {"wrong_forgets_the_other", "ordered_push(stack, left_first", "if (0) ordered_push(stack, left_first", 0, 10, ""},
     {"uses_assembler", "    if (left_entered && right_entered) {",
-     "    __asm__(\"nop\");\n    if (left_entered && right_entered) {", 0, 0, "line 6 has `__asm__`", true},
+     "    __asm__(\"nop\");\n    if (left_entered && right_entered) {", 0, 0, "line 6 has", true},
     {"counts_falsely", "    if (left_entered && right_entered) {",
      "    rt_hits *hit; hit->steps = 0;\n    if (left_entered && right_entered) {", 0, 0, "does not allow", true},
     {"redefines_what_counts", "uint ordered_next", "#define RT_COUNT_VISIT(a, b)\nuint ordered_next", 0, 0, "has `#`"},
@@ -172,8 +172,9 @@ void expect_marks(const std::string& lab, const std::string& file, const Submiss
         for (const json& line : record["lines"]) {
             const std::string text = line["found"];
             found |= text.find(one.found) != std::string::npos;
-            if (line["hidden"] == true)
+            if (line["hidden"] == true) {
                 EXPECT_EQ(text.find("probe"), std::string::npos) << "a hidden line quotes the submission";
+            }
             for (const char* secret : {"7301", "4117", "9241", "5003"})
                 EXPECT_EQ(text.find(secret), std::string::npos) << one.name << " shows a hidden seed: " << text;
         }
