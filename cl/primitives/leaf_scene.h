@@ -31,7 +31,13 @@ RT_INLINE bool RT_FN(rt_enter_instance)(const rt_ctx *ctx, uint at, const rt_ray
     inner->dy = fma(rt_vfloat(m[4]), dx, fma(rt_vfloat(m[5]), dy, rt_vfloat(m[6]) * dz));
     inner->dz = fma(rt_vfloat(m[8]), dx, fma(rt_vfloat(m[9]), dy, rt_vfloat(m[10]) * dz));
     inner->t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
+#ifdef RT_COUNT_STEPS
+    rt_counts *const counts = r->counts;
+#endif
     rt_prepare(inner, active);
+#ifdef RT_COUNT_STEPS
+    inner->counts = counts;
+#endif
     /* The leaves of a mesh number its primitives from 0, so the number of the hit is converted for the traversal, and back. */
     visit->root = instance->root;
     visit->instance = (int)index;
@@ -117,31 +123,31 @@ RT_INLINE void RT_FN(rt_leaf_scene_test)(const rt_ctx *ctx, uint at, const rt_ra
 }
 
 /* An instance is no primitive; the primitives in it count. */
-RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, rt_hits *hit)
+RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray)
 {
 #if RT_HAS_INSTANCES
     if (RT_REF_KIND(ctx->leaves[at].ref) == RT_REF_INSTANCE) return;
 #endif
-    RT_COUNT_LEAF(hit);
+    RT_HOST_COUNT(ray, tests, 1u);
 }
 
 RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
-    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+    RT_FN(rt_count_leaf_scene)(ctx, at, ray);
     RT_FN(rt_leaf_scene_test)(ctx, at, ray, hit);
 }
 
 /* RT_LEAF of a traversal that goes into instances itself: any primitive but those. */
 RT_INLINE void RT_FN(rt_leaf_world)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
-    RT_COUNT_LEAF(hit);
+    RT_HOST_COUNT(ray, tests, 1u);
     RT_FN(rt_leaf_world_test)(ctx, at, ray, hit);
 }
 
 #if RT_CPU
 RT_INLINE uint RT_FN(rt_leaf_scene_candidate)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
-    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+    RT_FN(rt_count_leaf_scene)(ctx, at, ray);
 #if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_SHAPES || RT_HAS_INSTANCES
     if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) return 1u;
 #endif
