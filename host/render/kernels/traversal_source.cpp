@@ -85,8 +85,9 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
     out.line(kPrototypes);
     out.part(traversal.file, traversal.text);
     each_step([&](const std::string& macro, const std::string&) { out.undef(macro); });
-    for (const char* macro : {"RT_TRAVERSE", "RT_TRAVERSE_STREAM", "RT_TRAVERSE_REQUEUED", "RT_TRAVERSE_WARP", "RT_LOADED_PRIM",
-                              "RT_ENTER_INSTANCE", "RT_LEAVE_INSTANCE", "RT_WORLD_LEAF", "RT_TRIANGLES_ONLY", "RT_SINGLE_RAY_MIXED"})
+    for (const char* macro :
+         {"RT_TRAVERSE", "RT_TRAVERSE_STREAM", "RT_TRAVERSE_REQUEUED", "RT_TRAVERSE_WARP", "RT_LOADED_PRIM",
+          "RT_ENTER_INSTANCE", "RT_LEAVE_INSTANCE", "RT_WORLD_LEAF", "RT_TRIANGLES_ONLY", "RT_SINGLE_RAY_MIXED"})
         out.undef(macro);
 }
 
