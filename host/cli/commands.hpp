@@ -127,6 +127,17 @@ struct NewPluginCommand {
 };
 int run_new_plugin(const PluginRegistry& plugins, const NewPluginCommand& command);
 
+// Assignments of a course.
+struct LabCommand {
+    std::string action;              // new, handout, check or grade
+    std::vector<std::string> words;  // a lab, then folders
+    std::vector<std::string> only;   // of check: lines
+    std::string output, gradescope;  // of grade: a folder for records, and Gradescope's file
+    std::string device, sdk, work;
+    bool autolab = false, counts_only = false;
+};
+int run_lab(const PluginRegistry& plugins, const LabCommand& command);
+
 struct BenchCommand {
     std::vector<std::string> what;    // suites and scene files
     std::string device;               // comma-separated list, or "all"; "": the best device
