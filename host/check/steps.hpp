@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/problem.hpp"
+
 namespace clarity::check {
 
 // What a check found. passed: `found` tells what was seen; else what is wrong, and why it matters.
@@ -17,6 +19,7 @@ struct Outcome {
     static Outcome failed(std::string found, std::string repeat = {}) {
         return {Kind::failed, std::move(found), std::move(repeat)};
     }
+    static Outcome failed(const std::string& what, const Problem& why) { return failed(what + ": " + why.text()); }
     static Outcome skipped(std::string why) { return {Kind::skipped, std::move(why), {}}; }
 };
 

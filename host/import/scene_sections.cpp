@@ -1,9 +1,31 @@
 #include "import/scene_sections.hpp"
 
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace clarity::import {
+
+namespace {
+
+// The members that the struct of a section has in common with that of the scene. Their names are apart.
+constexpr auto kMesh = [](auto& m) {
+    return std::tie(m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count);
+};
+constexpr auto kInstance = [](auto& i) {
+    return std::tie(i.mesh, i.material, i.visible, i.node, i.root, i.moving_mesh, i.world_from_object, i.node_from_object);
+};
+constexpr auto kMaterial = [](auto& m) { return std::tie(m.values, m.maps); };
+constexpr auto kLight = [](auto& l) { return std::tie(l.values, l.node, l.at_node); };
+constexpr auto kCamera = [](auto& k) {
+    return std::tie(k.eye, k.target, k.up, k.fov_y_rad, k.aperture, k.focus, k.node, k.node_eye, k.node_target, k.node_up);
+};
+constexpr auto kNode = [](auto& n) { return std::tie(n.values); };
+constexpr auto kClip = [](auto& k) { return std::tie(k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps); };
+constexpr auto kMorph = [](auto& m) { return std::tie(m.mesh, m.first_target, m.target_count, m.weight); };
+constexpr auto kSequence = [](auto& q) { return std::tie(q.first_mesh, q.mesh_count, q.first_number, q.number_count, q.fps); };
+
+}  // namespace
 
 Converted convert(const Scene& s) {
     Converted c;
@@ -12,24 +34,23 @@ Converted convert(const Scene& s) {
         return static_cast<uint32_t>(text.size());
     };
     c.globals.push_back({s.background, s.ambient, s.up_axis, 0, s.unit_scale, s.origin, s.sky.values, name(s.sky.file)});
-    for (const Mesh& m : s.meshes) {
-        c.meshes.push_back({name(m.name), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
-    }
-    for (const Instance& i : s.instances)
-        c.instances.push_back({name(i.name), i.mesh, i.material, i.visible, i.node, i.root, i.moving_mesh, i.world_from_object,
-                               i.node_from_object});
+    const auto add = [&](auto& section, const auto& from, auto text, const auto& members) {
+        for (const auto& of : from) {
+            auto& to = section.emplace_back();
+            to.name_bytes = name(of.*text);
+            members(to) = members(of);
+        }
+    };
+    add(c.meshes, s.meshes, &Mesh::name, kMesh);
+    add(c.instances, s.instances, &Instance::name, kInstance);
     for (const ShapeKind& kind : s.shape_kinds) c.shape_kinds.push_back(name(kind.id));
-    for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values, m.maps});
-    for (const Light& l : s.lights) c.lights.push_back({name(l.name), l.node, l.values, l.at_node});
-    for (const Camera& k : s.cameras)
-        c.cameras.push_back({name(k.name), k.node, k.eye, k.target, k.up, k.node_eye, k.node_target, k.node_up, k.fov_y_rad,
-                             k.aperture, k.focus});
-    for (const Node& n : s.motion.nodes) c.nodes.push_back({name(n.name), 0, n.values});
-    for (const Clip& k : s.motion.clips)
-        c.clips.push_back({name(k.name), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
-    for (const Morph& m : s.motion.morphs) c.morphs.push_back({name(m.name), m.mesh, m.first_target, m.target_count, m.weight});
-    for (const FileSequence& q : s.motion.sequences)
-        c.sequences.push_back({name(q.pattern), q.first_mesh, q.mesh_count, q.first_number, q.number_count, 0, q.fps});
+    add(c.materials, s.materials, &Material::name, kMaterial);
+    add(c.lights, s.lights, &Light::name, kLight);
+    add(c.cameras, s.cameras, &Camera::name, kCamera);
+    add(c.nodes, s.motion.nodes, &Node::name, kNode);
+    add(c.clips, s.motion.clips, &Clip::name, kClip);
+    add(c.morphs, s.motion.morphs, &Morph::name, kMorph);
+    add(c.sequences, s.motion.sequences, &FileSequence::pattern, kSequence);
     for (const std::string& warning : s.warnings) c.warnings.push_back(name(warning));
     for (const SceneEdit& edit : s.edits)
         for (const std::string* text : {&edit.key, &edit.value, &edit.where}) c.edits.push_back(name(*text));
@@ -56,29 +77,24 @@ bool convert_back(const Converted& c, Scene& s) {
     s.origin = g.origin;
     s.sky.values = g.sky;
     s.sky.file = name(g.sky_file_bytes);
-    for (const WireMesh& m : c.meshes) {
-        s.meshes.push_back(
-            {name(m.name_bytes), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
-    }
-    for (const WireInstance& i : c.instances)
-        s.instances.push_back({name(i.name_bytes), i.mesh, i.material, i.world_from_object, i.visible != 0, i.node, i.root,
-                               i.moving_mesh, i.node_from_object});
+    const auto add = [&](auto& to, const auto& section, auto text, const auto& members) {
+        for (const auto& from : section) {
+            auto& of = to.emplace_back();
+            of.*text = name(from.name_bytes);
+            members(of) = members(from);
+        }
+    };
+    add(s.meshes, c.meshes, &Mesh::name, kMesh);
+    add(s.instances, c.instances, &Instance::name, kInstance);
     for (const uint32_t bytes : c.shape_kinds) s.shape_kinds.push_back({name(bytes), nullptr});
-    for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values, m.maps});
-    for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values, l.node, l.at_node, 0});
-    for (const WireCamera& k : c.cameras)
-        s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.aperture, k.focus, k.node, k.node_eye,
-                             k.node_target, k.node_up, 0});
-    for (const WireNode& n : c.nodes) {
-        s.motion.nodes.push_back({name(n.name_bytes), n.values});
-        s.motion.nodes.back().values.name = nullptr;
-    }
-    for (const WireClip& k : c.clips)
-        s.motion.clips.push_back({name(k.name_bytes), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
-    for (const WireMorph& m : c.morphs)
-        s.motion.morphs.push_back({name(m.name_bytes), m.mesh, m.first_target, m.target_count, m.weight});
-    for (const WireSequence& q : c.sequences)
-        s.motion.sequences.push_back({name(q.name_bytes), q.first_mesh, q.mesh_count, q.first_number, q.number_count, q.fps});
+    add(s.materials, c.materials, &Material::name, kMaterial);
+    add(s.lights, c.lights, &Light::name, kLight);
+    add(s.cameras, c.cameras, &Camera::name, kCamera);
+    add(s.motion.nodes, c.nodes, &Node::name, kNode);
+    for (Node& node : s.motion.nodes) node.values.name = nullptr;
+    add(s.motion.clips, c.clips, &Clip::name, kClip);
+    add(s.motion.morphs, c.morphs, &Morph::name, kMorph);
+    add(s.motion.sequences, c.sequences, &FileSequence::pattern, kSequence);
     for (const uint32_t bytes : c.warnings) s.warnings.push_back(name(bytes));
     good = good && c.edits.size() % 3 == 0;
     for (size_t i = 0; good && i < c.edits.size(); i += 3) {

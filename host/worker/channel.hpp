@@ -44,7 +44,7 @@ bool send_message(int fd, const Message& message);
 void send_short(int fd, MessageKind kind, const char* text);
 
 enum class Received { message, nothing, closed };
-// Receives a message without waiting. A malformed packet counts as `closed`.
+// Receives a message without waiting. A malformed one counts as `closed`.
 Received receive_message(int fd, Message& message);
 
 }  // namespace clarity::worker

@@ -15,7 +15,7 @@ namespace clarity::bench {
 namespace {
 
 // World-space triangles. Points at the same position are one vertex, so that seams of texture coordinates do not tear open.
-struct Flattened {
+struct OneMesh {
     std::vector<Vec3> points, normals;
     std::vector<std::array<rt_u32, 3>> triangles;
     std::vector<rt_u32> materials;
@@ -34,8 +34,8 @@ struct HashOfPoint {
     }
 };
 
-Flattened flatten(const Scene& scene) {
-    Flattened mesh;
+OneMesh one_mesh(const Scene& scene) {
+    OneMesh mesh;
     std::unordered_map<std::array<float, 3>, rt_u32, HashOfPoint> known;
     for (const Instance& instance : scene.instances) {
         const Mesh& from = scene.meshes[instance.mesh];
@@ -79,7 +79,7 @@ double roughness(const Vec3& p, double size, double finest) {
 // triangles which share a point, the first one places it.
 class Refined {
  public:
-    Refined(const Flattened& mesh, unsigned n) : mesh_(mesh), n_(n) {
+    Refined(const OneMesh& mesh, unsigned n) : mesh_(mesh), n_(n) {
         const size_t count = mesh.triangles.size();
         std::vector<uint64_t> keys(3 * count);
         for (size_t t = 0; t < count; ++t)
@@ -139,7 +139,7 @@ class Refined {
     }
 
     static constexpr size_t kChunk = 4096;
-    const Flattened& mesh_;
+    const OneMesh& mesh_;
     const unsigned n_;
     std::vector<rt_u32> edge_of_;  // the three edges of each triangle
     std::vector<rt_u32> edge_owner_, point_owner_;
@@ -148,7 +148,7 @@ class Refined {
 
 // Position of a point, given by its weights in a triangle: curved, then displaced. Corners of weight 0 are skipped and the
 // others are added in the order of their vertex indices, so that both triangles of an edge compute exactly the same point.
-Vec3 place(const Flattened& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
+Vec3 place(const OneMesh& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](int a, int b) { return t[a] < t[b]; });
     Vec3 flat{}, normal{};
@@ -171,7 +171,7 @@ Vec3 place(const Flattened& mesh, const std::array<rt_u32, 3>& t, const double w
 }  // namespace
 
 Scene subdivide(const Scene& scene, unsigned n) {
-    const Flattened mesh = flatten(scene);
+    const OneMesh mesh = one_mesh(scene);
     const Refined refined(mesh, n);
     Scene out;
     out.spheres = scene.spheres;

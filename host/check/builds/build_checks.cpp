@@ -60,8 +60,8 @@ std::string on(const BuildCase& input) {
     return "scene `" + input.name() + "` (" + std::to_string(input.scene().prims.size()) + " primitives)";
 }
 
-// How a run failed that nobody cancelled; empty: it did not.
-std::string failure_of(const BuildRun& run) {
+// How a run failed that nobody cancelled.
+Problem failure_of(const BuildRun& run) {
     return run.cancelled ? "said that it was cancelled, but nobody had cancelled it" : run.why;
 }
 
@@ -69,7 +69,7 @@ Outcome sound(Inputs& inputs, const Step& step) {
     for (const BuildCase& input : inputs.small()) {
         step("building " + on(input), kBuildLimit_s);
         const BuildRun run = inputs.run(input);
-        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
+        if (const Problem why = failure_of(run)) return Outcome::failed(on(input), why);
         for (const auto& [label, value] : run.result.stats)
             if (!std::isfinite(value)) return Outcome::failed(on(input) + ": the statistic `" + label + "` is no number");
     }
@@ -81,9 +81,8 @@ Outcome refs(Inputs& inputs, const Step& step) {
     for (const BuildCase& input : inputs.small()) {
         step("building " + on(input), kBuildLimit_s);
         const BuildRun run = inputs.run(input);
-        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
-        if (const std::string why = missing_refs(input.scene(), run.result); !why.empty())
-            return Outcome::failed(on(input) + ": " + why);
+        if (const Problem why = failure_of(run)) return Outcome::failed(on(input), why);
+        if (const Problem why = missing_refs(input.scene(), run.result)) return Outcome::failed(on(input), why);
         count += input.scene().prims.size();
     }
     return Outcome::passed("all of " + std::to_string(count) + " are there");
@@ -94,10 +93,10 @@ Outcome bounds(Inputs& inputs, const Step& step) {
     for (const BuildCase* input : {&inputs.sparse(), &inputs.mixed()}) {
         step("building " + on(*input), kBuildLimit_s);
         BuildRun run = inputs.run(*input);
-        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(*input) + ": " + why);
+        if (const Problem why = failure_of(run)) return Outcome::failed(on(*input), why);
         step("asking for the levels of " + on(*input), kBuildLimit_s);
-        if (const std::string why = loose_bounds(inputs.plugin, input->scene(), run.result); !why.empty())
-            return Outcome::failed(on(*input) + ": " + why);
+        if (const Problem why = loose_bounds(inputs.plugin, input->scene(), run.result))
+            return Outcome::failed(on(*input), why);
     }
     return Outcome::passed("every corner of every triangle is in a volume of each level");
 }
@@ -108,18 +107,18 @@ Outcome threads(Inputs& inputs, const Step& step, bool quick) {
     for (const BuildCase* input : {&inputs.mixed(), &inputs.many()}) {
         step("building " + on(*input) + " with one thread", kManyLimit_s);
         const BuildRun first = inputs.run(*input, Schedule::forward);
-        if (const std::string why = failure_of(first); !why.empty()) return Outcome::failed(on(*input) + ": " + why);
+        if (const Problem why = failure_of(first)) return Outcome::failed(on(*input), why);
         for (int round = 0; round < rounds; ++round)
             for (const Schedule schedule : schedules) {
                 step("building " + on(*input) + " " + schedule_text(schedule), kManyLimit_s);
                 const BuildRun run = inputs.run(*input, schedule);
-                if (const std::string why = failure_of(run); !why.empty())
-                    return Outcome::failed(on(*input) + " " + schedule_text(schedule) + ": " + why);
-                const std::string why = difference(first.result, run.result, built_slots(inputs.plugin));
-                if (!why.empty())
+                if (const Problem why = failure_of(run))
+                    return Outcome::failed(on(*input) + " " + schedule_text(schedule), why);
+                Problem why = difference(first.result, run.result, built_slots(inputs.plugin));
+                if (why)
                     return Outcome::failed(
-                        on(*input) + ": the result " + schedule_text(schedule) + " is another than with one thread: " + why +
-                        ". Bodies of parallel_for depend on their order, or write to the same memory (a race)");
+                        on(*input) + ": the result " + schedule_text(schedule) + " is another than with one thread: " +
+                        why.text() + ". Bodies of parallel_for depend on their order, or write to the same memory (a race)");
             }
     }
     return Outcome::passed("the same bytes with 1, 2 and 7 threads, in " + std::to_string(rounds) + " rounds");
@@ -132,9 +131,9 @@ Outcome state(Inputs& inputs, const Step& step) {
     const BuildRun first = inputs.run(a, Schedule::forward), other = inputs.run(b, Schedule::forward),
                    again = inputs.run(a, Schedule::forward);
     for (const BuildRun* run : {&first, &other, &again})
-        if (const std::string why = failure_of(*run); !why.empty()) return Outcome::failed(why);
-    if (const std::string why = difference(first.result, again.result, built_slots(inputs.plugin)); !why.empty())
-        return Outcome::failed("the same scene gives another result after a build of another scene: " + why +
+        if (const Problem why = failure_of(*run)) return Outcome::failed(why.text());
+    if (const Problem why = difference(first.result, again.result, built_slots(inputs.plugin)))
+        return Outcome::failed("the same scene gives another result after a build of another scene: " + why.text() +
                                ". The plugin keeps state");
     step("building two scenes at a time", kBuildLimit_s);
     BuildRun together[2];
@@ -142,19 +141,19 @@ Outcome state(Inputs& inputs, const Step& step) {
     together[0] = inputs.run(a, Schedule::forward);
     thread.join();
     for (const BuildRun& run : together)
-        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed("two builds at a time: " + why);
+        if (const Problem why = failure_of(run)) return Outcome::failed("two builds at a time: " + why.text());
     for (const auto& [x, y] : {std::pair(&first, &together[0]), std::pair(&other, &together[1])})
-        if (const std::string why = difference(x->result, y->result, built_slots(inputs.plugin)); !why.empty())
-            return Outcome::failed("two builds at a time disturb each other: " + why + ". The plugin keeps state");
+        if (const Problem why = difference(x->result, y->result, built_slots(inputs.plugin)))
+            return Outcome::failed("two builds at a time disturb each other: " + why.text() + ". The plugin keeps state");
     return Outcome::passed("builds do not depend on what was built before or is built beside");
 }
 
-// Cancels a build of one scene. Returns what is wrong; empty: nothing. reports: how often the build asks.
-std::string cancel_fault(Inputs& inputs, const BuildCase& input, const Step& step, unsigned& reports) {
+// Cancels a build of one scene. Returns what is wrong. reports: how often the build asks.
+Problem cancel_fault(Inputs& inputs, const BuildCase& input, const Step& step, unsigned& reports) {
     step("building " + on(input), kManyLimit_s);
     const BuildRun whole = inputs.run(input);
     reports = whole.reports;
-    if (const std::string why = failure_of(whole); !why.empty()) return on(input) + ": " + why;
+    if (const Problem why = failure_of(whole)) return on(input) + ": " + why.text();
     if (whole.reports == 0)
         return whole.ms < kPatience_ms ? ""
                                        : "a build of " + std::to_string(static_cast<int>(whole.ms)) +
@@ -163,7 +162,7 @@ std::string cancel_fault(Inputs& inputs, const BuildCase& input, const Step& ste
         step("cancelling at report " + std::to_string(at) + " of " + on(input), kManyLimit_s);
         const BuildRun run = input.run(inputs.plugin, inputs.params, Schedule::program, at);
         if (run.cancelled) continue;
-        if (!run.why.empty()) return "when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why;
+        if (run.why) return "when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why.text();
         // The last report may come after all work.
         if (at < whole.reports)
             return "host->progress returned 0 at report " + std::to_string(at) + " of " + std::to_string(whole.reports) +
@@ -171,7 +170,7 @@ std::string cancel_fault(Inputs& inputs, const BuildCase& input, const Step& ste
     }
     step("building " + on(input) + " after a cancel", kManyLimit_s);
     const BuildRun again = inputs.run(input);
-    if (const std::string why = failure_of(again); !why.empty()) return "a build after a cancelled one: " + why;
+    if (const Problem why = failure_of(again)) return "a build after a cancelled one: " + why.text();
     return {};
 }
 
@@ -179,7 +178,7 @@ Outcome cancel(Inputs& inputs, const Step& step) {
     unsigned most = 0;
     for (const BuildCase* input : {&inputs.many(), &inputs.mixed()}) {
         unsigned reports = 0;
-        if (const std::string why = cancel_fault(inputs, *input, step, reports); !why.empty()) return Outcome::failed(why);
+        if (const Problem why = cancel_fault(inputs, *input, step, reports)) return Outcome::failed(why.text());
         most = std::max(most, reports);
     }
     if (most == 0)
@@ -202,9 +201,8 @@ Outcome parameters(Inputs& inputs, const Step& step, bool quick) {
             const std::string what = choice_text(plugin, params) + " on " + on(*input);
             step("building " + what, kManyLimit_s);
             BuildRun run = input->run(plugin, params, Schedule::program);
-            if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(what + ": " + why);
-            if (const std::string why = missing_refs(input->scene(), run.result); !why.empty())
-                return Outcome::failed(what + ": " + why);
+            if (const Problem why = failure_of(run)) return Outcome::failed(what, why);
+            if (const Problem why = missing_refs(input->scene(), run.result)) return Outcome::failed(what, why);
         }
     return Outcome::passed(std::to_string(tries.size()) + " sets of values at the ends of their ranges and in between");
 }
@@ -216,8 +214,7 @@ Outcome pack(Inputs& inputs, const Step& step) {
         for (const BuildCase& input : inputs.small()) {
             const std::string what = "a tree of leaves of " + std::to_string(leaf) + " over " + on(input);
             step("packing " + what, kBuildLimit_s);
-            if (const std::string why = pack_fault(inputs.plugin, input, leaf); !why.empty())
-                return Outcome::failed(what + ": " + why);
+            if (const Problem why = pack_fault(inputs.plugin, input, leaf)) return Outcome::failed(what, why);
         }
     return Outcome::passed("trees of other builders keep every primitive and their bounds");
 }
@@ -226,9 +223,9 @@ Outcome memory(Inputs& inputs, const Step& step) {
     const BuildCase& input = inputs.many();
     step("building " + on(input), kManyLimit_s);
     const BuildRun run = inputs.run(input);
-    if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
-    const std::string why = wasted_memory(built_slots(inputs.plugin), input, run.result);
-    if (!why.empty()) return Outcome::failed(on(input) + ": " + why);
+    if (const Problem why = failure_of(run)) return Outcome::failed(on(input), why);
+    Problem why = wasted_memory(built_slots(inputs.plugin), input, run.result);
+    if (why) return Outcome::failed(on(input), why);
     return Outcome::passed("slots are as large as what is in them");
 }
 
@@ -244,7 +241,7 @@ Outcome leaks(Inputs& inputs, const Step& step, bool quick) {
 Outcome afterwards(Inputs& inputs, const Step& step) {
     step("waiting after a build for threads that still write", kBuildLimit_s);
     BuildRun run = inputs.run(inputs.mixed());
-    if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(why);
+    if (const Problem why = failure_of(run)) return Outcome::failed(why.text());
     for (BuilderResult::Slot& slot : run.result.slots) slot.memory.make_read_only();
     run.result.refs.make_read_only();
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

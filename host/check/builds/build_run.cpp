@@ -136,12 +136,12 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
     run.ms = std::min(ms_since(start), 1e3 * double(std::clock() - worked) / CLOCKS_PER_SEC);
     run.reports = progress.reports();
     run.result = std::move(output.result());
-    if (run.why.empty() && !run.cancelled) {
-        run.why = run.result.breach(plugin).text();
+    if (!run.why && !run.cancelled) {
+        run.why = run.result.breach(plugin);
         const std::string overrun = overrun_of(run.result);
-        if (run.why.empty() && !overrun.empty()) run.why = "wrote beyond the end of " + overrun;
-        if (run.why.empty() && plugin.accel->topology) run.why = topology_fault(topology_of(run.result), build_).text();
-        if (!run.why.empty()) run.why = "the builder " + run.why;
+        if (!run.why && !overrun.empty()) run.why = "wrote beyond the end of " + overrun;
+        if (!run.why && plugin.accel->topology) run.why = topology_fault(topology_of(run.result), build_);
+        if (run.why) run.why = "the builder " + run.why.text();
     }
     return run;
 }
@@ -161,7 +161,7 @@ BuildRun BuildCase::pack(const rt_plugin& layout, const rt_topology& tree) const
                    });
 }
 
-std::string difference(const BuilderResult& a, const BuilderResult& b, const rt_accel& accel) {
+Problem difference(const BuilderResult& a, const BuilderResult& b, const rt_accel& accel) {
     for (size_t s = 0; s < a.slots.size(); ++s) {
         const std::string name = std::string("slot ") + accel.slots[s].name;
         if (a.slots[s].count != b.slots[s].count)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "base/progress.hpp"
 #include "plugin/parameters.hpp"
 #include "render/accel/build_scene.hpp"
@@ -42,7 +43,7 @@ class CancelAt : public Progress {
 
 struct BuildRun {
     int32_t status = RT_FAILED;
-    std::string why;  // how it failed or broke its contract, in its terms; empty: the result is sound as far as the ABI goes
+    Problem why;  // how it failed or broke its contract, in its terms; nothing: the result is sound as far as the ABI goes
     bool cancelled = false;  // it returned RT_CANCELLED after progress had said so
     double ms = 0;           // that it lasted, less what it waited for other processes
     unsigned reports = 0;    // calls of host->progress
@@ -73,7 +74,7 @@ class BuildCase {
     std::unique_ptr<BuilderInput> input_;
 };
 
-// Whether two results are the same in every byte. Returns the first difference, "slot nodes, element 12, byte 3"; empty: none.
-std::string difference(const BuilderResult& a, const BuilderResult& b, const rt_accel& accel);
+// Whether two results are the same in every byte. Returns the first difference, "slot nodes, element 12, byte 3".
+Problem difference(const BuilderResult& a, const BuilderResult& b, const rt_accel& accel);
 
 }  // namespace clarity::check

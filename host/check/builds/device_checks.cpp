@@ -62,7 +62,7 @@ class DeviceCheck {
             return Outcome::skipped("the plugin does not offer `device_build`");
         step("opening the device", kPlanLimit_s);
         const std::shared_ptr<Device> device = open_();
-        std::string why;
+        Problem why;
         try {
             for (const BuildForm form : {BuildForm::groups, BuildForm::serial}) {
                 const BuildKernels kernels(device, form);
@@ -70,9 +70,9 @@ class DeviceCheck {
                     step(what + ", " + form_text(form), limit_s);
                 };
                 if (build_.topology) why = topology_fault(kernels, in_form);
-                if (why.empty() && build_.pack) why = pack_fault(kernels, in_form);
-                if (why.empty() && build_.refit) why = refit_fault(kernels, in_form);
-                if (!why.empty()) return Outcome::failed(std::string(form_text(form)) + ": " + why);
+                if (!why && build_.pack) why = pack_fault(kernels, in_form);
+                if (!why && build_.refit) why = refit_fault(kernels, in_form);
+                if (why) return Outcome::failed(std::string(form_text(form)), why);
             }
         } catch (const cl::Error& e) {
             return Outcome::failed("the device failed: " + std::string(e.what()) + ", OpenCL error " + std::to_string(e.err()));
@@ -83,7 +83,7 @@ class DeviceCheck {
 
  private:
     // One plan for all poses of so many triangles.
-    std::string topology_fault(const BuildKernels& kernels, const Step& step) {
+    Problem topology_fault(const BuildKernels& kernels, const Step& step) {
         std::vector<unsigned> counts = {0, 1, 2, 3, 9, 300, 5000};
         if (!quick_) counts.push_back(40000);
         for (const unsigned count : counts) {
@@ -92,17 +92,17 @@ class DeviceCheck {
             TopologyRun builder(kernels, plugin_, count);
             std::vector<rt_u32> first, leaves;
             const std::vector<Posed> poses = poses_of(count);
-            const auto build = [&](const Posed& pose) -> std::string {
+            const auto build = [&](const Posed& pose) -> Problem {
                 step("building a tree over " + triangles + " " + pose.name(), kRunLimit_s);
                 ++runs_;
-                const std::string why = builder.run(pose.prims(), leaves);
-                return why.empty() ? why : "for " + triangles + " " + pose.name() + " the builder " + why;
+                Problem why = builder.run(pose.prims(), leaves);
+                return why ? Problem("for " + triangles + " " + pose.name() + " the builder " + why.text()) : Problem();
             };
             for (const Posed& pose : poses) {
-                if (std::string why = build(pose); !why.empty()) return why;
+                if (const Problem why = build(pose)) return why;
                 if (first.empty()) first = leaves;
             }
-            if (std::string why = build(poses.front()); !why.empty()) return why;
+            if (const Problem why = build(poses.front())) return why;
             if (leaves != first)
                 return "for " + triangles + " the builder makes another tree when its plan runs again over the same boxes: a " +
                        "step depends on what an earlier run left in a buffer, or on the order of work-groups";
@@ -111,7 +111,7 @@ class DeviceCheck {
     }
 
     // Packs trees of either kind, and refits them to the next pose.
-    std::string pack_fault(const BuildKernels& kernels, const Step& step) {
+    Problem pack_fault(const BuildKernels& kernels, const Step& step) {
         std::vector<unsigned> counts = {1, 2, 3, 9, 150, 400};
         counts.push_back(quick_ ? 9000 : 40000);
         for (const unsigned count : counts) {
@@ -126,28 +126,28 @@ class DeviceCheck {
                     const Posed &pose = poses[p], &next = poses[(p + 1) % poses.size()];
                     step("packing " + what + pose.name(), kRunLimit_s);
                     std::vector<rt_u32> leaves;
-                    std::string why = layout.pack(pose.prims(), make(pose.prims()), leaves);
-                    if (why.empty()) why = look(layout, pose);
-                    if (!why.empty()) return "for " + what + pose.name() + " the layout " + why;
+                    Problem why = layout.pack(pose.prims(), make(pose.prims()), leaves);
+                    if (!why) why = look(layout, pose);
+                    if (why) return "for " + what + pose.name() + " the layout " + why.text();
                     step("refitting " + what + next.name(), kRunLimit_s);
                     why = layout.refit(next.prims(leaves));
-                    if (why.empty()) why = look(layout, next);
-                    if (!why.empty()) return "a refit of " + what + "from " + pose.name() + " to " + next.name() + " " + why;
+                    if (!why) why = look(layout, next);
+                    if (why) return "a refit of " + what + "from " + pose.name() + " to " + next.name() + " " + why.text();
                     runs_ += 2;
                 }
             }
         }
         return {};
     }
-    std::string look(const LayoutRun& layout, const Posed& pose) const {
+    Problem look(const LayoutRun& layout, const Posed& pose) const {
         if (!plugin_.accel->levels || pose.prims().size() > kLookedAt) return {};
         BuilderResult result = layout.result();
-        const std::string why = loose_bounds(plugin_, pose.scene(), result);
-        return why.empty() ? why : "left out what it must hold: " + why;
+        Problem why = loose_bounds(plugin_, pose.scene(), result);
+        return why ? Problem("left out what it must hold: " + why.text()) : Problem();
     }
 
     // Refits trees that the host has built, group by group.
-    std::string refit_fault(const BuildKernels& kernels, const Step& step) {
+    Problem refit_fault(const BuildKernels& kernels, const Step& step) {
         std::vector<NamedScene> scenes = small_scenes();
         scenes.push_back({"sparse", sparse_scene(300)});
         for (const NamedScene& scene : scenes) {
@@ -159,37 +159,37 @@ class DeviceCheck {
                 const BuildCase rest(scene.name, scene.scene), moved(scene.name, movement.move(scene.scene));
                 if (moved.scene().prims.size() != rest.scene().prims.size()) continue;  // flattened in another way
                 PosedCosts costs{movement.name, {}, {}};
-                if (std::string why = refit_fault(kernels, rest, moved, costs); !why.empty()) return what + ": " + why;
+                if (const Problem why = refit_fault(kernels, rest, moved, costs)) return what + ": " + why.text();
                 if (!movement.is_flat && !costs.surfaces.empty()) poses.push_back(std::move(costs));
                 ++runs_;
             }
             if (poses.empty()) continue;
             const BuildCase rest(scene.name, scene.scene);
-            if (std::string why = cost_fault(rest.scene(), poses); !why.empty()) return "scene `" + scene.name + "`: " + why;
+            if (const Problem why = cost_fault(rest.scene(), poses)) return "scene `" + scene.name + "`: " + why.text();
         }
         return {};
     }
     // costs: receives those of each group, and surfaces if the plugin shows its levels.
-    std::string refit_fault(const BuildKernels& kernels, const BuildCase& rest, const BuildCase& moved, PosedCosts& costs) {
+    Problem refit_fault(const BuildKernels& kernels, const BuildCase& rest, const BuildCase& moved, PosedCosts& costs) {
         BuildRun built = rest.run(plugin_, default_parameters(plugin_), Schedule::program);
-        if (!built.why.empty()) return built.why;
+        if (built.why) return built.why;
         const auto* const refs = static_cast<const rt_u32*>(built.result.refs.data());
         std::map<rt_u32, rt_prim> by_ref;
         for (const rt_prim& prim : moved.scene().prims) by_ref[prim.ref] = prim;
         uint64_t positions = 0;
         for (rt_u32 g = 0; g < built.result.roots.size(); ++g) {
-            std::string why;
+            Problem why;
             LayoutRun layout(kernels, plugin_, built.result, g, why);
-            if (why.empty() && layout.first_leaf() + layout.count() > built.result.leaf_count)
+            if (!why && layout.first_leaf() + layout.count() > built.result.leaf_count)
                 why = "`ranges` names positions in leaf order that there are not";
-            if (!why.empty()) return "group " + std::to_string(g) + ": " + why;
+            if (why) return "group " + std::to_string(g) + ": " + why.text();
             positions += layout.count();
             costs.costs.push_back(-1);
             if (layout.count() == 0) continue;
             std::vector<rt_prim> prims;
             for (uint64_t i = 0; i < layout.count(); ++i) prims.push_back(by_ref.at(refs[layout.first_leaf() + i]));
             why = layout.refit(prims);
-            if (!why.empty()) return "the refit of group " + std::to_string(g) + " " + why;
+            if (why) return "the refit of group " + std::to_string(g) + " " + why.text();
             costs.costs.back() = layout.cost();
             built.result.slots = std::move(layout.result().slots);
         }
@@ -197,9 +197,9 @@ class DeviceCheck {
             return "`ranges` gives the groups " + std::to_string(positions) + " positions together, of " +
                    std::to_string(built.result.leaf_count);
         if (!plugin_.accel->levels) return {};
-        const std::string why = loose_bounds(plugin_, moved.scene(), built.result);
-        if (why.empty()) costs.surfaces = relative_surfaces(plugin_, built.result);
-        return why.empty() ? why : "after the refit " + why;
+        Problem why = loose_bounds(plugin_, moved.scene(), built.result);
+        if (!why) costs.surfaces = relative_surfaces(plugin_, built.result);
+        return why ? Problem("after the refit " + why.text()) : Problem();
     }
 
     const rt_plugin& plugin_;

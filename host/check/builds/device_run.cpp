@@ -55,7 +55,7 @@ TopologyRun::TopologyRun(const BuildKernels& kernels, const rt_plugin& plugin, s
         throw Error(Exit::failed, "the buffers of its tree are too small for " + std::to_string(count) + " primitives");
 }
 
-std::string TopologyRun::run(const std::vector<rt_prim>& prims, std::vector<rt_u32>& leaves) {
+Problem TopologyRun::run(const std::vector<rt_prim>& prims, std::vector<rt_u32>& leaves) {
     upload(kernels_, prims_, prims);
     plan_.run();
     DeviceTree tree;
@@ -111,7 +111,7 @@ LayoutRun::LayoutRun(const BuildKernels& kernels, const rt_plugin& plugin, size_
 }
 
 LayoutRun::LayoutRun(const BuildKernels& kernels, const rt_plugin& plugin, const BuilderResult& built, rt_u32 group,
-                     std::string& why)
+                     Problem& why)
     : kernels_(kernels),
       plugin_(plugin),
       build_(device_build_of(plugin)),
@@ -209,7 +209,7 @@ std::vector<std::vector<unsigned char>> LayoutRun::slots() const {
     return bytes;
 }
 
-std::string LayoutRun::written_outside(const std::vector<std::vector<unsigned char>>& before) const {
+Problem LayoutRun::written_outside(const std::vector<std::vector<unsigned char>>& before) const {
     const auto after = slots();
     for (size_t s = 0; s < after.size(); ++s) {
         const uint64_t size = plugin_.accel->slots[s].elem_bytes;
@@ -224,7 +224,7 @@ std::string LayoutRun::written_outside(const std::vector<std::vector<unsigned ch
     return {};
 }
 
-std::string LayoutRun::ranges_fault() const {
+Problem LayoutRun::ranges_fault() const {
     const auto ranges = download<rt_u32>(kernels_, ranges_, 2 * all_[0]);
     for (uint64_t e = 0; e < all_[0]; ++e) {
         const uint64_t first = ranges[2 * e], count = ranges[2 * e + 1];
@@ -239,7 +239,7 @@ std::string LayoutRun::ranges_fault() const {
     return {};
 }
 
-std::string LayoutRun::pack(const std::vector<rt_prim>& prims, const DeviceTree& tree, std::vector<rt_u32>& leaves) {
+Problem LayoutRun::pack(const std::vector<rt_prim>& prims, const DeviceTree& tree, std::vector<rt_u32>& leaves) {
     upload(kernels_, prims_, prims);
     upload(kernels_, nodes_, tree.nodes);
     upload(kernels_, counts_, tree.counts);
@@ -249,12 +249,12 @@ std::string LayoutRun::pack(const std::vector<rt_prim>& prims, const DeviceTree&
     pack_.run();
     if (!same_bytes(download<rt_prim>(kernels_, prims_, count_), prims)) return "wrote to the primitives";
     leaves = download<rt_u32>(kernels_, leaves_, count_);
-    if (const std::string why = order_fault(leaves); !why.empty()) return "wrote a leaf order that " + why;
-    if (std::string why = written_outside(before); !why.empty()) return why;
+    if (const Problem why = order_fault(leaves)) return "wrote a leaf order that " + why.text();
+    if (const Problem why = written_outside(before)) return why;
     return ranges_fault();
 }
 
-std::string LayoutRun::refit(const std::vector<rt_prim>& prims) {
+Problem LayoutRun::refit(const std::vector<rt_prim>& prims) {
     upload(kernels_, leaf_prims_, prims);
     upload(kernels_, costs_, std::vector<float>(elements_[0], NAN));
     const auto before = slots();

@@ -1,6 +1,6 @@
 // device_run.hpp -- carries out plans of a plugin's `device_build`, with guards around what they may write.
 //
-// Functions return what is wrong; empty: nothing. They throw Error if the plugin does not plan, and cl::Error if the device
+// Functions return what is wrong. They throw Error if the plugin does not plan, and cl::Error if the device
 // fails.
 #pragma once
 #include <string>
@@ -17,7 +17,7 @@ class TopologyRun {
  public:
     TopologyRun(const BuildKernels& kernels, const rt_plugin& plugin, size_t count);
     // Builds over `prims`. leaves: receives their numbers in the order of the leaves.
-    std::string run(const std::vector<rt_prim>& prims, std::vector<rt_u32>& leaves);
+    Problem run(const std::vector<rt_prim>& prims, std::vector<rt_u32>& leaves);
 
  private:
     const BuildKernels& kernels_;
@@ -35,12 +35,12 @@ class LayoutRun {
     LayoutRun(const BuildKernels& kernels, const rt_plugin& plugin, size_t count, rt_u32 depth);
     // For one group of a finished build, whose leaves are the primitives of `order`. why: receives what is wrong with its
     // ranges.
-    LayoutRun(const BuildKernels& kernels, const rt_plugin& plugin, const BuilderResult& built, rt_u32 group, std::string& why);
+    LayoutRun(const BuildKernels& kernels, const rt_plugin& plugin, const BuilderResult& built, rt_u32 group, Problem& why);
 
     // Packs a tree. leaves: receives the primitives' numbers in leaf order.
-    std::string pack(const std::vector<rt_prim>& prims, const DeviceTree& tree, std::vector<rt_u32>& leaves);
+    Problem pack(const std::vector<rt_prim>& prims, const DeviceTree& tree, std::vector<rt_u32>& leaves);
     // Refits the tree. prims: in leaf order.
-    std::string refit(const std::vector<rt_prim>& prims);
+    Problem refit(const std::vector<rt_prim>& prims);
     // The expected cost of a ray that hits the box of the tree, by the last refit; negative: floats cannot hold the areas.
     double cost() const { return cost_; }
     // The slots with their tree, for loose_bounds(). Of one group.
@@ -53,8 +53,8 @@ class LayoutRun {
     rt_device_tree tree_in(DevicePlan& plan, std::vector<rt_u32>& numbers) const;
     void plan_refit();
     std::vector<std::vector<unsigned char>> slots() const;
-    std::string written_outside(const std::vector<std::vector<unsigned char>>& before) const;
-    std::string ranges_fault() const;
+    Problem written_outside(const std::vector<std::vector<unsigned char>>& before) const;
+    Problem ranges_fault() const;
 
     const BuildKernels& kernels_;
     const rt_plugin& plugin_;

@@ -71,7 +71,7 @@ DeviceTree chain_tree(const std::vector<rt_prim>& prims) {
     return tree;
 }
 
-std::string order_fault(const std::vector<rt_u32>& order) {
+Problem order_fault(const std::vector<rt_u32>& order) {
     std::vector<bool> seen(order.size());
     for (size_t i = 0; i < order.size(); ++i) {
         const std::string place = " at place " + std::to_string(i);
@@ -83,12 +83,12 @@ std::string order_fault(const std::vector<rt_u32>& order) {
     return {};
 }
 
-std::string tree_fault(const DeviceTree& tree, const std::vector<rt_prim>& prims, std::vector<rt_u32>& leaves) {
+Problem tree_fault(const DeviceTree& tree, const std::vector<rt_prim>& prims, std::vector<rt_u32>& leaves) {
     leaves.clear();
     if (tree.depth > RT_TOPOLOGY_DEPTH)
         return "reported a depth of " + std::to_string(tree.depth) + ", at most " + std::to_string(RT_TOPOLOGY_DEPTH) +
                " are possible";
-    if (const std::string why = order_fault(tree.order); !why.empty()) return why;
+    if (const Problem why = order_fault(tree.order)) return why;
     if (tree.nodes.empty()) {
         leaves = tree.order;
         return {};

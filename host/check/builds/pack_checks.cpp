@@ -50,12 +50,12 @@ rt_topology Halves::topology() const {
     return topology;
 }
 
-std::string pack_fault(const rt_plugin& layout, const BuildCase& input, rt_u32 leaf) {
+Problem pack_fault(const rt_plugin& layout, const BuildCase& input, rt_u32 leaf) {
     const Halves tree(input.scene(), leaf);
     BuildRun run = input.pack(layout, tree.topology());
     if (run.cancelled) return "said that it was cancelled, but nobody had cancelled it";
-    if (!run.why.empty()) return run.why;
-    if (std::string why = missing_refs(input.scene(), run.result); !why.empty()) return why;
+    if (run.why) return run.why;
+    if (const Problem why = missing_refs(input.scene(), run.result)) return why;
     return layout.accel->levels ? loose_bounds(layout, input.scene(), run.result) : "";
 }
 

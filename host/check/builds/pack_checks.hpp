@@ -15,7 +15,7 @@ struct Halves {
     std::vector<rt_u32> refs, roots;
 };
 
-// Packs such trees. Returns what is wrong with the result; empty: nothing.
-std::string pack_fault(const rt_plugin& layout, const BuildCase& input, rt_u32 leaf);
+// Packs such trees. Returns what is wrong with the result.
+Problem pack_fault(const rt_plugin& layout, const BuildCase& input, rt_u32 leaf);
 
 }  // namespace clarity::check

@@ -93,8 +93,7 @@ class RefitCheck {
                 if (large && quick_ && movement.move != as_wave) continue;
                 const std::string what = "scene `" + scene.name + "`, " + movement.name;
                 step("refitting " + what, kRefitLimit_s);
-                if (const std::string why = fault(scene, movement, params_); !why.empty())
-                    return Outcome::failed(what + ": " + why);
+                if (const Problem why = fault(scene, movement, params_)) return Outcome::failed(what, why);
                 ++refits;
             }
         // Each choice may have volumes of its own.
@@ -105,45 +104,43 @@ class RefitCheck {
                 const std::string what =
                     "with " + choice_text(plugin_, params) + ", scene `" + small.name + "`, " + movement.name;
                 step("refitting " + what, kRefitLimit_s);
-                if (const std::string why = fault(small, movement, params); !why.empty())
-                    return Outcome::failed(what + ": " + why);
+                if (const Problem why = fault(small, movement, params)) return Outcome::failed(what, why);
                 ++refits;
             }
         for (const NamedScene& scene : scenes) {
             step("refitting single groups of scene `" + scene.name + "`", kRefitLimit_s);
-            if (const std::string why = trespass(scene); !why.empty())
-                return Outcome::failed("scene `" + scene.name + "`: " + why);
+            if (const Problem why = trespass(scene)) return Outcome::failed("scene `" + scene.name + "`: " + why.text());
         }
         step("comparing the costs of refits with the trees' boxes", kRefitLimit_s);
-        if (const std::string why = costs_of_mixed(); !why.empty()) return Outcome::failed(why);
+        if (const Problem why = costs_of_mixed()) return Outcome::failed(why.text());
         step("refitting many triangles", kRefitLimit_s);
-        if (const std::string why = thread_fault(); !why.empty()) return Outcome::failed("scene `many`: " + why);
+        if (const Problem why = thread_fault()) return Outcome::failed("scene `many`: " + why.text());
         return Outcome::passed(std::to_string(refits) + " refits hold every primitive and touch nothing else");
     }
 
  private:
-    static std::string failure_of(const RefitRun& run) {
+    static Problem failure_of(const RefitRun& run) {
         return run.cancelled ? "said that it was cancelled, but nobody had cancelled it" : run.why;
     }
 
     // Builds a scene, moves it, refits it, and looks at the volumes.
-    std::string fault(const NamedScene& scene, const Movement& movement, const ParameterValues& params) {
+    Problem fault(const NamedScene& scene, const Movement& movement, const ParameterValues& params) {
         const BuildCase rest(scene.name, scene.scene), moved(scene.name, movement.move(scene.scene));
         if (moved.scene().prims.size() != rest.scene().prims.size()) return {};  // flattened in another way
         const BuildRun built = rest.run(plugin_, params, Schedule::program);
-        if (!built.why.empty()) return built.why;
+        if (built.why) return built.why;
         RefitRun run = run_refit(plugin_, params, built.result, moved.scene(), all_groups(rest), Schedule::program);
-        if (std::string why = failure_of(run); !why.empty()) return why;
+        if (const Problem why = failure_of(run)) return why;
         if (!plugin_.accel->levels) return {};
-        std::string why = loose_bounds(plugin_, moved.scene(), run.result);
-        return why.empty() ? "" : "after the refit " + why;
+        Problem why = loose_bounds(plugin_, moved.scene(), run.result);
+        return why ? Problem("after the refit " + why.text()) : Problem();
     }
 
     // A refit of one group writes nothing that belongs to another, and a refit of none writes nothing.
-    std::string trespass(const NamedScene& scene) {
+    Problem trespass(const NamedScene& scene) {
         const BuildCase rest(scene.name, scene.scene), moved(scene.name, scattered(scene.scene));
         const BuildRun built = rest.run(plugin_, params_, Schedule::program);
-        if (!built.why.empty()) return built.why;
+        if (built.why) return built.why;
         const auto group_count = static_cast<rt_u32>(rest.scene().groups.size());
         std::vector<std::vector<rt_u32>> writer(built.result.slots.size());  // for each byte: the group that wrote it
         for (size_t s = 0; s < writer.size(); ++s) writer[s].assign(built.result.slots[s].memory.bytes(), RT_NONE);
@@ -151,7 +148,7 @@ class RefitCheck {
             std::vector<uint8_t> changed(group_count, 0);
             if (g < group_count) changed[g] = 1;
             const RefitRun run = run_refit(plugin_, params_, built.result, moved.scene(), changed, Schedule::forward);
-            if (std::string why = failure_of(run); !why.empty()) return why;
+            if (const Problem why = failure_of(run)) return why;
             for (size_t s = 0; s < writer.size(); ++s) {
                 const auto *before = static_cast<const unsigned char*>(built.result.slots[s].memory.data()),
                            *after = static_cast<const unsigned char*>(run.result.slots[s].memory.data());
@@ -172,46 +169,46 @@ class RefitCheck {
         return {};
     }
 
-    std::string costs_of_mixed() {
+    Problem costs_of_mixed() {
         if (!plugin_.accel->levels) return {};
         const Scene scene = mixed_scene();
         const BuildCase rest("mixed", scene);
         const BuildRun built = rest.run(plugin_, params_, Schedule::program);
-        if (!built.why.empty()) return built.why;
+        if (built.why) return built.why;
         std::vector<PosedCosts> poses;
         for (const Movement& movement : movements()) {
             if (movement.is_flat) continue;
             const BuildCase moved("mixed", movement.move(scene));
             if (moved.scene().prims.size() != rest.scene().prims.size()) continue;
             const RefitRun run = run_refit(plugin_, params_, built.result, moved.scene(), all_groups(rest), Schedule::program);
-            if (std::string why = failure_of(run); !why.empty()) return why;
+            if (const Problem why = failure_of(run)) return why;
             poses.push_back({movement.name, run.costs, relative_surfaces(plugin_, run.result)});
         }
         return cost_fault(rest.scene(), poses);
     }
 
     // Many triangles: the same bytes with any threads, and again from a tree that was refitted before; cancelling.
-    std::string thread_fault() {
+    Problem thread_fault() {
         const Scene scene = soup_scene(quick_ ? 12000 : 70000);
         const BuildCase rest("many", scene), first("many", scattered(scene)), second("many", as_wave(scene));
         const BuildRun built = rest.run(plugin_, params_, Schedule::program);
-        if (!built.why.empty()) return built.why;
+        if (built.why) return built.why;
         const auto groups = all_groups(rest);
         const RefitRun one = run_refit(plugin_, params_, built.result, second.scene(), groups, Schedule::forward);
-        if (std::string why = failure_of(one); !why.empty()) return why;
+        if (const Problem why = failure_of(one)) return why;
         for (const Schedule schedule : {Schedule::backward, Schedule::shuffled2, Schedule::shuffled7, Schedule::program}) {
             const RefitRun run = run_refit(plugin_, params_, built.result, second.scene(), groups, schedule);
-            std::string why = failure_of(run);
-            if (why.empty()) why = difference(one.result, run.result, *plugin_.accel);
-            if (!why.empty())
-                return std::string("the result ") + schedule_text(schedule) + " is another than with one thread: " + why;
+            Problem why = failure_of(run);
+            if (!why) why = difference(one.result, run.result, *plugin_.accel);
+            if (why)
+                return std::string("the result ") + schedule_text(schedule) + " is another than with one thread: " + why.text();
         }
         const RefitRun between = run_refit(plugin_, params_, built.result, first.scene(), groups, Schedule::program);
-        if (std::string why = failure_of(between); !why.empty()) return why;
+        if (const Problem why = failure_of(between)) return why;
         const RefitRun again = run_refit(plugin_, params_, between.result, second.scene(), groups, Schedule::program);
-        if (std::string why = failure_of(again); !why.empty()) return why;
-        if (std::string why = difference(one.result, again.result, *plugin_.accel); !why.empty())
-            return "a refit depends on the pose before: " + why + " after another refit";
+        if (const Problem why = failure_of(again)) return why;
+        if (const Problem why = difference(one.result, again.result, *plugin_.accel))
+            return "a refit depends on the pose before: " + why.text() + " after another refit";
         if (one.reports < 2) return {};
         const RefitRun stopped = run_refit(plugin_, params_, built.result, second.scene(), groups, Schedule::program, 1);
         if (!stopped.cancelled)

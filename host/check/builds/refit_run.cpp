@@ -57,8 +57,8 @@ class Asked {
         }
         return RT_OK;
     }
-    // Which position was never asked for; empty: none.
-    std::string missing() const {
+    // Which position was never asked for; nothing: each was.
+    Problem missing() const {
         uint64_t count = 0, first = 0;
         for (size_t i = times_count(); i-- > 0;)
             if (wanted_[i] && times_[i] == 0) ++count, first = i;
@@ -175,12 +175,12 @@ RefitRun run_refit(const rt_plugin& plugin, const ParameterValues& params, const
         run.why = e.what();
     }
     run.reports = progress.reports();
-    if (!run.why.empty() || run.cancelled) return run;
+    if (run.why || run.cancelled) return run;
     run.costs = costs.of_group;
     run.why = asked.missing();
-    if (const std::string overrun = overrun_of(run.result); run.why.empty() && !overrun.empty())
+    if (const std::string overrun = overrun_of(run.result); !run.why && !overrun.empty())
         run.why = "the refit wrote beyond the end of " + overrun;
-    if (run.why.empty() && costs.wrong)
+    if (!run.why && costs.wrong)
         run.why = "the refit reported a cost that is negative or no number, or of a group that is not there";
     return run;
 }

@@ -9,7 +9,7 @@
 namespace clarity::check {
 
 struct RefitRun {
-    std::string why;  // how it failed or broke its contract; empty: as far as the ABI goes it is sound
+    Problem why;  // how it failed or broke its contract; nothing: as far as the ABI goes it is sound
     bool cancelled = false;
     unsigned reports = 0;       // calls of host->progress
     BuilderResult result;       // with copies of the slots

@@ -98,7 +98,7 @@ struct Collected {
     std::vector<Volume> volumes;
 };
 
-std::vector<Volume> volumes_of(const rt_plugin& plugin, const rt_built& built, rt_u32 group, rt_u32 level, std::string& why) {
+std::vector<Volume> volumes_of(const rt_plugin& plugin, const rt_built& built, rt_u32 group, rt_u32 level, Problem& why) {
     Collected collected;
     rt_volume_sink sink{};
     sink.struct_bytes = sizeof sink;
@@ -149,18 +149,18 @@ std::string text(const char* format, double a, double b = 0, double c = 0) {
 }
 
 // Checks one group.
-std::string loose_in_group(const rt_plugin& plugin, const BuildScene& scene, const rt_built& built, rt_u32 group) {
+Problem loose_in_group(const rt_plugin& plugin, const BuildScene& scene, const rt_built& built, rt_u32 group) {
     constexpr rt_u32 kMostLevels = 64;
-    std::string why;
+    Problem why;
     const std::vector<Volume> bottom = volumes_of(plugin, built, group, RT_LEVEL_BOTTOM, why);
-    if (!why.empty()) return why;
+    if (why) return why;
     const std::set<Volume> leaves(bottom.begin(), bottom.end());
     std::vector<Volume> shallow;  // leaves above the level that is looked at
     const rt_group& range = scene.groups[group];
     for (rt_u32 n = 0; n < kMostLevels; ++n) {
         const rt_u32 level = n == 0 ? RT_LEVEL_BOTTOM : n - 1;
         std::vector<Volume> volumes = n == 0 ? bottom : volumes_of(plugin, built, group, level, why);
-        if (!why.empty()) return why;
+        if (why) return why;
         if (n > 0 && volumes.empty()) break;
         for (const Volume& v : volumes)
             if (!v.sound())
@@ -201,7 +201,7 @@ std::string loose_in_group(const rt_plugin& plugin, const BuildScene& scene, con
 
 }  // namespace
 
-std::string missing_refs(const BuildScene& scene, const BuilderResult& result) {
+Problem missing_refs(const BuildScene& scene, const BuilderResult& result) {
     std::unordered_map<rt_u32, rt_u32> times;
     times.reserve(scene.prims.size() * 2);
     for (const rt_prim& prim : scene.prims) times[prim.ref] = 0;
@@ -240,16 +240,16 @@ struct Finished {
 
 }  // namespace
 
-std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result) {
+Problem loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result) {
     Finished finished(result);
     for (rt_u32 g = 0; g < result.roots.size(); ++g) {
-        const std::string why = loose_in_group(plugin, scene, finished.built, g);
-        if (why.empty()) continue;
+        Problem why = loose_in_group(plugin, scene, finished.built, g);
+        if (!why) continue;
         // Are its primitives below another group's root?
         for (rt_u32 other = 0; other < result.roots.size(); ++other) {
             if (result.roots[other] == result.roots[g]) continue;
             finished.roots[g] = result.roots[other];
-            if (!loose_in_group(plugin, scene, finished.built, g).empty()) continue;
+            if (loose_in_group(plugin, scene, finished.built, g)) continue;
             return "root " + std::to_string(result.roots[g]) + ", which was reported for group " + std::to_string(g) +
                    ", is not that of its tree: its primitives are below root " + std::to_string(result.roots[other]) +
                    ", which was reported as that of the tree of group " + std::to_string(other);
@@ -266,7 +266,7 @@ std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResu
     for (rt_u32 g = 0; g < result.roots.size(); ++g) {
         double first = 0, all = 0;
         for (rt_u32 level = 0; level < kMostLevels; ++level) {
-            std::string why;
+            Problem why;
             const std::vector<Volume> volumes = volumes_of(plugin, finished.built, g, level, why);
             if (volumes.empty()) break;
             for (const Volume& v : volumes) all += v.surface();
@@ -277,7 +277,7 @@ std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResu
     return surfaces;
 }
 
-std::string cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& poses) {
+Problem cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& poses) {
     constexpr double kSurfaces = 2, kCosts = 1.3;  // where volumes have twice the surface, costs rise by 1.3 at least
     constexpr rt_u32 kLeast = 60;                  // primitives of a group
     for (rt_u32 g = 0; g < scene.groups.size(); ++g) {
@@ -302,7 +302,7 @@ std::string cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& p
     return {};
 }
 
-std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result) {
+Problem wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result) {
     constexpr uint64_t kFree = 64u << 10;
     // The nodes of a topology, which has no traversal, are freed as soon as they are packed. Its builder may ask for as many as
     // it might need.

@@ -1,4 +1,4 @@
-// result_checks.hpp -- whether what a builder wrote is sound. Each function returns what is wrong; empty: nothing.
+// result_checks.hpp -- whether what a builder wrote is sound. Each function returns what is wrong.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@
 namespace clarity::check {
 
 // Every primitive of the input is among the leaves, and nothing else is.
-std::string missing_refs(const BuildScene& scene, const BuilderResult& result);
+Problem missing_refs(const BuildScene& scene, const BuilderResult& result);
 
 // The volumes that `levels` shows are numbers, and hold the triangles below them. Returns nothing where the plugin shows none.
-std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result);
+Problem loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result);
 
 // For each group: the surface of all volumes that `levels` shows, in units of that of the first level. 0: there is none.
 std::vector<double> relative_surfaces(const rt_plugin& plugin, const BuilderResult& result);
@@ -22,9 +22,9 @@ struct PosedCosts {
     std::vector<double> costs, surfaces;
 };
 // The costs that refits report rise with the surfaces of the tree's volumes: the host decides by them when to build again.
-std::string cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& poses);
+Problem cost_fault(const BuildScene& scene, const std::vector<PosedCosts>& poses);
 
 // Slots are not far larger than what the builder filled, nor than the input.
-std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result);
+Problem wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result);
 
 }  // namespace clarity::check

@@ -65,26 +65,26 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     const auto run_on = [&](const BuildCase& from) {
         run_ = as.packed_leaf > 0 ? from.pack(plugin, Halves(from.scene(), as.packed_leaf).topology())
                                   : from.run(plugin, params, Schedule::program);
-        if (!layout || !run_.why.empty() || run_.cancelled) return;
+        if (!layout || run_.why || run_.cancelled) return;
         const BuildRun tree = std::move(run_);
         run_ = from.pack(*layout, topology_of(tree.result));
     };
     run_on(built);
-    if (rest && run_.why.empty() && !run_.cancelled) {
+    if (rest && !run_.why && !run_.cancelled) {
         const rt_plugin& refits = layout ? *layout : plugin;
         RefitRun moved = run_refit(refits, layout ? default_parameters(refits) : params, run_.result, case_.scene(),
                                    std::vector<uint8_t>(case_.scene().groups.size(), 1), Schedule::program);
-        if (!moved.why.empty()) throw Error(Exit::failed, moved.why + " (see builds.refit)");
+        if (moved.why) throw Error(Exit::failed, moved.why.text() + " (see builds.refit)");
         run_.result = std::move(moved.result);
         if (as.moves == Moves::rebuilt) run_on(case_);
     }
     if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
-    if (run_.why.empty()) {
+    if (!run_.why) {
         // A ref that is unknown cannot be packed; one that is missing is worth a run.
-        const std::string why = missing_refs(case_.scene(), run_.result);
-        if (why.find("not in the input") != std::string::npos) run_.why = why;
+        Problem why = missing_refs(case_.scene(), run_.result);
+        if (why.text().find("not in the input") != std::string::npos) run_.why = why;
     }
-    if (!run_.why.empty()) throw Error(Exit::failed, "the builder failed: " + run_.why + " (see builds.sound)");
+    if (run_.why) throw Error(Exit::failed, "the builder failed: " + run_.why.text() + " (see builds.sound)");
 
     auto accel = std::make_shared<AccelData>();
     accel->plugin = &plugin;

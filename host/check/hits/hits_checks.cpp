@@ -18,7 +18,7 @@ namespace clarity::check {
 namespace {
 
 Outcome compile(Bench& bench, const rt_plugin& tracer, const Step& step) {
-    if (const std::string why = reserved_name_fault(tracer); !why.empty()) return Outcome::failed(why);
+    if (const Problem why = reserved_name_fault(tracer)) return Outcome::failed(why.text());
     for (const Variant& variant : bench.variants(step)) try {
             bench.compiled(variant, step);
         } catch (const Error& e) {

@@ -26,7 +26,7 @@ bool is_reserved(const std::string& name, bool is_undef) {
 
 }  // namespace
 
-std::string reserved_name_fault(const rt_plugin& tracer) {
+Problem reserved_name_fault(const rt_plugin& tracer) {
     static const std::regex directive(R"(\s*#\s*(define|undef)\s+(\w+).*)"), mark(R"(\s*#line\s+(\d+)\s+\"([^\"]*)\".*)");
     for (const rt_cl_file* file : {&tracer.accel->types, &tracer.accel->traverse}) {
         if (!file->text) continue;

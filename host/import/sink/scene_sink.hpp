@@ -13,6 +13,9 @@
 
 namespace clarity::import {
 
+// Names are shown to people: control characters of hostile files are removed, and the length is limited.
+std::string clean_name(const char* name);
+
 // Exists for one call of rt_importer.load. The ids that it gives to the plugin count within this file. A bug of the plugin (an
 // unknown id, no positions) fails the import. Damage in the file itself (bad indices, numbers that are not finite) is left out
 // with a warning; the import fails only if nothing remains.
@@ -29,6 +32,7 @@ class SceneSink {
     Problem finish();
 
  private:
+    static constexpr rt_u32 kFailed = RT_NONE;
     rt_u32 texture(const rt_texture_desc& desc);
     rt_u32 material(const rt_material_desc& desc);
     rt_u32 mesh(const rt_mesh& desc);

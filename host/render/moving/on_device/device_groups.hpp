@@ -15,7 +15,7 @@
 namespace clarity {
 
 // Where an instance is, as kernels read it: rt_placement of move.cl.
-struct DeviceInstance {
+struct DevicePlacement {
     float world_from_object[12], object_from_world[12];
     uint32_t hidden, pad[3];
 };
@@ -25,7 +25,7 @@ struct DevicePose {
     cl::Buffer positions;          // 3 floats a vertex of the Scene, in the space of its group
     cl::Buffer normals;            // likewise; as DeviceScene has them
     cl::Buffer corners;            // rt_triangle for each ref
-    cl::Buffer placements;         // DeviceInstance for each instance of the structure
+    cl::Buffer placements;         // DevicePlacement for each instance of the structure
     cl::Buffer group_of_instance;  // uint
     cl::Buffer group_boxes;        // rt_block for each group
     cl::Buffer no_bounds;          // 6 floats: +inf, then -inf

@@ -80,7 +80,7 @@ void DeviceMover::start() {
         std::copy_n(build.instances[i].object_from_world, 12, placements_[i].object_from_world);
         placements_[i].hidden = build.instances[i].hidden;
     }
-    pose_.placements = filled(placements_.data(), placements_.size() * sizeof(DeviceInstance));
+    pose_.placements = filled(placements_.data(), placements_.size() * sizeof(DevicePlacement));
     pose_.group_of_instance = filled(build.group_of_instance.data(), build.group_of_instance.size() * sizeof(rt_u32));
     std::vector<float> nothing;
     for (size_t g = 0; g < build.groups.size(); ++g)
@@ -140,7 +140,7 @@ Problem DeviceMover::place(const Pose& pose) {
     }
     if (first != RT_NONE) {
         version_[0] = moves_ + 1;
-        send(pose_.placements, first * sizeof(DeviceInstance), (last - first + 1) * sizeof(DeviceInstance),
+        send(pose_.placements, first * sizeof(DevicePlacement), (last - first + 1) * sizeof(DevicePlacement),
              &placements_[first]);
     }
     for (const PosedMesh& mesh : pose.meshes)

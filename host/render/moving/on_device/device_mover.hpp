@@ -96,7 +96,7 @@ class DeviceMover {
 
     // The pose, on the host.
     std::vector<PosedInstance> instances_;  // of the Scene
-    std::vector<DeviceInstance> placements_;
+    std::vector<DevicePlacement> placements_;
     MovedInstances moved_;
     UninitializedVector<float> positions_, normals_;  // what was sent last; the device may read it until sent_ is complete
     std::vector<uint8_t> is_posed_, is_deformed_;     // for each mesh: by the pose that is taken over, and by the last one

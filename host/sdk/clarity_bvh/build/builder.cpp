@@ -25,8 +25,8 @@ uint32_t chunk_size_for(uint64_t primitive_count) {
 
 // The part of a range that one thread bins and moves.
 struct TopologyBuilder::Chunk {
-    uint32_t owner;  // index of the range in its level; in load(): the group
-    uint32_t begin, end;
+    uint32_t owner = 0;  // index of the range in its level; in load(): the group
+    uint32_t begin = 0, end = 0;
     uint32_t left = 0, right = 0;  // first positions of its left and right primitives after the split
     Bounds box, centroids2;        // of all its primitives
     Bounds left_centroids2, right_centroids2;
@@ -97,6 +97,13 @@ Topology TopologyBuilder::run(const RefMemory& refs, const std::function<void(co
     return std::move(tree_);
 }
 
+void TopologyBuilder::add_chunks(std::vector<Chunk>& chunks, uint32_t owner, const Range& range) const {
+    for (uint32_t at = range.begin; at < range.end; at = chunks.back().end) {
+        Chunk& chunk = chunks.emplace_back();
+        chunk.owner = owner, chunk.begin = at, chunk.end = std::min(at + chunk_size_, range.end);
+    }
+}
+
 // Copies the primitives of all groups into records, group by group, and computes the bounds of each group.
 std::vector<TopologyBuilder::Pending> TopologyBuilder::load() {
     std::vector<Pending> groups;
@@ -113,10 +120,9 @@ std::vector<TopologyBuilder::Pending> TopologyBuilder::load() {
         pending.room_begin = place(before);
         pending.room_end = place(before + input_.groups[g].count);
         before += input_.groups[g].count;
-        uint32_t at = pending.range.begin = pending.room_begin;
-        pending.range.end = at + input_.groups[g].count;
-        for (; at < pending.range.end; at = chunks.back().end)
-            chunks.push_back({g, at, std::min(at + chunk_size_, pending.range.end), 0, 0, {}, {}, {}, {}});
+        pending.range.begin = pending.room_begin;
+        pending.range.end = pending.room_begin + input_.groups[g].count;
+        add_chunks(chunks, g, pending.range);
         groups.push_back(pending);
     }
     parallel_for(chunks.size(), [&](uint32_t i) {
@@ -190,8 +196,7 @@ std::vector<TopologyBuilder::Pending> TopologyBuilder::split_level(const std::ve
         cuts[i].first_chunk = static_cast<uint32_t>(chunks.size());
         cuts[i].binned = may_bin(workspace_.rules, range);
         cuts[i].bin_count = bins_for(workspace_.rules, range.count());
-        for (uint32_t at = range.begin; at < range.end; at = chunks.back().end)
-            chunks.push_back({i, at, std::min(at + chunk_size_, range.end), 0, 0, {}, {}, {}, {}});
+        add_chunks(chunks, i, range);
         cuts[i].chunk_count = static_cast<uint32_t>(chunks.size()) - cuts[i].first_chunk;
     }
 

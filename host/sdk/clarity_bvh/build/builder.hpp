@@ -64,6 +64,7 @@ class TopologyBuilder {
     struct Chunk;
     struct Cut;
 
+    void add_chunks(std::vector<Chunk>& chunks, uint32_t owner, const Range& range) const;
     std::vector<Pending> load();
     void add_task(const Pending& pending);
     // Makes a task of each range that is small enough, and returns the other ranges.
