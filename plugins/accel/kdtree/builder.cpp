@@ -72,10 +72,7 @@ class Builder {
         tree.depth = std::max(tree.depth, depth);
         const Plane plane = depth < rules_.max_depth ? best_plane(items, box) : Plane();
         if (!(plane.cost < rules_.intersection * double(items.size()))) {
-            tree.nodes[place].at.first = rt_u32(tree.list.size());
-            tree.nodes[place].code = rt_u32(items.size()) << 2 | KDTREE_LEAF;
-            for (const Item& item : items) tree.list.push_back(item.prim);
-            tree.leaves += !items.empty();
+            tree.make_leaf(place, items);
             return;
         }
         const size_t child = tree.nodes.size();
@@ -86,21 +83,9 @@ class Builder {
         for (const Item& item : items) deal(item, plane, halves);
         const bool in_parallel = items.size() > kParallel;
         std::vector<Item>().swap(items);
-        const auto build_half = [&](Tree& to, size_t at, rt_u32 side) {
+        clarity::space::build_children(host_, tree, child, in_parallel, [&](Tree& to, size_t at, rt_u32 side) {
             build(to, at, std::move(halves[side]), half_of(box, plane.axis, plane.at, int(side)), depth + 1);
-        };
-        if (!in_parallel) {
-            build_half(tree, child, 0);
-            build_half(tree, child + 1, 1);
-            return;
-        }
-        Tree parts[2];
-        rt::parallel_for(host_, 2, [&](rt_u32 side) {
-            parts[side].nodes.resize(1);
-            build_half(parts[side], 0, side);
         });
-        append(tree, child, parts[0]);
-        append(tree, child + 1, parts[1]);
     }
 
  private:
@@ -183,35 +168,13 @@ class Builder {
 
 }  // namespace
 
-void append(Tree& to, size_t place, const Tree& from) {
-    const rt_u32 node = rt_u32(to.nodes.size()) - 1, first = rt_u32(to.list.size());  // the root is not appended
-    for (size_t i = 0; i < from.nodes.size(); ++i) {
-        kdtree_node moved = from.nodes[i];
-        if ((moved.code & 3u) == KDTREE_LEAF)
-            moved.at.first += first;
-        else
-            moved.code += node << 2;
-        if (i == 0)
-            to.nodes[place] = moved;
-        else
-            to.nodes.push_back(moved);
-    }
-    to.list.insert(to.list.end(), from.list.begin(), from.list.end());
-    to.depth = std::max(to.depth, from.depth);
-    to.leaves += from.leaves;
-}
-
 Tree build_tree(const rt_host* host, const Rules& rules, const rt_prim* prims, rt_u32 count, const rt_packed_prim* triangles,
                 Box& box) {
     std::vector<Item> items(count);
     for (int k = 0; k < 3; ++k) box.lo[k] = count > 0 ? FLT_MAX : 0, box.hi[k] = count > 0 ? -FLT_MAX : 0;
     for (rt_u32 i = 0; i < count; ++i) {
-        items[i].prim = i;
+        items[i] = {clarity::space::finite_box<Box>(prims[i]), i};
         for (int k = 0; k < 3; ++k) {
-            // What is not a number becomes the farthest bound, and infinite bounds become finite.
-            const float lo = prims[i].lo[k] >= -FLT_MAX ? std::min(prims[i].lo[k], FLT_MAX) : -FLT_MAX;
-            const float hi = prims[i].hi[k] <= FLT_MAX ? std::max(prims[i].hi[k], -FLT_MAX) : FLT_MAX;
-            items[i].box.lo[k] = std::min(lo, hi), items[i].box.hi[k] = std::max(lo, hi);
             box.lo[k] = std::min(box.lo[k], items[i].box.lo[k]), box.hi[k] = std::max(box.hi[k], items[i].box.hi[k]);
         }
     }

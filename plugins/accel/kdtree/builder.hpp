@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "clarity_space/plane_tree.hpp"
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "kdtree_types.h"
@@ -26,15 +27,8 @@ struct Rules {
     rt_u32 max_depth;
 };
 
-// A tree, the root first. Children stand behind their parents. The list has numbers of primitives within the group.
-struct Tree {
-    std::vector<kdtree_node> nodes;
-    std::vector<rt_u32> list;
-    rt_u32 depth = 0, leaves = 0;  // leaves: those with primitives
-};
-
-// Appends a tree, with its root in the place of an existing node.
-void append(Tree& to, size_t place, const Tree& from);
+using Tree = clarity::space::PlaneTree<kdtree_node, 2>;
+static_assert(Tree::kLeaf == KDTREE_LEAF, "kernels know leaves by it");
 
 // Builds the tree of a group. `box` receives the bounds of its primitives.
 Tree build_tree(const rt_host* host, const Rules& rules, const rt_prim* prims, rt_u32 count, const rt_packed_prim* triangles,

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "builder.hpp"
-#include "clarity_space/tree.hpp"
 
 namespace kdtree {
 namespace {
@@ -25,7 +24,7 @@ constexpr rt_param kParams[] = {
 };
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    const rt_u32 count = clarity::space::primitive_count(host, *in);
+    clarity::space::primitive_count(host, *in);  // fails if there are too many
     std::vector<Tree> trees(in->group_count);
     std::vector<Box> boxes(in->group_count);
     rt::parallel_for(host, in->group_count, [&](rt_u32 g) {
@@ -36,30 +35,8 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
         trees[g] = build_tree(host, rules, in->prims + group.first, group.count, in->geometry->triangles, boxes[g]);
     });
 
-    auto* const heads = rt::alloc<kdtree_head>(out, 0, in->group_count);
-    clarity::space::put_leaves(host, *in, out, count);
-    Tree all;
-    rt_u32 before = 0;  // positions in leaf order before the group's
-    for (rt_u32 g = 0; g < in->group_count; ++g) {
-        std::copy_n(boxes[g].lo, 3, heads[g].box);
-        std::copy_n(boxes[g].hi, 3, heads[g].box + 3);
-        heads[g].node = rt_u32(all.nodes.size());
-        all.nodes.emplace_back();
-        for (rt_u32& prim : trees[g].list) prim += before;
-        append(all, heads[g].node, trees[g]);
-        trees[g] = Tree();
-        if (all.nodes.size() >= 1u << 30 || all.list.size() > 0xFFFFFFF0u)
-            throw rt::fail(host, "needs more than 2^30 nodes or 2^32 names of primitives: lower `max_depth`");
-        before += in->groups[g].count;
-        rt::root(out, g, g);
-    }
-    std::copy(all.nodes.begin(), all.nodes.end(), rt::alloc<kdtree_node>(out, 1, all.nodes.size()));
-    std::copy(all.list.begin(), all.list.end(), rt::alloc<rt_u32>(out, 2, all.list.size()));
-    rt::define(out, "KDTREE_STACK", (all.depth + 8) / 8 * 8);
-    rt::stat(out, "nodes", double(all.nodes.size()));
-    rt::stat(out, "leaves", all.leaves);
-    rt::stat(out, "references", double(all.list.size()));
-    rt::stat(out, "depth", all.depth);
+    const rt_u32 depth = clarity::space::put_trees<kdtree_head>(host, *in, out, trees, boxes);
+    rt::define(out, "KDTREE_STACK", (depth + 8) / 8 * 8);
     return RT_OK;
 }
 

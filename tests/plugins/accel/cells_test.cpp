@@ -9,6 +9,7 @@
 
 #include "harness.hpp"
 // need the types of rt_shared.h, so they must follow the headers above:
+#include "bsp_types.h"
 #include "grid2_types.h"
 #include "grid_types.h"
 #include "kdtree_types.h"
@@ -86,6 +87,38 @@ uint64_t points_lost_by_kdtree(const Input& input, const Built& built) {
         lost += !is_named(built, built.slot<kdtree_head>()[built.roots[0]].node, p, ref);
     });
     return lost;
+}
+
+bool is_named_by_bsp(const Built& built, rt_u32 at, const double* p, rt_u32 ref) {
+    const bsp_node& node = built.slot<bsp_node>(1)[at];
+    const rt_u32 k = node.code & BSP_LEAF, rest = node.code >> 4;
+    if (k == BSP_LEAF) {
+        const rt_u32* const list = built.slot<rt_u32>(2) + node.at.first;
+        return std::any_of(list, list + rest, [&](rt_u32 i) { return built.leaves[i] == ref; });
+    }
+    const double x = BSP_COMPONENT(BSP_XS, k) * p[0], y = BSP_COMPONENT(BSP_YS, k) * p[1], z = BSP_COMPONENT(BSP_ZS, k) * p[2];
+    const double above = x + y + z - node.at.split, slack = 1e-6 * (1 + std::fabs(x) + std::fabs(y) + std::fabs(z));
+    return (above <= slack && is_named_by_bsp(built, rest, p, ref)) ||
+           (above >= -slack && is_named_by_bsp(built, rest + 1, p, ref));
+}
+
+// Each leaf names what lies in it, and oblique planes leave fewer triangles in a leaf than those of axes alone.
+TEST(Bsp, NamesATriangleInEachLeafThatItMeets) {
+    for (const float middle : {0.0f, 1000.0f}) {
+        const Input input = shards(600, 1, middle);
+        double in_a_leaf[2];
+        for (const int oblique : {0, 1}) {
+            const Built built = build(load("bsp"), input, {{{"directions", oblique ? 13.0 : 3.0}}, 2, {}});
+            ASSERT_EQ(built.status, RT_OK) << built.why;
+            uint64_t lost = 0;
+            each_point(input, [&](const double* p, rt_u32 ref) {
+                lost += !is_named_by_bsp(built, built.slot<bsp_head>()[built.roots[0]].node, p, ref);
+            });
+            EXPECT_EQ(lost, 0u) << middle;
+            in_a_leaf[oblique] = built.stats.at("references") / built.stats.at("leaves");
+        }
+        EXPECT_LT(in_a_leaf[1], in_a_leaf[0]);
+    }
 }
 
 bool is_named_by_octree(const Built& built, rt_u32 at, const double* p, rt_u32 ref) {
