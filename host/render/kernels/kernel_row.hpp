@@ -22,7 +22,8 @@ enum : unsigned {
     kPicksLights = 128,   // has the table of emitters and the sky: cl/shading/emitters.h
     kSumsSamples = 256,   // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
     kWhitted = 512,       // lights with cl/shading/shading.h
-    kAllHits = 1024       // lists hits instead of looking for the nearest: cl/lanes/hit_list.h
+    kAllHits = 1024,      // lists hits instead of looking for the nearest: cl/lanes/hit_list.h
+    kGuides = 2048        // with kSumsSamples: the film has the denoiser's guides, too: cl/tracers/path/guides.h
 };
 
 struct KernelRow {
@@ -73,7 +74,7 @@ inline const std::vector<const char*>& surface_headers() {
 
 // Planes of the film of colours that a kernel traces into.
 inline unsigned film_planes(const KernelRow& row) {
-    return row.has(kSumsSamples) ? 2 : 1;
+    return row.has(kGuides) ? 5 : row.has(kSumsSamples) ? 2 : 1;
 }
 
 }  // namespace clarity
