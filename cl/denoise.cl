@@ -99,14 +99,15 @@ kernel void smooth_variances(const global float4 *light, const global float4 *gu
     float4 alike = (float4)(0.0f), loose = (float4)(0.0f); /* sums of weights, and of variances, luminances and their squares */
     for (int dy = -RT_NEAR; dy <= RT_NEAR; ++dy)
         for (int dx = -RT_NEAR; dx <= RT_NEAR; ++dx) {
-            const int at_x = clamp(x + dx, 0, width - 1), at_y = clamp(y + dy, 0, height - 1);
-            const size_t at = (size_t)at_y * width + at_x;
+            const int at_x = x + dx, at_y = y + dy;
+            const bool inside = at_x >= 0 && at_x < width && at_y >= 0 && at_y < height;
+            const size_t at = (size_t)clamp(at_y, 0, height - 1) * width + clamp(at_x, 0, width - 1);
             const float4 other = light[at], its = guides[at];
-            const bool counts = !rt_is_broken(other.w);
+            const bool counts = inside && !rt_is_broken(other.w);
             /* Differences to the pixel's own luminance, so that no digits cancel. */
             const float differs = counts ? rt_luminance(other.xyz) - center : 0.0f;
             const float4 values = (float4)(1.0f, counts ? max(other.w, 0.0f) : 0.0f, differs, differs * differs);
-            const float apart = rt_apart(guide, its, slope, at_x - x, at_y - y);
+            const float apart = rt_apart(guide, its, slope, dx, dy);
             alike += (counts ? rt_fall(apart) : 0.0f) * values;
             loose += (counts && its.w > 0.0f ? rt_fall(RT_LOOSE * apart) : 0.0f) * values;
         }

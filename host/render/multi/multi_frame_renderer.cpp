@@ -208,7 +208,7 @@ FloatImage MultiFrameRenderer::read_picture(const Settings& settings) {
     if (im.alone) return im.alone->read_picture(settings);
     if (!denoises(settings) || !im.has_guides()) return read_values();
     FrameRenderer* const whole = im.gather(settings);
-    return whole ? whole->read_picture(settings) : FloatImage{};
+    return whole ? whole->read_picture(settings) : im.image(3);
 }
 
 FloatImage MultiFrameRenderer::read_distance() {
