@@ -16,7 +16,7 @@ KernelRow row_of(const std::vector<std::string>& defines, unsigned more_traits =
     r.entry = "trace_path";
     r.headers = path_headers();
     r.defines = defines;
-    r.traits = kFrame | kCountsRays | kPicksLights | kSumsSamples | more_traits;
+    r.traits = kLimitRegistersAlways | kFrame | kCountsRays | kPicksLights | kSumsSamples | more_traits;
     return r;
 }
 
