@@ -38,6 +38,7 @@
 #include "render/film/film_noise.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/settings/aov.hpp"
 #include "render/view/size_note.hpp"
 #include "render/view/view_optics.hpp"
 
