@@ -17,6 +17,13 @@
 #define RT_RECORD(code)
 #endif
 
+/* Code that only programs have which write the denoiser's guides: tracers/path/guides.h. */
+#ifdef RT_GUIDES
+#define RT_GUIDE(code) code;
+#else
+#define RT_GUIDE(code)
+#endif
+
 #if RT_MAX_PIXELS == 1 /* on GPUs, constants tell the compiler that a packet is one pixel */
 #define RT_PACKET_W(frame) 1u
 #define RT_PACKET_H(frame) 1u

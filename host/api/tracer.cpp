@@ -217,7 +217,7 @@ void clarity_tracer::render(const clarity_picture& asked, clarity_picture& pictu
         progress.stage("rendering");
         if (!frames_) frames_.emplace(device_);
         trace_samples(*prepared, settings, view, progress);
-        const FloatImage image = frames_->read_values();
+        const FloatImage image = frames_->read_picture(settings);
         std::copy(image.pixels.begin(), image.pixels.end(), asked.pixels);
     }
     picture.channels = channels;

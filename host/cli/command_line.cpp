@@ -89,9 +89,14 @@ CommandLine parse_command_line(int argc, char** argv) {
     single(view->add_option("--keys", p.key_map, "Key map: thesis or viewer (WASD moves the camera)"))
         ->type_name("MAP")
         ->check(CLI::IsMember({"thesis", "viewer"}));
+    single(view->add_option("--reference", p.render.reference,
+                            "A picture of what should come out, .pfm, .exr or .png: the RMSE of `path` against it is in the "
+                            "Stats tab, and in the captions with Equal time"))
+        ->type_name("FILE");
     view->callback([&] {
         line.command = [parsed](const PluginRegistry& registry) {
-            return run_view(registry, {parsed->scene, parsed->trace, parsed->render.pose, parsed->key_map});
+            return run_view(registry,
+                            {parsed->scene, parsed->trace, parsed->render.pose, parsed->key_map, parsed->render.reference});
         };
     });
 

@@ -74,6 +74,7 @@ struct ViewCommand {
     TraceOptions trace;
     PoseOptions pose;
     std::string key_map;
+    std::string reference;  // a picture file; "": none
 };
 int run_view(const PluginRegistry& plugins, const ViewCommand& options);
 

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
+#include "render/compare/reference_picture.hpp"
 #ifdef CLARITY_HAVE_UI
 #include "ui/app/window_main.hpp"
 #endif
@@ -40,6 +41,8 @@ int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     options.import = command.scene.import;
     options.pose = command.pose.time_s || !command.pose.clip.empty() ? command.pose : words.pose;
     options.key_map = command.key_map;
+    if (!command.reference.empty())
+        options.reference = std::make_shared<const FloatImage>(read_reference(command.reference, words.settings));
     return ui::ui_main(options);
 #else
     const std::string scene = command.scene.files.empty() ? "SCENE" : command.scene.files.front();

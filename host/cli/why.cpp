@@ -13,6 +13,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/render/frame_scene.hpp"
 #include "cli/render/render_progress.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/noise/noise.hpp"
 #include "render/view/view_optics.hpp"
@@ -75,8 +76,10 @@ Json shares_json(const std::vector<NoiseShare>& shares) {
     return list;
 }
 
-void print_json(const NoiseReport& report, const Pixel& pixel) {
+// may_rest: the setting `adaptive` is on. In the picture the pixel has these samples, but perhaps not all of them.
+void print_json(const NoiseReport& report, const Pixel& pixel, bool may_rest) {
     Json json = {{"pixel", {pixel.x, pixel.y}}, {"samples", report.samples}, {"not_finite", report.not_finite}};
+    if (may_rest) json["picture_may_have_fewer"] = true;
     json["mean"] = Json::array();
     for (const float channel : report.mean) json["mean"].push_back(number(channel));
     json["luminance"] = report.luminance;
@@ -119,9 +122,13 @@ void print_shares(const char* title, const std::vector<NoiseShare>& shares) {
     }
 }
 
-void print_report(const Replay& replay, const NoiseReport& report, const NoiseNames& names, const Pixel& pixel) {
+void print_report(const Replay& replay, const NoiseReport& report, const NoiseNames& names, const Pixel& pixel, bool may_rest) {
     print_text("%s.\n\n", report.sentence.c_str());
     std::printf("pixel %u,%u, %u samples\n", pixel.x, pixel.y, report.samples);
+    if (may_rest)
+        std::printf(
+            "  With --adaptive it rests in the picture once its error is small, so the picture may have fewer of\n"
+            "  these samples: --aov samples shows how many. --samples N explains the first N\n");
     std::printf("  mean                   %.6g %.6g %.6g\n", double(report.mean[0]), double(report.mean[1]),
                 double(report.mean[2]));
     std::printf("  luminance              %.6g, standard error %.3g\n", report.luminance, report.error());
@@ -186,10 +193,11 @@ int run_why(const PluginRegistry& plugins, const WhyCommand& command) {
     const NoiseReport report = noise_report(replay, names);
     if (!command.csv_file.empty())
         write_text_file(command.csv_file, paths_csv(replay, report.brightest, names, *scene.scene()));
+    const bool may_rest = adaptive_bound(settings) > 0;
     if (command.json)
-        print_json(report, pixel);
+        print_json(report, pixel, may_rest);
     else
-        print_report(replay, report, names, pixel);
+        print_report(replay, report, names, pixel, may_rest);
     return static_cast<int>(Exit::done);
 }
 

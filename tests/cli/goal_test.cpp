@@ -1,6 +1,7 @@
 // goal_test.cpp -- `clarity render --error` and `--time-budget`: pictures end when they are good enough, or when time is over.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
@@ -93,8 +94,13 @@ TEST_F(Goal, PixelsRest) {
 }
 
 TEST_F(Goal, ThePictureSaysHowGoodItIs) {
-    ASSERT_EQ(render({"--adaptive", ".2", "-o", scratch_.path("b.png")}).exit_code, 0);
+    const ProgramResult result = render({"--adaptive", ".2", "-o", scratch_.path("b.png")});
+    ASSERT_EQ(result.exit_code, 0);
     const nlohmann::json run = nlohmann::json::parse(scratch_.read("s.json"));
+    char line[96];
+    std::snprintf(line, sizeof line, "  %.4g samples a pixel on average, %u at most", run["mean_samples"].get<double>(),
+                  run["samples"].get<unsigned>());
+    EXPECT_NE(result.err.find(line), std::string::npos) << result.err;
     const std::string png = scratch_.read("b.png");
     const auto number = [&](const std::string& key) {
         const size_t at = png.find(key + std::string(1, '\0'));
@@ -117,6 +123,25 @@ TEST_F(Goal, IsSkippedIfItIsTheSame) {
     EXPECT_FALSE(tells({"--adaptive", ".2"}));
     EXPECT_FALSE(tells({"--adaptive", ".3"}));
     EXPECT_TRUE(tells({"--adaptive", ".3"}));
+}
+
+// A picture without its noise is another picture, and says that it is biased; `moving` is for the window.
+TEST_F(Goal, ADenoisedPictureSaysSo) {
+    const auto of = [&](const char* denoise) {
+        const nlohmann::json run = stats({"--spp", "4", "--denoise", denoise, "--skip-existing"});
+        return std::pair{run.value("denoised", false), scratch_.read("a.pfm")};
+    };
+    const auto off = of("off"), on = of("on");
+    EXPECT_FALSE(off.first);
+    EXPECT_TRUE(on.first);
+    EXPECT_EQ(off.second.size(), on.second.size());
+    EXPECT_NE(off.second, on.second) << "the first one was not taken for it";
+    EXPECT_EQ(of("off").second, off.second);
+    EXPECT_NE(render({"--spp", "4", "--skip-existing"}).err.find("were there already"), std::string::npos) << "moving";
+    for (const char* denoise : {"on", "moving"}) {
+        ASSERT_EQ(render({"--spp", "4", "--denoise", denoise, "-o", scratch_.path("b.png")}).exit_code, 0);
+        EXPECT_EQ(scratch_.read("b.png").find("Denoised") != std::string::npos, std::string(denoise) == "on");
+    }
 }
 
 TEST_F(Goal, ThatNobodyCanKeepIsRefused) {

@@ -81,6 +81,8 @@ TEST_F(Why, NamesALampThatIsSeldomFound) {
     expect_cause(kLamp, "lamp", {"--strategy", "bsdf", "--samples", "4096"},
                  {"lamp `bulb`", "of 4096 samples", "--strategy mis"});
     expect_cause(kLamp, "quiet", {}, {"not noisy", "1024 samples"});
+    EXPECT_FALSE(why(kLamp, {"--pixel", "32,24"}).contains("picture_may_have_fewer"));
+    EXPECT_TRUE(why(kLamp, {"--pixel", "32,24", "--adaptive", ".1"}).contains("picture_may_have_fewer"));
 }
 
 TEST_F(Why, NamesPlantedCauses) {

@@ -108,6 +108,31 @@ TEST_F(Noise, SidesGetTheSameTime) {
     EXPECT_NE(std::string(state["caption"]["noise"]).find("of error, 100 samples in"), std::string::npos) << state["caption"];
 }
 
+// While the camera moves the picture has no noise; at rest it has its samples as they are.
+TEST_F(Noise, MovingPicturesAreDenoised) {
+    ASSERT_EQ(window->command("set spp 4"), "");
+    window->settle();
+    EXPECT_FALSE(window->state()["denoised"]);
+    window->key_down("Left");
+    const bool moving = window->reaches([](const nlohmann::json& state) { return state["denoised"] == true; });
+    window->key_up("Left");
+    EXPECT_TRUE(moving);
+    window->settle();
+    EXPECT_FALSE(window->state()["denoised"]);
+    EXPECT_EQ(window->state()["samples"], 4);
+    const Pixels noisy = window->picture();
+    ASSERT_EQ(window->command("set denoise on"), "");
+    window->settle();
+    EXPECT_TRUE(window->state()["denoised"]);
+    EXPECT_GT(difference(window->picture(), noisy, 4), 0.1);
+    ASSERT_EQ(window->command("set denoise off"), "");
+    window->settle();
+    EXPECT_EQ(difference(window->picture(), noisy, 0), 0) << "the film has kept its samples";
+    window->key_down("Left");
+    EXPECT_FALSE(window->reaches([](const nlohmann::json& state) { return state["denoised"] == true; }, 1));
+    window->key_up("Left");
+}
+
 TEST_F(Noise, WhatCannotBeExplainedIsSaid) {
     ASSERT_EQ(window->command("why 32 24"), "");
     window->settle();

@@ -48,8 +48,10 @@ void choose_accel(Session& session, const std::string& text) {
 
 nlohmann::json convergence_json(const Convergence& convergence) {
     nlohmann::json json = {{"slope", convergence.slope()}, {"points", nlohmann::json::array()}};
-    for (const Convergence::Point& point : convergence.points())
+    for (const Convergence::Point& point : convergence.points()) {
         json["points"].push_back({point.samples, point.seconds, point.error});
+        if (std::isfinite(point.rmse)) json["rmse"].push_back(point.rmse);
+    }
     return json;
 }
 
@@ -380,6 +382,7 @@ std::string Script::state_text(ScriptedWindow& window) const {
         const Settings& s = picture->main.settings;
         json["aov"] = s.aov;
         json["reduced"] = picture->reduced;
+        json["denoised"] = denoises(s);
         json["device"] = picture->job.ready->main.devices_text();
         json["accel"] = s.accel;
         json["packet"] = std::to_string(s.packet_w) + "x" + std::to_string(s.packet_h);

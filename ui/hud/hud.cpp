@@ -188,6 +188,9 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
         if (adaptive_bound(s) > 0)
             status_item("adaptive, biased a little", colors::kAmber,
                         "pixels rest when their samples are alike: the setting `Adaptive`");
+        if (denoises(s))
+            status_item("denoised, biased", colors::kAmber,
+                        "noise is filtered away, and with it some of what the picture shows: the setting `Denoise`");
         if (const uint64_t dropped = picture->main.stats.dropped; dropped > 0)
             status_item(
                 count_text(static_cast<double>(dropped)) + " " + noun(dropped, "ray") + " dropped", colors::kAmber,

@@ -76,7 +76,8 @@ void frame_rows(Session& session) {
 // How the estimated error falls, with samples and with seconds.
 void convergence_rows(const std::vector<const PictureSide*>& sides) {
     std::vector<LogSeries> over_samples, over_seconds;
-    Sides error, slope, samples;
+    Sides error, rmse, slope, samples;
+    bool compared = false;
     for (unsigned i = 0; i < sides.size(); ++i) {
         const Convergence& side = sides[i]->convergence;
         LogSeries of_samples{{}, ImGui::GetColorU32(side_color(i))}, of_seconds = of_samples;
@@ -89,6 +90,10 @@ void convergence_rows(const std::vector<const PictureSide*>& sides) {
         char text[32] = "\u2013";
         if (!side.points().empty()) std::snprintf(text, sizeof text, "%.3g %%", 100 * side.points().back().error);
         error.add(text);
+        const double known = side.points().empty() ? std::nan("") : side.points().back().rmse;
+        std::snprintf(text, sizeof text, std::isfinite(known) ? "%.4g" : "\u2013", known);
+        rmse.add(text);
+        compared |= std::isfinite(known);
         std::snprintf(text, sizeof text, std::isfinite(side.slope()) ? "%.2f" : "\u2013", side.slope());
         slope.add(text);
         samples.add(side.points().empty() ? "\u2013" : number_text(std::round(side.points().back().samples * 10) / 10));
@@ -99,6 +104,7 @@ void convergence_rows(const std::vector<const PictureSide*>& sides) {
     tooltip("the same, by the seconds that its samples took");
     row_text("Estimated error", error.text,
              "the root of the mean squared standard error of the pixels, by their mean light: that of independent samples");
+    if (compared) row_text("RMSE", rmse.text, "the root of the mean squared difference to the picture of --reference");
     row_text("Samples", samples.text, "a pixel, when the error was estimated; the mean, where pixels rest (`Adaptive`)");
     row_text("Slope", slope.text, "the power of the samples by which the error falls; of independent samples -0.5");
 }

@@ -22,6 +22,11 @@ bool same_frames(const FrameJob& a, const FrameJob& b) {
            (!a.other_settings || traces_same(*a.other_settings, *b.other_settings));
 }
 
+// Of what may be denoised, so that this begins without a wait.
+void ask_for_guides(Settings& settings) {
+    if (settings.denoise != "off" && find_setting("denoise")->used(settings)) settings.optics.guides = 1;
+}
+
 constexpr double kMovingSeconds = 0.25;  // pictures are sharp again this long after the last change of the view
 
 }  // namespace
@@ -32,6 +37,7 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_light_(options.light),
       first_edits_(options.edits),
       first_pose_(options.pose),
+      reference_(options.reference),
       log_(wake),
       wake_(wake),
       kernels_(std::make_unique<KernelWatch>(plugins_.with_kernels(), wake)),
@@ -153,6 +159,8 @@ PrepareRequest Session::desired_request() const {
     request.main = desired.main;
     request.other = desired.other;
     request.kernel_revision = sources_revision_;
+    ask_for_guides(request.main.settings);
+    if (request.other) ask_for_guides(request.other->settings);
     // Indices of instances and names of clips are only valid in the scene that they were chosen in.
     if (files_revision_ == viewed_files_revision_) {
         request.instances = desired.instances;
@@ -169,7 +177,7 @@ void Session::add_optics(PrepareRequest& request) const {
     if (!ready_) return;
     const View view = edited_view(desired).view;
     const auto add = [&](Settings& settings, const Settings& prepared) {
-        settings.optics = prepared.optics;
+        settings.optics = settings.optics | prepared.optics;
         if (!knows(settings, *ready_->loaded->scene, view))
             settings.optics = settings.optics | optics_of(*ready_->loaded->scene, view, settings);
     };
@@ -210,6 +218,7 @@ void Session::post_frame() {
     job.view = visible_view(edited);
     job.known = ready_->knows(job.view);
     job.camera_path = edited.follows_path ? std::move(edited.camera_path) : CameraPath();
+    job.reference = reference_;
     job.continuous = desired.continuous;
     // Samples that are spread in time have their number beforehand.
     job.equal_time = desired.other && desired.equal_time && find_aov(ready_->main.settings.aov).adds_samples();
@@ -222,6 +231,7 @@ void Session::post_frame() {
     const double now = now_s();
     if (moved) moved_at_s_ = now;
     moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
+    job.moving = moving_;
     job.moving_fps = moving_ ? desired.moving_fps : 0;
     // Pictures that are gone at once are not blurred.
     const bool blurred = blurs(job.settings) && job.ready->request.pose.time_s && playback_.any() && !moving_;
@@ -233,7 +243,8 @@ void Session::post_frame() {
     const bool anew = first || moved || other_times || job.equal_time != posted_job_.equal_time ||
                       job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
                       job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
-    const bool shown = first || !displays_same(job.settings, posted_job_.settings);
+    const bool filtered = job.settings.denoise == "moving" && job.moving != posted_job_.moving;
+    const bool shown = first || filtered || !displays_same(job.settings, posted_job_.settings);
     const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||
                        job.moving_fps != posted_job_.moving_fps;
     if (anew || shown || other) {

@@ -160,7 +160,8 @@ class Session {
     std::string first_camera_, first_light_;  // from the command line, for the first scene
     std::vector<Word> first_edits_;
     PoseTime first_pose_;
-    std::vector<std::string> files_;  // of the scene that was asked for
+    const std::shared_ptr<const FloatImage> reference_;  // ViewOptions::reference
+    std::vector<std::string> files_;                     // of the scene that was asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
     uint64_t viewed_files_revision_ = 0;            // the scene that gave `desired` its camera and lights

@@ -1,8 +1,10 @@
 // view_options.hpp -- what the window starts with, as the command line asks for it.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "base/pictures/float_image.hpp"
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
 #include "render/edit/edit.hpp"
@@ -25,7 +27,8 @@ struct ViewOptions {
     std::vector<Word> edits;                  // changes to the view of the first scene
     PoseTime pose;                            // of the first scene; a clip alone stands for its begin, and may be a number
     import::ImportOptions import;
-    std::string key_map;  // "thesis" or "viewer"; "": the remembered one, at first "thesis"
+    std::shared_ptr<const FloatImage> reference;  // what the picture should be; nullptr: not known
+    std::string key_map;                          // "thesis" or "viewer"; "": the remembered one, at first "thesis"
 };
 
 }  // namespace clarity::ui

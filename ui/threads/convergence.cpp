@@ -15,10 +15,11 @@ bool Convergence::add(unsigned sample, double ms) {
     return samples == 2 || samples == 3;
 }
 
-void Convergence::put(const FilmNoise& noise) {
+void Convergence::put(const FilmNoise& noise, double rmse) {
     // Neither has a logarithm.
     const bool known = !points_.empty() && points_.back().samples == noise.mean_samples;
-    if (noise.error > 0 && std::isfinite(noise.error) && !known) points_.push_back({noise.mean_samples, seconds_, noise.error});
+    if (noise.error > 0 && std::isfinite(noise.error) && !known)
+        points_.push_back({noise.mean_samples, seconds_, noise.error, rmse});
 }
 
 double Convergence::slope() const {

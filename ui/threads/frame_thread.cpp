@@ -8,7 +8,9 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "render/compare/picture_errors.hpp"
 #include "render/multi/multi_device_film.hpp"
+#include "render/settings/aov.hpp"
 #include "ui/threads/picture_difference.hpp"
 #include "ui/threads/thread_priority.hpp"
 
@@ -217,14 +219,14 @@ void FrameThread::save_waiting() {
     }
     for (Save& save : waiting) {
         Saved& outcome = save.outcome;
-        PictureNotes notes = picture_notes();
+        PictureNotes notes = picture_notes(denoises(picture->main.settings));
         if (save.revision == revision && save.display_revision == display_revision)
             notes.texts.emplace_back("Command", save.command);
         try {
             if (writes_display(outcome.path))
                 write_image(outcome.path, {}, picture->main.image, notes);
             else
-                write_image(outcome.path, tracers_[0].frames->read_values(), {}, notes);
+                write_image(outcome.path, tracers_[0].frames->read_picture(picture->main.settings), {}, notes);
         } catch (const std::exception& error) {
             outcome.failure = error.what();
         }
@@ -244,6 +246,14 @@ float FrameThread::moving_scale(const FrameJob& job) const {
     return static_cast<float>(std::clamp(steps, 2.0, 16.0) / 16);
 }
 
+// How far the film is from what it should be: estimated, and known if there is a reference of its size.
+void FrameThread::note_error(Tracer& tracer, const Settings& settings, const FloatImage* reference) {
+    const bool comparable = reference && int(reference->width) == settings.width && int(reference->height) == settings.height &&
+                            find_aov(settings.aov).is_color();
+    tracer.convergence.put(tracer.frames->noise(),
+                           comparable ? rmse_of(tracer.frames->read_picture(settings), *reference) : std::nan(""));
+}
+
 PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared,
                                     const Settings& settings, const View& view, const Order& order, const PictureSide* last,
                                     Progress& progress, AsyncReadback& image) {
@@ -259,12 +269,13 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
             begin = Clock::now();
             side.stats = tracer.frames->trace(prepared, settings, view, tracer.samples, true, progress, 1, show_last);
             if (tracer.convergence.add(tracer.samples++, side.stats.wall_ms) && tracer.frames->planes() > 1)
-                tracer.convergence.put(film_noise(tracer.frames->read_sums()));
+                note_error(tracer, settings, order.reference);
         } while (tracer.convergence.seconds() < order.until_s);
     } else if (last) {
         side.stats = traced_part(last->stats);
     }
-    if (order.last && tracer.frames->planes() > 1) tracer.convergence.put(film_noise(tracer.frames->read_sums()));
+    if (order.last && tracer.frames->planes() > 1) note_error(tracer, settings, order.reference);
+    if (denoises(settings) && !tracer.frames->has_guides()) side.settings.denoise = "off";  // its kernels are on their way
     if (tracer.frames->overlaps_copies()) {
         image = tracer.frames->begin_display(settings);
         if (!order.overlaps) side.image = std::exchange(image, {}).wait(&side.stats.kernels);
@@ -387,6 +398,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     picture->job = job;
     const auto sized = [&](const ReadySide& side, const Settings& desired_now, const PictureSide* before) {
         Settings settings = frame_settings(side.settings, desired_now);
+        if (settings.denoise == "moving") settings.denoise = job.moving ? "on" : "off";
         const bool keep = !retrace && before;
         settings.width = keep ? before->settings.width : std::max(1, static_cast<int>(std::lround(settings.width * scale)));
         settings.height = keep ? before->settings.height : std::max(1, static_cast<int>(std::lround(settings.height * scale)));
@@ -403,6 +415,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     order.retrace = retrace;
     order.last = job.equal_time && retrace && sample + 1 >= unsigned(job.settings.spp);
     order.distance = distance;
+    order.reference = job.reference.get();
     order.overlaps = !two;
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
     const auto side_of = [&](size_t i, const ReadySide& side, const OnDevices& on_devices, const Settings& settings) {

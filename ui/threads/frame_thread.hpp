@@ -92,13 +92,15 @@ class FrameThread {
     struct Order {  // what is to be done for a side
         unsigned sample = 0;
         bool retrace = false, distance = false;
-        bool last = false;      // all samples are traced then
-        double until_s = 0;     // further samples follow until it has so many seconds
+        bool last = false;   // all samples are traced then
+        double until_s = 0;  // further samples follow until it has so many seconds
+        const FloatImage* reference = nullptr;
         bool overlaps = false;  // the image may be copied while the next picture is traced
     };
     PictureSide trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
                            const View& view, const Order& order, const PictureSide* last, Progress& progress,
                            AsyncReadback& image);
+    static void note_error(Tracer& tracer, const Settings& settings, const FloatImage* reference);
     static MotionBlur::Sample sample_of(Tracer& tracer, const FrameJob& job, const ReadySide& side, const OnDevices& on_devices,
                                         unsigned sample, Progress& progress);
     bool finish(bool held_up);

@@ -17,15 +17,17 @@ struct FrameJob {
     Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
     std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
     View view;
-    bool known = true;              // Ready::knows() the view; else nothing is traced
-    double open_s = 0;              // motion blur: how long the shutter is open, of the clip's clock; 0: none
-    CameraPath camera_path;         // that the view's camera is on, for motion blur; empty: it is on none
-    uint64_t revision = 0;          // when it changes, the films start again from sample 0
-    uint64_t display_revision = 0;  // when it changes, the films are displayed again
-    bool continuous = false;        // trace again and again, to measure
-    bool equal_time = false;        // of two sides: DesiredState::equal_time
-    float resolution_scale = 1;     // factor for the settings' width and height
-    float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
+    bool known = true;                            // Ready::knows() the view; else nothing is traced
+    double open_s = 0;                            // motion blur: how long the shutter is open, of the clip's clock; 0: none
+    CameraPath camera_path;                       // that the view's camera is on, for motion blur; empty: it is on none
+    uint64_t revision = 0;                        // when it changes, the films start again from sample 0
+    uint64_t display_revision = 0;                // when it changes, the films are displayed again
+    bool continuous = false;                      // trace again and again, to measure
+    bool equal_time = false;                      // of two sides: DesiredState::equal_time
+    float resolution_scale = 1;                   // factor for the settings' width and height
+    bool moving = false;                          // something moves
+    std::shared_ptr<const FloatImage> reference;  // what pictures of its size should be; nullptr: not known
+    float moving_fps = 0;  // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
 };
 
 // One side of a picture.

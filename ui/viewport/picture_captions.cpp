@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 
 #include "base/numbers.hpp"
@@ -77,6 +78,10 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
         std::snprintf(text, sizeof text, "%.3g %% of error, %.4g samples in %s", 100 * last.error, last.samples,
                       time_text(1000 * last.seconds).c_str());
         caption.noise = text;
+        if (std::isfinite(last.rmse)) {
+            std::snprintf(text, sizeof text, ", RMSE %.4g", last.rmse);
+            caption.noise += text;
+        }
     }
     caption.verdict = speed_verdict(mine, others);
     caption.faster = !caption.verdict.empty() && caption.verdict != kAboutTheSame;

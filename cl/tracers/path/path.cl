@@ -3,7 +3,7 @@
  * A lane whose path has ended takes the next pixel of the packet (state.h), so that all lanes have work until few pixels are
  * left. There is no queue of rays. A work-item of one lane does the same with the samples of its pixel. */
 
-/* Traces the packets of a group of the launch. film: two planes, see sum.h. counters: of each packet, shadow rays, rays after the camera's,
+/* Traces the packets of a group of the launch. film: two planes, see sum.h, and those of guides.h. counters: of each packet, shadow rays, rays after the camera's,
  * samples that are not finite, and full stacks. distances: those of sample 0's camera rays, as in iterative.cl. */
 RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *frame, uint group, global float4 *film, global uint4 *counters,
                                  global float *distances)
@@ -17,6 +17,7 @@ RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *f
         rt_tally tally = {0, 0, 0, 0};
         uint not_finite = 0;
         rt_path paths = rt_no_paths(frame);
+        RT_GUIDE(paths.guides = film + 2 * (size_t)frame->width * frame->height)
         for (uint next = 0;;) {
             rt_refill(frame, film, origin, &paths, &next);
             if (!rt_any(paths.alive)) break;

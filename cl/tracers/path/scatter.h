@@ -280,6 +280,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
         rt_collect(frame, p, missed, found, p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SKY));
     }
     const uint hit_bits = rt_bits(hits);
+    RT_GUIDE(rt_guide_end(frame, p, p->alive & ~hits))
     if (hit_bits == 0u) return hits;
     rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
 #ifdef RT_HAS_MIPS
@@ -305,6 +306,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     scattered &= ~unlit;
 #endif
     const uint scattered_bits = rt_bits(scattered);
+    RT_GUIDE(rt_guide_end(frame, p, hits & ~scattered))
     if (scattered_bits == 0u) return scattered;
     const rt_sampler sampler = rt_sampler_of(frame, p);
     rt_basis(m.point.normal, &m.s, &m.t);
@@ -317,6 +319,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     around = rt_ior_around(ctx, p, &surface, scattered);
 #endif
     m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, around, scattered_bits, m.point.at);
+    RT_GUIDE(rt_guide_surface(frame, p, scattered, t, m.point.normal, &m.bsdf))
     if (ctx->lighting->emitter_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
     const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);
     tally->secondary += popcount(rt_bits(on));

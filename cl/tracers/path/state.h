@@ -30,6 +30,7 @@ typedef struct rt_path {
     vfloat cone, cone_angle; /* the ray's width where it starts, and how it grows with the distance */
 #endif
     RT_RECORD(rt_path_recorder *recorder)
+    RT_GUIDE(global float4 *guides) /* planes of the film: guides.h */
 } rt_path;
 
 RT_INLINE vmask rt_mask_of_bits(uint bits)

@@ -35,7 +35,7 @@ void record_frame(const RenderOptions& options, const FrameFile& file, const std
 
 void write_frame(const RenderOptions& options, const FrameFile& file, FramePixels pixels) {
     const std::string command = render_words(options, file.moves ? std::optional<int>(file.frame) : std::nullopt);
-    PictureNotes notes = picture_notes();
+    PictureNotes notes = picture_notes(file.denoised);
     notes.texts.insert(notes.texts.end(), {{"Command", command}, {"Digest", file.digest}});
     if (file.noise) {
         notes.texts.emplace_back("Samples", exact_text(float(file.noise->mean_samples)));

@@ -22,6 +22,7 @@ struct FrameFile {
     int frame = 1;
     bool moves = false;       // each frame is another picture
     bool has_record = false;  // which is written after the picture
+    bool denoised = false;
     unsigned samples = 0, of_checkpoint = 0;
     std::optional<FilmNoise> noise;  // of `path`
     std::string device;

@@ -44,6 +44,7 @@ PictureDigests::PictureDigests(FrameScene& scene, const Settings& settings, cons
     add_kernels_to(digest, *scene.imported());
     add_settings_to(digest, settings, writes_display(options.output));
     digest.add_value(options.all_aovs);
+    if (denoises(settings)) digest.add("denoised");
     if (!options.crop.empty()) digest.add(options.crop);
     if (has_goal(options)) digest.add_value(options.error), digest.add_value(options.time_budget_s);
     common_ = digest.hex();

@@ -56,7 +56,7 @@ unsigned PictureGoal::more_in_time(unsigned samples) const {
 unsigned PictureGoal::more_for_error(MultiFrameRenderer& frames, unsigned samples) {
     if (error_ == 0) return kUnlimited;
     if (samples >= next_) {
-        double reached = film_noise(frames.read_sums()).error;
+        double reached = frames.noise().error;
         if (ranks_) reached = ranks_->gather(reached)[0];  // only the first one has all pixels
         if (reached <= error_) return 0;
         // Errors of independent samples fall with the root of their number.
@@ -68,11 +68,8 @@ unsigned PictureGoal::more_for_error(MultiFrameRenderer& frames, unsigned sample
 
 // Until all pixels would rest.
 unsigned PictureGoal::more_for_pixels(MultiFrameRenderer& frames, unsigned samples) const {
-    if (!(adaptive_ > 0)) return kUnlimited;
-    if (is_look(samples)) {
-        FloatImage sums = frames.read_sums();
-        if (mark_resting(sums, adaptive_, samples) == 0) return 0;
-    }
+    if (!(adaptive_bound(settings_) > 0)) return kUnlimited;
+    if (is_look(samples) && frames.look(settings_, samples) == 0) return 0;
     return next_look(samples) - samples;
 }
 

@@ -17,10 +17,12 @@ bool has_goal(const RenderOptions& options);
 bool ends_by_itself(const RenderOptions& options, const Settings& settings);
 bool states_samples(const RenderOptions& options);
 
+// Used from one thread.
 class PictureGoal {
  public:
+    // The references must outlive it.
     PictureGoal(const RenderOptions& options, const Settings& settings, Ranks* ranks)
-        : error_(options.error), budget_s_(options.time_budget_s), adaptive_(adaptive_bound(settings)), ranks_(ranks) {}
+        : settings_(settings), error_(options.error), budget_s_(options.time_budget_s), ranks_(ranks) {}
 
     // Begins a picture that has `first` samples.
     void begin(unsigned first);
@@ -32,7 +34,8 @@ class PictureGoal {
     unsigned more_for_pixels(MultiFrameRenderer& frames, unsigned samples) const;
     unsigned more_in_time(unsigned samples) const;
 
-    const double error_, budget_s_, adaptive_;
+    const Settings& settings_;
+    const double error_, budget_s_;
     Ranks* const ranks_;
     std::chrono::steady_clock::time_point begin_;
     unsigned first_ = 0, next_ = 0;  // samples at begin(); samples at which the error is estimated again

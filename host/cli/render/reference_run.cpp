@@ -8,7 +8,7 @@
 namespace clarity {
 
 ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings)
-    : file_(file), reference_(read_reference(file, settings)) {
+    : settings_(settings), file_(file), reference_(read_reference(file, settings)) {
     if (!find_aov(settings.aov).is_color())
         throw Error(Exit::usage, "--reference " + file + ": is compared with colours; leave out --aov " + settings.aov);
 }
@@ -16,7 +16,7 @@ ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings)
 void ReferenceRun::offer(MultiFrameRenderer& frames, unsigned samples, bool finished) {
     const unsigned last = points_.empty() ? 0 : points_.back().samples;
     if (samples < 2 * last && !(finished && samples > last)) return;
-    points_.push_back({samples, picture_errors(frames.read_values(), reference_)});
+    points_.push_back({samples, picture_errors(frames.read_picture(settings_), reference_)});
 }
 
 double ReferenceRun::slope() const {

@@ -13,7 +13,8 @@ class MultiFrameRenderer;
 
 class ReferenceRun {
  public:
-    // Reads the reference. Throws Error(failed); with a size that is not the picture's, Error(usage).
+    // Reads the reference. settings: must outlive this. Throws Error(failed); with a size that is not the picture's,
+    // Error(usage).
     ReferenceRun(const std::string& file, const Settings& settings);
 
     struct Point {
@@ -29,6 +30,7 @@ class ReferenceRun {
     double slope() const;
 
  private:
+    const Settings& settings_;
     std::string file_;
     FloatImage reference_;
     std::vector<Point> points_;

@@ -38,6 +38,7 @@
 #include "render/film/film_noise.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/settings/aov.hpp"
 #include "render/view/size_note.hpp"
 #include "render/view/view_optics.hpp"
 
@@ -327,7 +328,7 @@ class RenderJob {
         const bool whole = traced.whole;
         stats_.samples = traced.samples;
         stats_.noise.reset();
-        if (whole && frames.planes() > 1) stats_.noise = film_noise(frames.read_sums());
+        if (whole && frames.planes() > 1) stats_.noise = frames.noise();
         if (stats_.reference && traced.exact && traced.samples > 0) stats_.reference->offer(frames, traced.samples, true);
         bar_.clear();
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
@@ -398,7 +399,7 @@ class RenderJob {
         if (writes_display(path))
             pixels.display = frames.read_display(settings_);
         else
-            pixels.values = frames.read_values();
+            pixels.values = frames.read_picture(settings_);
         if (!options_.stats_file.empty() && find_aov(settings_.aov).about == Aov::About::cost)
             stats_.cost = cost_of(writes_display(path) ? frames.read_values() : pixels.values);
         if (options_.all_aovs)
@@ -411,14 +412,25 @@ class RenderJob {
         file.samples = stats_.samples, file.of_checkpoint = resumed_, file.noise = stats_.noise;
         file.device = devices_name(stats_.devices);
         file.has_record = records();
+        file.denoised = denoises(settings_);
         file.begin = frame.begin;
         write_frame(options_, file, std::move(pixels));
         char times[96] = "";
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
-        const std::string samples =
-            ends_by_itself(options_, settings_) ? "  " + plural(stats_.samples, "sample") + " a pixel" : "";
-        log(LogLevel::info, path + times + samples);
+        log(LogLevel::info, path + times + samples_text());
+    }
+
+    // How many samples a picture has that ends by itself. Of those that rest, pixels have fewer.
+    std::string samples_text() const {
+        if (!ends_by_itself(options_, settings_)) return {};
+        if (adaptive_bound(settings_) > 0 && stats_.noise) {
+            char text[96];
+            std::snprintf(text, sizeof text, "  %.4g samples a pixel on average, %u at most", stats_.noise->mean_samples,
+                          stats_.samples);
+            return text;
+        }
+        return "  " + plural(stats_.samples, "sample") + " a pixel";
     }
 
     void report() {

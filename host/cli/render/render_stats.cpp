@@ -148,6 +148,7 @@ std::string stats_json(const RenderStats& stats) {
     json["samples"] = stats.samples;
     if (stats.noise) json["estimated_error"] = figure(stats.noise->error), json["mean_samples"] = stats.noise->mean_samples;
     if (const double bound = adaptive_bound(stats.settings); bound > 0) json["adaptive"] = bound;
+    if (denoises(stats.settings)) json["denoised"] = true;
     json["shutter"] = stats.settings.shutter;
     json["aov"] = used.aov;
     if (stats.cost) json["aov_mean"] = stats.cost->mean, json["aov_greatest"] = stats.cost->greatest;

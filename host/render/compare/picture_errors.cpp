@@ -20,7 +20,25 @@ bool is_finite(const float* pixel) {
     return std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
 }
 
+// The mean over the channels.
+double squared_error(const float* a, const float* b) {
+    double square = 0;
+    for (int c = 0; c < 3; ++c) square += (double(a[c]) - b[c]) * (double(a[c]) - b[c]) / 3;
+    return square;
+}
+
 }  // namespace
+
+double rmse_of(const FloatImage& test, const FloatImage& reference) {
+    check_sizes(test, reference);
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; i + 3 <= test.pixels.size(); i += 3) {
+        const float *a = &test.pixels[i], *b = &reference.pixels[i];
+        if (is_finite(a) && is_finite(b)) sum += squared_error(a, b), ++count;
+    }
+    return std::sqrt(sum / double(std::max<size_t>(count, 1)));
+}
 
 PictureErrors picture_errors(const FloatImage& test, const FloatImage& reference) {
     check_sizes(test, reference);
@@ -33,10 +51,9 @@ PictureErrors picture_errors(const FloatImage& test, const FloatImage& reference
             ++out.not_finite;
             continue;
         }
-        double square = 0;
+        const double square = squared_error(a, b);
         for (int c = 0; c < 3; ++c) {
             const double error = double(a[c]) - b[c];
-            square += error * error / 3;
             out.mean += a[c];
             out.reference_mean += b[c];
             if (std::abs(error) > out.largest) {

@@ -14,6 +14,8 @@ AsyncReadback& AsyncReadback::operator=(AsyncReadback&& other) noexcept {
     in_place_ = std::move(other.in_place_);
     width_ = other.width_;
     height_ = other.height_;
+    first_ = std::move(other.first_);
+    last_ = std::move(other.last_);
     mapped_ = std::move(other.mapped_);
     copied_ = std::move(other.copied_);
     return *this;
@@ -42,6 +44,7 @@ ByteImage AsyncReadback::wait(std::vector<KernelTime>* times) {
         }
     });
     if (times) {
+        if (last_()) times->push_back({"denoise", span_ms(first_, last_)});
         times->push_back({"tone map", event_ms(mapped_)});
         times->push_back({"read-back", event_ms(copied_)});
     }

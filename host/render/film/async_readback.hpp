@@ -31,6 +31,7 @@ class AsyncReadback {
     std::shared_ptr<uint8_t> memory_;  // the device writes to it
     cl::Buffer in_place_;              // on a CPU: the display buffer, which uses memory_
     unsigned width_ = 0, height_ = 0;
+    cl::Event first_, last_;  // of the denoiser; empty: there was none
     cl::Event mapped_, copied_;
 };
 

@@ -13,6 +13,8 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
     image.device_ = device_;
     image.width_ = film.width;
     image.height_ = film.height;
+    image.first_ = film.first;
+    image.last_ = film.last;
     image.memory_ = memory_.lend(room);
     if (device_->info().cpu) {
         image.in_place_ = cl::Buffer(device_->context(), CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, room, image.memory_.get());
@@ -36,9 +38,8 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
     return overlapped ? begun_.mapped_ : begun_.copied_;
 }
 
-AsyncReadback DisplayReadback::take(const ColorFilm& film, const Settings& settings, bool overlapped) {
-    const bool same = begun_ && begun_.width_ == film.width && begun_.height_ == film.height && tones_ == Tones(settings);
-    if (!same) begin(film, settings, overlapped);
+AsyncReadback DisplayReadback::take(const std::function<ColorFilm()>& film, const Settings& settings, bool overlapped) {
+    if (!begun_ || !(tones_ == Tones(settings))) begin(film(), settings, overlapped);
     return std::move(begun_);
 }
 

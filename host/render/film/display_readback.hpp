@@ -4,6 +4,7 @@
 // a queue of their own, which waits for the end of tone mapping by an event. There are two display buffers, used alternately.
 // The host memory of the copy belongs to the picture.
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "render/film/async_readback.hpp"
@@ -13,10 +14,12 @@
 
 namespace clarity {
 
-// A film of colours. `sums` holds the sums of samples: FilmKernels::room(pixels) float4.
+// A film of colours. `sums` holds the sums of samples: FilmKernels::room(pixels) float4. first, last: the commands that have
+// made it of another one, for their time; empty: none.
 struct ColorFilm {
     const cl::Buffer& sums;
     unsigned width, height;
+    cl::Event first = {}, last = {};
 };
 
 // Tone-maps a film and copies the result. Used from one thread.
@@ -24,8 +27,9 @@ class DisplayReadback {
  public:
     DisplayReadback(std::shared_ptr<Device> device, FilmKernels& kernels)
         : device_(std::move(device)), kernels_(kernels), memory_(device_) {}
-    // Returns the film's picture, which may still be on its way. overlapped: the copy does not delay work that is queued later.
-    AsyncReadback take(const ColorFilm& film, const Settings& settings, bool overlapped);
+    // Returns the film's picture, which may still be on its way. film: called unless begin() was. overlapped: the copy does not
+    // delay work that is queued later.
+    AsyncReadback take(const std::function<ColorFilm()>& film, const Settings& settings, bool overlapped);
     // Starts this work behind the commands that are queued. A later take() of the same film with the same settings returns the
     // picture begun here. Returns the last event in the device's own queue.
     cl::Event begin(const ColorFilm& film, const Settings& settings, bool overlapped);

@@ -21,13 +21,16 @@ namespace clarity {
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
                       std::vector<KernelTime>* times, FalseColorScale* scale);
 
-// The settings that tone mapping depends on.
+// The settings that a picture of colours depends on, besides its film.
 struct Tones {
     double exposure = 0;
     std::string tone;
+    bool denoised = false;
     Tones() = default;
-    explicit Tones(const Settings& settings) : exposure(settings.exposure), tone(settings.tone) {}
-    bool operator==(const Tones& other) const { return exposure == other.exposure && tone == other.tone; }
+    explicit Tones(const Settings& settings) : exposure(settings.exposure), tone(settings.tone), denoised(denoises(settings)) {}
+    bool operator==(const Tones& other) const {
+        return exposure == other.exposure && tone == other.tone && denoised == other.denoised;
+    }
 };
 
 // Sums over all work-items.

@@ -15,10 +15,13 @@ namespace {
 constexpr unsigned kFirstLook = 32;
 constexpr int kAround = 2;  // pixels on each side
 
-// Both planes of a film.
+// The first two planes of a film.
 struct Film {
-    explicit Film(const FloatImage& sums)
-        : width(sums.width), height(sums.height / 2), light(sums.pixels.data()), rest(light + size_t(width) * height * 4) {}
+    explicit Film(const FloatImage& sums, unsigned planes = 2)
+        : width(sums.width),
+          height(sums.height / planes),
+          light(sums.pixels.data()),
+          rest(light + size_t(width) * height * 4) {}
     size_t width, height;
     const float *light, *rest;
 
@@ -103,8 +106,8 @@ double adaptive_bound(const Settings& settings) {
     return may_rest ? number_of(settings, "adaptive") : 0;
 }
 
-uint64_t mark_resting(FloatImage& sums, double bound, unsigned samples) {
-    const Film film(sums);
+uint64_t mark_resting(FloatImage& sums, double bound, unsigned samples, unsigned planes) {
+    const Film film(sums, planes);
     const int width = int(film.width), height = int(film.height);
     const double pixels = film.sum([](size_t) { return 1.0; });
     const double mean_variance = film.sum([&](size_t i) { return film.variance(i); }) / std::max(pixels, 1.0);

@@ -31,7 +31,8 @@ bool is_look(unsigned samples);
 // assumed, of the mean variance of all pixels. So a pixel that was black in all samples rests only after enough of them, and
 // few pixels rest because their variance is small by chance. One pixel of each 4x4 never rests until the next look, each in its
 // turn: what it finds wakes its neighbours.
-uint64_t mark_resting(FloatImage& sums, double bound, unsigned samples);
+// planes: of the film, of which the first two count.
+uint64_t mark_resting(FloatImage& sums, double bound, unsigned samples, unsigned planes = 2);
 // Whether the mark says so. deviations: the pixel's sum of squared deviations.
 bool is_resting(float deviations);
 

@@ -201,8 +201,10 @@ void write_exr(const std::string& path, const std::vector<PictureLayer>&, const 
 
 }  // namespace
 
-PictureNotes picture_notes() {
-    return {{{"Software", std::string("clarity ") + CLARITY_VERSION}}, false};
+PictureNotes picture_notes(bool denoised) {
+    PictureNotes notes{{{"Software", std::string("clarity ") + CLARITY_VERSION}}, false};
+    if (denoised) notes.texts.emplace_back("Denoised", "noise is filtered away, which biases the picture");
+    return notes;
 }
 
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes) {

@@ -18,8 +18,8 @@ struct PictureNotes {
     std::vector<std::pair<std::string, std::string>> texts;  // key, value in UTF-8; PNG and EXR keep them
     bool sync = false;                                       // wait for the disk before the file gets its name
 };
-// Notes that name the program and its version.
-PictureNotes picture_notes();
+// Notes that name the program and its version. denoised: and that the picture is biased by the denoiser.
+PictureNotes picture_notes(bool denoised = false);
 
 // Writes a picture in the format of the path's ending: .png from `display`; .exr or .pfm from `values` (1 or 3 channels; +inf
 // and -1 are exact). Writes a temporary file in the same folder, then renames it. Throws Error(failed) with file and reason,

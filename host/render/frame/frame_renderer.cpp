@@ -11,6 +11,7 @@
 #include "device/cl_errors.hpp"
 #include "device/launch_limit.hpp"
 #include "render/film/bands.hpp"
+#include "render/film/denoiser.hpp"
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
 #include "render/film/film_noise.hpp"
@@ -75,6 +76,7 @@ struct FrameRenderer::Impl {
 
     std::shared_ptr<Device> device;
     FilmKernels film_kernels;
+    std::unique_ptr<Denoiser> denoiser;  // made when it is first asked for
     DisplayReadback relay;
     ViewBuffers view;
     GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, distances{CL_MEM_READ_WRITE};
@@ -250,7 +252,14 @@ struct FrameRenderer::Impl {
     cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
         return film_kernels.begin_rows(film.get(), group_rows(), settings, rgba);
     }
-    ColorFilm film_of_colors() const { return {film.get(), width, height}; }
+    // Of the whole picture.
+    ColorFilm film_of_colors(const Settings& settings) {
+        if (!denoises(settings) || !program->row.has(kGuides)) return {film.get(), width, height};
+        if (!denoiser) denoiser = std::make_unique<Denoiser>(device);
+        cl::Event first, last;
+        const cl::Buffer& filtered = denoiser->run(film.get(), width, height, first, last);
+        return {filtered, width, height, first, last};
+    }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
     FloatImage image(unsigned channels) const {
         FloatImage image{width, height, channels, {}};
@@ -301,7 +310,8 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
                         behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
                     if (sum) behind = im.tracer->begin_count(im.film_kernels);
                     if (display) behind = im.begin_rows(settings, display);
-                    if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
+                    if (show && last)
+                        behind = im.relay.begin(im.film_of_colors(settings), settings, before == Impl::Shown::begun);
                     return behind;
                 };
             const LaunchTimes times = im.launch(picture, sample, at_once, into, side_work);
@@ -341,6 +351,20 @@ FloatImage FrameRenderer::read_values() {
     return image;
 }
 
+FloatImage FrameRenderer::read_picture(const Settings& settings) {
+    Impl& im = *impl_;
+    if (!denoises(settings)) return read_values();
+    FloatImage image = im.image(3);
+    wrap_cl_errors(*im.device, "reading the picture", [&] {
+        const ColorFilm film = im.film_of_colors(settings);
+        const size_t pixels = size_t(im.width) * im.height;
+        im.scratch.resize(4 * pixels);
+        im.read(film.sums, im.scratch.data(), 4 * pixels * sizeof(float));
+        divide_sums(im.scratch.data(), image.pixels.data(), pixels);
+    });
+    return image;
+}
+
 void FrameRenderer::read_values(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
@@ -371,7 +395,7 @@ void FrameRenderer::read_values(FloatImage& image) {
 void FrameRenderer::read_sums(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
-        for (unsigned plane = 0; plane < im.planes(); ++plane)
+        for (unsigned plane = 0; plane < image.height / im.height; ++plane)
             read_bands(im.device->queue(), im.film.get(), im.in_plane(plane, im.group_rows().bands()), im.film_bytes(im.width),
                        image.pixels.data());
         finish(*im.device, im.device->queue(), "reading the film");
@@ -383,6 +407,7 @@ void FrameRenderer::write_sums(const Prepared& prepared, const Settings& setting
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "putting samples back", [&] {
         Progress never_cancelled;
+        im.relay.forget_begun();
         im.begin({prepared, settings, View{}, shared, never_cancelled});
         const std::vector<rt_u32> rows(im.rows.begin() + std::ptrdiff_t(shared ? shared->begin : 0), im.rows.end());
         const size_t row_bytes = im.film_bytes(im.width);
@@ -438,7 +463,7 @@ ByteImage FrameRenderer::read_display(const Settings& settings, FrameStats* stat
         return show_values([this] { return read_values(); }, im.aov->name, settings, stats ? &stats->kernels : nullptr, scale);
     im.shown = Impl::Shown::read;
     return wrap_cl_errors(*im.device, "reading the picture",
-                          [&] { return im.relay.take(im.film_of_colors(), settings, false); })
+                          [&] { return im.relay.take([&] { return im.film_of_colors(settings); }, settings, false); })
         .wait(stats ? &stats->kernels : nullptr);
 }
 
@@ -446,7 +471,7 @@ AsyncReadback FrameRenderer::begin_display(const Settings& settings) {
     Impl& im = *impl_;
     im.shown = Impl::Shown::begun;
     return wrap_cl_errors(*im.device, "reading the picture",
-                          [&] { return im.relay.take(im.film_of_colors(), settings, true); });
+                          [&] { return im.relay.take([&] { return im.film_of_colors(settings); }, settings, true); });
 }
 
 bool FrameRenderer::overlaps_copies() const {

@@ -54,6 +54,8 @@ class FrameRenderer {
     // Returns the mean of the film's samples: 3 channels for color, normal and uv, else 1. prim and instance are numbers; -1:
     // no hit.
     FloatImage read_values();
+    // The same as it is written to files: without its noise, if the settings say so and the film has what that takes.
+    FloatImage read_picture(const Settings& settings);
     // Returns the distance along the camera ray of sample 0 of the last picture: 1 channel, +inf where nothing was hit. Empty
     // for AOVs of camera rays other than `t`, because their programs do not store it.
     FloatImage read_distance();
@@ -63,8 +65,9 @@ class FrameRenderer {
     bool read_distance(FloatImage& image);
     // The film as it is, for checkpoints of colours: 4 channels, sums of r, g and b and the number of samples; where the film
     // has more planes (film_planes()), the rows of each follow those of the one before. read_sums()
-    // writes the traced rows into an image of the whole picture. write_sums() puts rows back, those of `shared` from its
-    // `begin` on, so that trace() goes on with the sample after them. The arguments are those of that trace().
+    // writes the traced rows into an image of the whole picture, of as many planes as it has room for. write_sums() puts rows
+    // back, those of `shared` from its `begin` on, so that trace() goes on with the sample after them. The arguments are those
+    // of that trace().
     void read_sums(FloatImage& image);
     void write_sums(const Prepared& prepared, const Settings& settings, const FloatImage& sums,
                     const SharedRows* shared = nullptr);

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
 #include "render/accel/memory_plan.hpp"
+#include "render/film/denoiser.hpp"
 #include "render/film/film.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/launch/device_scene.hpp"
@@ -138,25 +139,31 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
             next->upload_ms = ms_since(start);
         }
         if (progress.cancelled()) throw Cancelled();
-        // The film's program is needed with the first picture. It compiles beside that of the tracer, in a worker of its own.
+        // The film's programs are needed with the first picture. They compile beside that of the tracer, in a worker of their
+        // own.
+        const KernelRow& row = tracer_of(next->settings).kernel(next->settings, next->layout);
+        const bool needs_film = !film_compiled_, needs_denoiser = row.has(kGuides) && !denoiser_compiled_;
         std::future<void> film;
-        if (!film_compiled_)
+        if (needs_film || needs_denoiser)
             film = std::async(std::launch::async, [&] {
-                compile_ahead(info_, film_program(), progress);
-                try_film(info_, next->settings, progress);
+                if (needs_film) {
+                    compile_ahead(info_, film_program(), progress);
+                    try_film(info_, next->settings, progress);
+                }
+                if (needs_denoiser) compile_ahead(info_, denoiser_program(), progress);
             });
         progress.stage("compiling kernels");
         progress.report(-1);
         const auto start = std::chrono::steady_clock::now();
         bool fresh = false;
-        next->program =
-            tried_program(*programs_, *next, tracer_of(next->settings).kernel(next->settings, next->layout), progress, &fresh);
+        next->program = tried_program(*programs_, *next, row, progress, &fresh);
         if (fresh) {
             progress.stage(kFirstLaunchStage);
             launch_first(device_, next);
         }
         if (film.valid()) film.get();
         film_compiled_ = true;
+        denoiser_compiled_ |= needs_denoiser;
         next->compile_ms = fresh ? ms_since(start) : 0;
         next->compile_cached = !fresh;
     } catch (const cl::Error& e) {

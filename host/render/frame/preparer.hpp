@@ -62,6 +62,7 @@ class Preparer {
     std::unique_ptr<ProgramCache> programs_;  // nullptr: closed
     std::shared_ptr<const Prepared> last_;    // without buffers and program after close_device()
     bool film_compiled_ = false;              // or found on disk, and tried
+    bool denoiser_compiled_ = false;
     mutable std::mutex mutex_;
 };
 

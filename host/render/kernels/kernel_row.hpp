@@ -24,7 +24,8 @@ enum : unsigned {
     kSumsSamples = 256,   // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
     kWhitted = 512,       // lights with cl/shading/shading.h
     kAllHits = 1024,      // lists hits instead of looking for the nearest: cl/lanes/hit_list.h
-    kLimitRegistersAlways = 2048  // is faster with fewer registers, whatever the scene holds
+    kLimitRegistersAlways = 2048,  // is faster with fewer registers, whatever the scene holds
+    kGuides = 4096                 // with kSumsSamples: the film has the denoiser's guides, too: cl/tracers/path/guides.h
 };
 
 struct KernelRow {
@@ -75,7 +76,7 @@ inline const std::vector<const char*>& surface_headers() {
 
 // Planes of the film of colours that a kernel traces into.
 inline unsigned film_planes(const KernelRow& row) {
-    return row.has(kSumsSamples) ? 2 : 1;
+    return row.has(kGuides) ? 5 : row.has(kSumsSamples) ? 2 : 1;
 }
 
 }  // namespace clarity

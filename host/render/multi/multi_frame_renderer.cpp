@@ -6,7 +6,6 @@
 #include "base/part_of_progress.hpp"
 #include "device/cl_errors.hpp"
 #include "render/film/film.hpp"
-#include "render/film/film_noise.hpp"
 #include "render/film/pinned_memory_pool.hpp"
 #include "render/frame/frame_stats.hpp"
 #include "render/kernels/program_cache.hpp"
@@ -30,6 +29,13 @@ struct MultiFrameRenderer::Impl {
     bool shown = false;
     std::shared_ptr<uint8_t> display;
     Tones display_tones;
+    // For several devices: the whole picture on one of them, for the denoiser.
+    std::unique_ptr<FrameRenderer> gathered;
+    std::shared_ptr<Device> gathered_on;
+    // Of the last look, if no sample was added since: after how many samples it was, and how many pixels had too large an
+    // error.
+    unsigned looked_at = 0;
+    uint64_t noisy = 0;
 
     const Aov& aov() const { return find_aov(prepared->first()->settings.aov); }
     FloatImage image(unsigned channels) const {
@@ -40,6 +46,7 @@ struct MultiFrameRenderer::Impl {
 
     FrameStats trace(const Settings& settings, const View& view, unsigned sample, unsigned end, bool count_rays,
                      Progress& progress, const std::function<void()>& meanwhile) {
+        looked_at = 0;
         if (shared) {
             if (meanwhile) meanwhile();
             return shared->trace(prepared, settings, view, sample, end, count_rays, progress, place_for_display(settings));
@@ -68,11 +75,40 @@ struct MultiFrameRenderer::Impl {
         return gpu ? wrap_cl_errors(*gpu, "reading the picture", [&] { return memory->lend(bytes); }) : memory->lend(bytes);
     }
 
+    // The first planes of the film.
+    FloatImage planes(unsigned count) {
+        FloatImage sums = image(aov().film_channels());
+        const size_t in_plane = sums.pixels.size();
+        sums.height *= count;
+        sums.pixels.resize(in_plane * count);
+        if (alone)
+            alone->read_sums(sums);
+        else
+            shared->read([&](size_t, FrameRenderer& frames) { frames.read_sums(sums); });
+        for (unsigned plane = 0; plane < count; ++plane) collect(sums.channels * sizeof(float), &sums.pixels[plane * in_plane]);
+        return sums;
+    }
+
+    bool has_guides() const { return prepared->first()->program->row.has(kGuides); }
+
+    // The film of all devices and ranks on the first device that works; null: this rank is not the first.
+    FrameRenderer* gather(const Settings& settings) {
+        const FloatImage sums = planes(film_planes(prepared->first()->program->row));
+        if (ranks && ranks->rank() != 0) return nullptr;
+        size_t first = 0;
+        while (first + 1 < shared->size() && !(shared->works(first) && prepared->of(shared->device(first)))) ++first;
+        const std::shared_ptr<Device> device = shared->device(first);
+        if (!gathered || gathered_on != device) gathered = std::make_unique<FrameRenderer>(device);
+        gathered_on = device;
+        gathered->write_sums(**prepared->of(device), settings, sums);
+        return gathered.get();
+    }
+
     // Decides whether and where devices display the picture during trace(); null: they do not.
     uint8_t* place_for_display(const Settings& settings) {
         display = nullptr;
         display_tones = Tones(settings);
-        if (!std::exchange(shown, false) || !aov().is_color()) return nullptr;
+        if (!std::exchange(shown, false) || !aov().is_color() || denoises(settings)) return nullptr;
         try {
             display = room(size_t(width) * height * 4);
         } catch (const Error&) {  // the GPU is lost; tracing will report it
@@ -107,11 +143,7 @@ FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>&
     if (bound == 0) return im.trace(settings, view, sample, end, count_rays, progress, meanwhile);
     FrameStats all;
     for (unsigned first = sample; first < end;) {
-        if (is_look(first)) {
-            auto sums = std::make_shared<FloatImage>(read_sums());
-            mark_resting(*sums, bound, first);
-            resume(prepared, settings, std::move(sums), first);
-        }
+        if (is_look(first)) look(settings, first);
         const unsigned until = std::min(end, next_look(first));
         PartOf part(progress, double(first - sample) / samples, double(until - first) / samples);
         const FrameStats some = im.trace(settings, view, first, until, count_rays, part, first == sample ? meanwhile : nullptr);
@@ -126,18 +158,26 @@ unsigned MultiFrameRenderer::planes() const {
     return film_planes(impl_->prepared->first()->program->row);
 }
 
+bool MultiFrameRenderer::has_guides() const {
+    return impl_->has_guides();
+}
+
 FloatImage MultiFrameRenderer::read_sums() {
+    return impl_->planes(planes());
+}
+
+FilmNoise MultiFrameRenderer::noise() {
+    return film_noise(impl_->planes(2));
+}
+
+uint64_t MultiFrameRenderer::look(const Settings& settings, unsigned samples) {
     Impl& im = *impl_;
-    FloatImage image = im.image(im.aov().film_channels());
-    image.height *= planes();
-    image.pixels.resize(image.pixels.size() * planes());
-    if (im.alone)
-        im.alone->read_sums(image);
-    else
-        im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_sums(image); });
-    for (unsigned plane = 0; plane < planes(); ++plane)
-        im.collect(image.channels * sizeof(float), &image.pixels[plane * (image.pixels.size() / planes())]);
-    return image;
+    if (im.looked_at == samples) return im.noisy;
+    auto sums = std::make_shared<FloatImage>(read_sums());
+    im.noisy = mark_resting(*sums, adaptive_bound(settings), samples, planes());
+    resume(im.prepared, settings, std::move(sums), samples);
+    im.looked_at = samples;
+    return im.noisy;
 }
 
 void MultiFrameRenderer::resume(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
@@ -147,6 +187,7 @@ void MultiFrameRenderer::resume(const std::shared_ptr<const MultiPrepared>& prep
     im.width = unsigned(settings.width);
     im.height = unsigned(settings.height);
     im.samples = samples;
+    im.looked_at = 0;
     if (im.alone)
         im.alone->write_sums(*prepared->first(), settings, *sums);
     else
@@ -160,6 +201,14 @@ FloatImage MultiFrameRenderer::read_values() {
     im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_values(image); });
     im.collect(image.channels * sizeof(float), image.pixels.data());
     return image;
+}
+
+FloatImage MultiFrameRenderer::read_picture(const Settings& settings) {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_picture(settings);
+    if (!denoises(settings) || !im.has_guides()) return read_values();
+    FrameRenderer* const whole = im.gather(settings);
+    return whole ? whole->read_picture(settings) : im.image(3);
 }
 
 FloatImage MultiFrameRenderer::read_distance() {
@@ -180,6 +229,10 @@ ByteImage MultiFrameRenderer::read_display(const Settings& settings, FrameStats*
     if (!im.aov().is_color())
         return show_values([this] { return read_values(); }, im.aov().name, settings, stats ? &stats->kernels : nullptr, scale);
     im.shown = true;
+    if (denoises(settings) && im.has_guides()) {
+        FrameRenderer* const whole = im.gather(settings);
+        return whole ? whole->read_display(settings, stats) : ByteImage{};
+    }
     const size_t bytes = size_t(im.width) * im.height * 4;
     std::vector<std::vector<KernelTime>> times(im.shared->size());
     std::shared_ptr<uint8_t> rgba = std::exchange(im.display, nullptr);

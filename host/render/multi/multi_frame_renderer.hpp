@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/film/film_noise.hpp"
 #include "render/frame/frame_renderer.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/multi/ranks.hpp"
@@ -39,12 +40,20 @@ class MultiFrameRenderer {
     // resume(): puts such sums back. The next trace(), with these arguments and `samples` as its first sample, goes on with the
     // bits that the picture would have had; also on other devices, which then share the picture anew.
     unsigned planes() const;  // of the film: FrameRenderer::read_sums()
+    bool has_guides() const;  // the film has what the denoiser needs
     FloatImage read_sums();
     void resume(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
                 std::shared_ptr<const FloatImage> sums, unsigned samples);
 
-    // As in FrameRenderer.
+    // Of a film that has two planes or more.
+    FilmNoise noise();
+    // Adaptive sampling: looks at the film after `samples` samples, which is_look() has to accept, and lets pixels rest.
+    // Returns how many have too large an error. trace() does it by itself; whoever asks before makes it no second time.
+    uint64_t look(const Settings& settings, unsigned samples);
+
+    // As in FrameRenderer. What is denoised is whole on one device; of several ranks the first one has it.
     FloatImage read_values();
+    FloatImage read_picture(const Settings& settings);
     FloatImage read_distance();
     ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
     // Only if overlaps_copies(). Several devices do not support this: they copy before they continue.

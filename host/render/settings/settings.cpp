@@ -164,6 +164,10 @@ bool blurs(const Settings& settings) {
     return settings.shutter > 0 && settings.spp > 1 && find_aov(settings.aov).adds_samples();
 }
 
+bool denoises(const Settings& settings) {
+    return settings.denoise == "on" && find_setting("denoise")->used(settings) && find_aov(settings.aov).is_color();
+}
+
 void refuse_value(const std::string& key, const std::string& value, const std::string& expected) {
     throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
 }
@@ -297,6 +301,13 @@ const std::vector<Setting>& settings_table() {
             .in(kPicture),
         choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::display, &Settings::tone)
             .in(kPicture),
+        choice("denoise", "Denoise",
+               "of `path`: pictures are shown and written with their noise filtered away, which biases them. moving: while the "
+               "view moves in the window, which `render` never does; on: always",
+               {"off", "moving", "on"}, Effect::display, &Settings::denoise)
+            .in(kPicture)
+            .only_ways()  // a picture that is denoised has another digest all the same: picture_digest.cpp
+            .only_of(kPathPicture),
         boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
                 Effect::recompile, &Settings::fast_math),
         boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks",

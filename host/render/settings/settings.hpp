@@ -55,8 +55,9 @@ struct Settings {
     std::string aov = "color";  // a name of aov_table()
     // The display.
     double exposure = 1.0;
-    std::string tone = "linear";  // linear|reinhard|aces|agx
-    double scale_max = 0;         // value at the upper end of false colours; 0: the largest of the picture
+    std::string tone = "linear";     // linear|reinhard|aces|agx
+    double scale_max = 0;            // value at the upper end of false colours; 0: the largest of the picture
+    std::string denoise = "moving";  // off|moving|on
     // What only kernels read, by its key; without those that have their default. See number_of() and kernel_numbers().
     std::map<std::string, double> numbers = {};
     // Not for users: what views may have that the scene's own has not, so that kernels know it, too (optics_of()).
@@ -67,6 +68,8 @@ struct Settings {
     int whole_height() const { return crop.whole_height > 0 ? crop.whole_height : height; }
 };
 
+// Whether such a picture is shown and written without its noise. Not with `moving`: the window says `on` while something moves.
+bool denoises(const Settings& settings);
 // Throws Error(usage) for a pixel outside of the picture.
 void check_pixel(const Settings& settings, unsigned x, unsigned y);
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.

@@ -2,12 +2,13 @@
 #include "render/tracers/path/path.hpp"
 
 #include "render/emitters/emitter_table.hpp"
+#include "render/settings/aov.hpp"
 #include "render/tracers/tracer.hpp"
 
 namespace clarity {
 namespace {
 
-KernelRow row_of(const std::vector<std::string>& defines) {
+KernelRow row_of(const std::vector<std::string>& defines, unsigned more_traits = 0) {
     KernelRow r;
     r.tracer = "path";
     r.what = "tracer path";
@@ -15,13 +16,14 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     r.entry = "trace_path";
     r.headers = path_headers();
     r.defines = defines;
-    r.traits = kLimitRegistersAlways | kFrame | kCountsRays | kPicksLights | kSumsSamples;
+    r.traits = kLimitRegistersAlways | kFrame | kCountsRays | kPicksLights | kSumsSamples | more_traits;
     return r;
 }
 
 const KernelRow& kernel(const Settings& settings, const Layout&) {
-    static const KernelRow light = row_of({}), shares = row_of({"RT_SHOW_MIS"});
-    return settings.aov == "mis" ? shares : light;
+    static const KernelRow light = row_of({}), shares = row_of({"RT_SHOW_MIS"}), guided = row_of({"RT_GUIDES"}, kGuides);
+    if (settings.aov == "mis") return shares;
+    return find_aov(settings.aov).is_color() && (denoises(settings) || settings.optics.guides != 0) ? guided : light;
 }
 
 }  // namespace
@@ -35,7 +37,7 @@ std::vector<const char*> path_headers(const std::vector<const char*>& recorder) 
     add(emitter_headers());
     add({"tracers/path/sum.h", "tracers/path/camera_rays.h"});
     add(recorder);
-    add({"tracers/path/state.h", "tracers/path/scatter.h"});
+    add({"tracers/path/state.h", "tracers/path/guides.h", "tracers/path/scatter.h"});
     return headers;
 }
 
