@@ -7,6 +7,7 @@
 #include "render/film/false_colors.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "ui/threads/convergence.hpp"
+#include "ui/threads/picture_part.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
@@ -17,20 +18,21 @@ struct FrameJob {
     Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
     std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
     View view;
-    bool known = true;              // Ready::knows() the view; else nothing is traced
-    double open_s = 0;              // motion blur: how long the shutter is open, of the clip's clock; 0: none
-    CameraPath camera_path;         // that the view's camera is on, for motion blur; empty: it is on none
-    uint64_t revision = 0;          // when it changes, the films start again from sample 0
-    uint64_t display_revision = 0;  // when it changes, the films are displayed again
-    bool continuous = false;        // trace again and again, to measure
-    bool equal_time = false;        // of two sides: DesiredState::equal_time
-    float resolution_scale = 1;     // factor for the settings' width and height
-    float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
+    bool known = true;                // Ready::knows() the view; else nothing is traced
+    double open_s = 0;                // motion blur: how long the shutter is open, of the clip's clock; 0: none
+    CameraPath camera_path;           // that the view's camera is on, for motion blur; empty: it is on none
+    uint64_t revision = 0;            // when it changes, the films start again from sample 0
+    uint64_t display_revision = 0;    // when it changes, the films are displayed again
+    bool continuous = false;          // trace again and again, to measure
+    bool equal_time = false;          // of two sides: DesiredState::equal_time
+    float resolution_scale = 1;       // factor for the settings' width and height
+    std::optional<PicturePart> part;  // that alone is traced
+    float moving_fps = 0;  // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
 };
 
 // One side of a picture.
 struct PictureSide {
-    ByteImage image;
+    ByteImage image;        // the whole, also if a part was traced, as `settings` then say
     FalseColorScale scale;  // the scale of an AOV; without a map for colours
     Settings settings;      // as traced
     FrameStats stats;
@@ -70,5 +72,17 @@ void share_scale(PictureSide& a, PictureSide& b);
 // Replaces the image of a side by that of the finished picture. The picture is being traced again for its times, and its first
 // samples are jagged: to show them between finished pictures would flicker.
 void keep_image(PictureSide& side, const PictureSide& finished);
+
+// What is shown around a part of a picture: the last whole one that was seen from there.
+class Surroundings {
+ public:
+    // Puts images of a part into the whole. Remembers those of a whole picture.
+    void put_around(Picture& picture);
+
+ private:
+    ByteImage images_[2];
+    Camera camera_;
+    std::weak_ptr<const void> loaded_;
+};
 
 }  // namespace clarity::ui
