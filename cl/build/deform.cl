@@ -6,7 +6,7 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF
 
-/* What moves one mesh: DeviceDeformation of device_deform.cpp. 152 B. Matrices have 3 rows of 4. */
+/* What moves one mesh: DeviceDeformation of device_deformer.hpp. 152 B. Matrices have 3 rows of 4. */
 typedef struct rt_deformation {
     ulong before, after; /* first numbers of two frames */
     double frame_share;  /* of the second one */

@@ -27,11 +27,11 @@ RT_INLINE rt_vec rt_material_color(const rt_ctx *ctx, const global rt_material *
 #if RT_HAS_TEXTURES
     if (m->texture != RT_NONE) {
         const rt_texture_point point = rt_plain_point(ctx, m->texture, s);
-        color = rt_mul(color, rt_sample_texture(ctx, m->texture, mine, &point));
+        color = rt_mul(color, RT_REFLECTANCE(m->model, rt_sample_texture(ctx, m->texture, mine, &point)));
     }
 #endif
 #ifdef RT_HAS_MAPS
-    color = rt_mul(color, rt_sample_map(ctx, rt_map_of(ctx, m, RT_MAP_COLOR), s, mine));
+    color = rt_mul(color, RT_REFLECTANCE(m->model, rt_sample_map(ctx, rt_map_of(ctx, m, RT_MAP_COLOR), s, mine)));
 #endif
 #ifdef RT_HAS_COLORS
     color = rt_mul(color, s->color);

@@ -10,7 +10,7 @@ RT_INLINE void rt_multiply(const rt_ctx *ctx, const global rt_map *map, const rt
 }
 RT_INLINE void rt_multiply_color(const rt_ctx *ctx, const global rt_map *map, const rt_surface *s, vmask mine, rt_vec *value)
 {
-    if (map) *value = rt_choose(mine, rt_mul(*value, rt_sample_map(ctx, map, s, mine)), *value);
+    if (map) *value = rt_choose(mine, rt_mul(*value, RT_REFLECTANCE(RT_MODEL_GLTF, rt_sample_map(ctx, map, s, mine))), *value);
 }
 
 #if RT_MAY_SCATTER(RT_LOBE_COAT)

@@ -63,7 +63,7 @@ typedef struct rt_texture_point {
 #else
 #define RT_TAPS 4
 #endif
-/* Texels (RGBA8) and their weights. The weights add up to 1. */
+/* Texels (RGBA8, or of bright textures) and their weights. The weights add up to 1. */
 typedef struct rt_taps {
     vint color[RT_TAPS];
     vfloat weight[RT_TAPS];
@@ -161,11 +161,30 @@ RT_INLINE vfloat rt_channel(const rt_taps *taps, int channel)
     return sum * rt_vfloat(1.0f / 255.0f);
 }
 
+#ifdef RT_HAS_BRIGHT_TEXTURES
+#define RT_BRIGHT 4u /* a flag of rt_texture: as kBrightTexture in host/scene/bright_texture.hpp */
+/* The same of a bright texture: numbers of 9 bits, and their exponent in the highest 5. It has no alpha. */
+RT_INLINE vfloat rt_bright_channel(const rt_taps *taps, int channel)
+{
+    vfloat sum = rt_vfloat(0.0f);
+    if (channel == 3) return rt_vfloat(1.0f);
+    for (int k = 0; k < RT_TAPS; ++k) {
+        const vint texel = taps->color[k], exponent = ((texel >> rt_vint(27)) & rt_vint(31)) + rt_vint(127 - 24);
+        sum += taps->weight[k] * rt_as_vfloat(exponent << rt_vint(23)) * rt_to_float((texel >> rt_vint(9 * channel)) & rt_vint(511));
+    }
+    return sum;
+}
+#endif
+
 /* Samples a texture's r, g and b, as linear colours if they are sRGB. */
 RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, const rt_texture_point *p)
 {
     const rt_texture texture = ctx->textures[index];
     const rt_taps taps = rt_load_texels(ctx, &texture, lanes, p);
+#ifdef RT_HAS_BRIGHT_TEXTURES
+    if (texture.flags & RT_BRIGHT)
+        return rt_vec_of(rt_bright_channel(&taps, 0), rt_bright_channel(&taps, 1), rt_bright_channel(&taps, 2));
+#endif
     if (texture.flags & RT_TEXTURE_LINEAR) return rt_vec_of(rt_channel(&taps, 0), rt_channel(&taps, 1), rt_channel(&taps, 2));
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
     for (int k = 0; k < RT_TAPS; ++k) {
@@ -176,11 +195,26 @@ RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, c
     return sum;
 }
 
-/* Samples one channel of a texture as it is stored. Alpha is, always. */
+/* What a texture says of a surface that reflects light is at most 1: no surface sends more than it gets. What is unlit shines. */
+#ifdef RT_HAS_BRIGHT_TEXTURES
+RT_INLINE rt_vec rt_reflectance(uint model, rt_vec color)
+{
+    const vfloat most = model == RT_MODEL_UNLIT ? RT_INFINITY : rt_vfloat(1.0f);
+    return rt_vec_of(rt_min(color.x, most), rt_min(color.y, most), rt_min(color.z, most));
+}
+#define RT_REFLECTANCE(model, color) rt_reflectance(model, color)
+#else
+#define RT_REFLECTANCE(model, color) color
+#endif
+
+/* Samples one channel of a texture as it is stored, 0..1. Alpha is, always. */
 RT_INLINE vfloat rt_sample_channel(const rt_ctx *ctx, uint index, vmask lanes, const rt_texture_point *p, int channel)
 {
     const rt_texture texture = ctx->textures[index];
     const rt_taps taps = rt_load_texels(ctx, &texture, lanes, p);
+#ifdef RT_HAS_BRIGHT_TEXTURES
+    if (texture.flags & RT_BRIGHT) return rt_min(rt_bright_channel(&taps, channel), rt_vfloat(1.0f));
+#endif
     return rt_channel(&taps, channel);
 }
 

@@ -1,5 +1,5 @@
 // light_kinds.hpp -- the table of the kinds of lights: their keys, and all that differs between them. A new kind is a number in
-// rt_shared.h, a row here, and kernels that light with it.
+// rt_shared.h, a row here, and kernels that light with it. RT_EMITTER_SURFACE in rt_types.h must stay above all kinds.
 #pragma once
 #include "base/problem.hpp"
 #include "scene/key.hpp"

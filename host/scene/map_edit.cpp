@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/numbers.hpp"
+#include "scene/bright_texture.hpp"
 #include "scene/map_uses.hpp"
 #include "scene/tangents.hpp"
 
@@ -23,8 +24,9 @@ rt_u32 own_texture(const Scene& scene, rt_u32 material, rt_u32 use) {
     return use == RT_MAP_COLOR ? m.values.texture : RT_NONE;
 }
 
+// Bright pictures are linear for every use.
 bool is_of_space(const rt_texture& texture, rt_u32 space) {
-    return ((texture.flags & RT_TEXTURE_LINEAR) != 0) == (space != RT_SPACE_SRGB);
+    return is_bright(texture) || ((texture.flags & RT_TEXTURE_LINEAR) != 0) == (space != RT_SPACE_SRGB);
 }
 
 // The picture in a colour space: itself, or another texture of the same texels.

@@ -7,6 +7,7 @@
 
 #include "base/angle.hpp"
 #include "base/problem.hpp"
+#include "scene/bright_texture.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/material_keys.hpp"
 
@@ -182,7 +183,7 @@ Problem check_looks(const Scene& s) {
             return text("texture", i, "texels past the last one");
         if (t.wrap % RT_WRAP_ALONG_V > RT_WRAP_MIRROR || t.wrap / RT_WRAP_ALONG_V > RT_WRAP_MIRROR)
             return text("texture", i, "unknown wrap modes");
-        if (t.flags & ~(RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST)) return text("texture", i, "unknown flags");
+        if (t.flags & ~(RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST | kBrightTexture)) return text("texture", i, "unknown flags");
     }
     return {};
 }

@@ -20,7 +20,8 @@ const PlantedFault kFaults[] = {
      "Maps.ATextureOfOne*"},
     {"NearestIsSmooth", "shading/textures.h", "if (texture->flags & RT_TEXTURE_NEAREST)", "if (0)", "Maps.ANearest*"},
     {"ColourIsLost", "shading/material.h",
-     "color = rt_mul(color, rt_sample_map(ctx, rt_map_of(ctx, m, RT_MAP_COLOR), s, mine));", "", "Maps.ATextureOfOne*"},
+     "color = rt_mul(color, RT_REFLECTANCE(m->model, rt_sample_map(ctx, rt_map_of(ctx, m, RT_MAP_COLOR), s, mine)));", "",
+     "Maps.ATextureOfOne*"},
     {"GreenOfNormalsIsFlipped", "shading/maps.h", "y = scale * fma(two, color.y, -one)", "y = scale * -fma(two, color.y, -one)",
      "NormalMaps.FollowTheTransform*"},
     {"NormalsHaveNoScale", "shading/maps.h", "one = rt_vfloat(1.0f), scale = rt_vfloat(map->scale);",
@@ -48,6 +49,9 @@ const PlantedFault kFaults[] = {
     {"RoughnessIsInRed", "shading/matter_maps.h",
      "rt_multiply(ctx, rough ? rough : both, s, mine, rough ? 0 : 1, &m->roughness);",
      "rt_multiply(ctx, rough ? rough : both, s, mine, 0, &m->roughness);", "Maps.MultiplyTheSurfaceModel"},
+    {"BrightColoursReflectMore", "shading/textures.h", "rt_min(color.x, most)", "color.x", "BrightTextures.ReflectNo*"},
+    {"BrightTexelsHaveNoExponent", "shading/textures.h", "rt_vint(127 - 24);", "rt_vint(0) * texel + rt_vint(119);",
+     "BrightTextures.Shine*"},
     {"MetalOfItsOwnIsInBlue", "shading/matter_maps.h", "metal ? 0 : 2", "2", "Maps.MultiplyTheSurfaceModel"},
 };
 

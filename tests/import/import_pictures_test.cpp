@@ -1,7 +1,12 @@
-// import_pictures_test.cpp -- pictures of surfaces: large ones in small files, through the import worker, and those that lose
-// light.
+// import_pictures_test.cpp -- pictures of surfaces: large ones in small files, through the import worker, and those of floats.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "base/files/read_file.hpp"
+#include "base/pictures/shared_exponent.hpp"
+#include "render/film/image_io.hpp"
+#include "scene/bright_texture.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"
 
@@ -41,18 +46,77 @@ TEST(ImportPictures, LargeOnesInSmallFiles) {
     EXPECT_EQ(scene->texels[scene->textures[5].first] & 0xff0000u, 0x050000u);
 }
 
-// An HDR picture with a texel of 4 and three of 0.5.
-TEST(ImportPictures, AnHdrPictureOfASurfaceIsCutOffWithAWord) {
+// ---- pictures of floats: a texel of 4 and three of 0.5
+
+const std::string kHdr = std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n") + "\x80\x80\x80\x83" +
+                         std::string("\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80\x80", 12);
+
+FloatImage bright_picture() {
+    FloatImage image{2, 2, 3, {}};
+    image.pixels = {4, 4, 4, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
+    return image;
+}
+
+ScenePtr scene_with(const Scratch& folder, const std::string& file, const std::string& material) {
+    static int number = 0;  // load_scene() keeps what it has read
+    return load_scene(folder.write(std::to_string(number++) + ".scene",
+                                   "texture t " + file + "\nmaterial m " + material + "\nsphere material m\n"));
+}
+
+TEST(ImportPictures, OfFloatsKeepTheLightOfWhatShines) {
     const Scratch folder;
-    const std::string half("\x80\x80\x80\x80", 4), bright("\x80\x80\x80\x83", 4);
-    folder.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + bright + half + half + half);
-    const ScenePtr scene = load_scene(folder.write("a.scene", "texture t a.hdr\nmaterial m color_map t\nsphere material m\n"));
-    ASSERT_EQ(scene->warnings.size(), 1u);
-    EXPECT_NE(scene->warnings[0].find("texture 'a.hdr': light above 1 is cut off"), std::string::npos) << scene->warnings[0];
-    ASSERT_EQ(scene->textures.size(), 1u);
-    EXPECT_EQ(scene->texels[scene->textures[0].first] & 0xffu, 255u);
-    const ScenePtr sky = load_scene(folder.write("b.scene", "sky a.hdr\nsphere\n"));
-    EXPECT_TRUE(sky->warnings.empty());
+    folder.write("a.hdr", kHdr);
+    for (const char* file : {"a.pfm", "a.exr"}) write_image(folder.path(file), bright_picture(), {});
+    for (const char* file : {"a.hdr", "a.pfm", "a.exr"}) {
+        const ScenePtr scene = scene_with(folder, file, "emission_map t");
+        EXPECT_TRUE(scene->warnings.empty()) << scene->warnings[0];
+        ASSERT_EQ(scene->textures.size(), 1u);
+        EXPECT_EQ(scene->textures[0].flags, kBrightTexture);
+        ASSERT_EQ(scene->texels.size(), 5u) << "four bytes a texel, as others have";
+        EXPECT_EQ(from_shared_exponent(scene->texels[0])[0], 4) << file;
+        EXPECT_EQ(from_shared_exponent(scene->texels[3])[2], 0.5f) << file;
+        EXPECT_NEAR(from_shared_exponent(scene->texels[4])[1], 1.375, 0.002) << "the smaller picture of " << file;
+        const ScenePtr sky = load_scene(folder.write(std::string(file) + ".scene", "sky " + std::string(file) + "\nsphere\n"));
+        EXPECT_TRUE(sky->warnings.empty());
+    }
+}
+
+TEST(ImportPictures, OfFloatsSayWhatIsLost) {
+    const Scratch folder;
+    folder.write("a.hdr", kHdr);
+    const auto warned = [&](const std::string& file, const std::string& material, const char* of) {
+        const ScenePtr scene = scene_with(folder, file, material);
+        ASSERT_EQ(scene->warnings.size(), 1u) << file << ", " << material;
+        EXPECT_NE(scene->warnings[0].find(of), std::string::npos) << scene->warnings[0];
+    };
+    warned("a.hdr", "color_map t", "material 'm' has a picture of its colour with light above 1, which counts as 1");
+    EXPECT_TRUE(scene_with(folder, "a.hdr", "model unlit color_map t")->warnings.empty());
+    FloatImage image = bright_picture();
+    image.pixels[0] = image.pixels[1] = image.pixels[2] = 0.5f;
+    write_image(folder.path("dim.exr"), image, {});
+    EXPECT_TRUE(scene_with(folder, "dim.exr", "color_map t")->warnings.empty());
+    warned("dim.exr", "alpha blend color_map t", "material 'm' has no alpha of the picture of its colour");
+    image.pixels[4] = -2, image.pixels[5] = HUGE_VALF, image.pixels[6] = 1e6f;
+    write_image(folder.path("odd.pfm"), image, {});
+    warned("odd.pfm", "emission_map t",
+           "texture 'odd.pfm': 2 of its numbers are negative or not finite; they count as 0; 1 of its");
+    std::string bytes;
+    ASSERT_FALSE(try_read_file(folder.path("dim.exr"), 1 << 20, bytes));
+    folder.write("cut.exr", bytes.substr(0, bytes.size() / 2));
+    warned("cut.exr", "emission_map t", "texture 'cut.exr': the picture cannot be read: ");
+    folder.write("cut.pfm", "PF\n70000 3\n-1\n");
+    warned("cut.pfm", "emission_map t", "70000 x 3 pixels: at most 16384");
+}
+
+// Heights and opacities are numbers up to 1.
+TEST(ImportPictures, OfFloatsAreHeightsToo) {
+    const Scratch folder;
+    folder.write("a.hdr", kHdr);
+    const ScenePtr scene =
+        load_scene(folder.write("a.scene", "texture t a.hdr space height\nmaterial m normal_map t\nsphere material m\n"));
+    EXPECT_TRUE(scene->warnings.empty()) << scene->warnings[0];
+    EXPECT_EQ(scene->textures[0].flags, RT_TEXTURE_LINEAR);
+    EXPECT_EQ(scene->texels[0] >> 24, 255u);
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ Browser& browser() {
 
 std::vector<std::string> extensions_for(const Session& session, BrowseFor what) {
     if (what == BrowseFor::preset) return {"json"};
-    if (what == BrowseFor::picture) return {"png", "jpg", "jpeg", "bmp", "tga", "psd", "gif", "hdr", "ppm", "pgm"};
+    if (what == BrowseFor::picture)
+        return {"png", "jpg", "jpeg", "bmp", "tga", "psd", "gif", "hdr", "exr", "pfm", "ppm", "pgm"};
     std::vector<std::string> all;
     for (const rt_plugin* plugin : session.plugins().importers())
         for (const char* const* e = plugin->importer->extensions; e && *e; ++e) {

@@ -1,4 +1,4 @@
-/* inspect.cl -- traces one packet and records the rays of one of its pixels: see inspect.h. */
+/* inspect.cl -- traces one packet and records the rays of one of its pixels: see recorder.h. */
 
 /* Launched with one work-group. packet_wanted: the index of the packet in the group. pixel: the index in the packet of the
  * pixel to record. records: `capacity` elements. summary: the number of rays, which may exceed capacity; then the pixel's

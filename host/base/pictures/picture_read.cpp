@@ -1,5 +1,6 @@
 #include "base/pictures/picture_read.hpp"
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <cstring>
@@ -25,6 +26,7 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #endif
 
@@ -45,15 +47,24 @@ FloatImage blank(double width, double height) {
 
 // Debevec's portable float map: "PF" or "Pf", width, height, scale (negative: little endian), one blank, then rows from the
 // bottom.
-FloatImage read_pfm(const std::string& bytes) {
-    int width = 0, height = 0, head = 0;
+struct PfmHead {
+    int width = 0, height = 0, bytes = 0;
     char kind = 0;
     float scale = 0;
-    if (std::sscanf(bytes.c_str(), "P%c %d %d %f%n", &kind, &width, &height, &scale, &head) != 4 || scale == 0 ||
-        (kind != 'F' && kind != 'f'))
+};
+PfmHead read_pfm_head(const std::string& bytes) {
+    PfmHead head;
+    if (std::sscanf(bytes.c_str(), "P%c %d %d %f%n", &head.kind, &head.width, &head.height, &head.scale, &head.bytes) != 4 ||
+        head.scale == 0 || (head.kind != 'F' && head.kind != 'f'))
         throw Error(Exit::failed, "its head is not that of a PFM: expected PF or Pf, width, height and scale");
-    FloatImage image = blank(width, height);
-    const size_t channels = kind == 'F' ? 3 : 1, row = size_t(image.width) * channels, first = static_cast<size_t>(head) + 1;
+    return head;
+}
+FloatImage read_pfm(const std::string& bytes) {
+    const PfmHead head = read_pfm_head(bytes);
+    FloatImage image = blank(head.width, head.height);
+    const float scale = head.scale;
+    const size_t channels = head.kind == 'F' ? 3 : 1, row = size_t(image.width) * channels,
+                 first = static_cast<size_t>(head.bytes) + 1;
     if (bytes.size() < first + row * image.height * sizeof(float))
         throw Error(Exit::failed, "it is cut off: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                                       " pixels need " + std::to_string(row * image.height * sizeof(float)) +
@@ -97,14 +108,55 @@ FloatImage read_hdr(const std::string& bytes) {
     return image;
 }
 
+std::array<unsigned, 2> size_of_hdr(const std::string& bytes) {
+    int width = 0, height = 0, channels = 0;
+    if (bytes.size() > INT_MAX || !stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
+                                                         static_cast<int>(bytes.size()), &width, &height, &channels))
+        throw Error(Exit::failed, "its head is not that of an HDR");
+    return {static_cast<unsigned>(width), static_cast<unsigned>(height)};
+}
+
 #ifdef CLARITY_HAVE_OPENEXR
-FloatImage read_exr(const std::string& path) {
-    Imf::InputFile file(path.c_str());
+// A file in memory. The library reads a few bytes at a time.
+class ExrBytes : public Imf::IStream {
+ public:
+    explicit ExrBytes(const std::string& bytes) : Imf::IStream("the picture"), bytes_(bytes) {}
+    bool read(char to[], int count) override {
+        if (count < 0 || static_cast<size_t>(count) > bytes_.size() - at_) throw Error(Exit::failed, "it is cut off");
+        std::memcpy(to, bytes_.data() + at_, static_cast<size_t>(count));
+        at_ += static_cast<size_t>(count);
+        return at_ < bytes_.size();
+    }
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t to) override {
+        if (to > bytes_.size()) throw Error(Exit::failed, "it is cut off");
+        at_ = to;
+    }
+
+ private:
+    const std::string& bytes_;
+    size_t at_ = 0;
+};
+
+double side(int first, int last) {
+    return double(last) - first + 1;
+}
+std::array<unsigned, 2> size_of_exr(const std::string& bytes) {
+    ExrBytes stream(bytes);
+    const Imf::InputFile file(stream);
+    const auto window = file.header().dataWindow();
+    const auto limited = [](double size) { return static_cast<unsigned>(std::clamp(size, 0.0, 4e9)); };
+    return {limited(side(window.min.x, window.max.x)), limited(side(window.min.y, window.max.y))};
+}
+
+FloatImage read_exr(const std::string& bytes) {
+    ExrBytes stream(bytes);
+    Imf::InputFile file(stream);
     const auto window = file.header().dataWindow();
     const Imf::ChannelList& channels = file.header().channels();
     const bool colors = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
     if (!colors && !channels.findChannel("Y")) throw Error(Exit::failed, "it has no channels R, G and B, and no Y");
-    FloatImage image = blank(double(window.max.x) - window.min.x + 1, double(window.max.y) - window.min.y + 1);
+    FloatImage image = blank(side(window.min.x, window.max.x), side(window.min.y, window.max.y));
     Imf::FrameBuffer frame;
     const size_t pixel = 3 * sizeof(float), row = pixel * image.width;
     // The library counts from the origin of the data window.
@@ -123,21 +175,59 @@ FloatImage read_exr(const std::string& path) {
 FloatImage read_exr(const std::string&) {
     throw Error(Exit::failed, "this build cannot read EXR: OpenEXR was missing when it was configured");
 }
+std::array<unsigned, 2> size_of_exr(const std::string& bytes) {
+    const FloatImage image = read_exr(bytes);
+    return {image.width, image.height};
+}
 #endif
 
+enum class Format { other, png, exr, pfm, hdr };
+Format format_of(const std::string& bytes) {
+    const auto begins = [&](const char* text, size_t size) { return bytes.compare(0, size, text, size) == 0; };
+    if (begins("\x89PNG", 4)) return Format::png;
+    if (begins("\x76\x2f\x31\x01", 4)) return Format::exr;
+    if (begins("PF", 2) || begins("Pf", 2)) return Format::pfm;
+    return begins("#?", 2) ? Format::hdr : Format::other;
+}
+
 }  // namespace
+
+FloatImage decode_picture(const std::string& bytes) {
+    switch (format_of(bytes)) {
+        case Format::png:
+            return read_png(bytes);
+        case Format::exr:
+            return read_exr(bytes);
+        case Format::pfm:
+            return read_pfm(bytes);
+        case Format::hdr:
+            return read_hdr(bytes);
+        case Format::other:
+            break;
+    }
+    throw Error(Exit::failed, "it is none of PNG, EXR, HDR and PFM");
+}
 
 FloatImage read_picture(const std::string& path) {
     const std::string bytes = read_file(path, kMaxBytes, Exit::failed);
     try {
-        if (bytes.compare(0, 4, "\x89PNG") == 0) return read_png(bytes);
-        if (bytes.compare(0, 4, "\x76\x2f\x31\x01") == 0) return read_exr(path);
-        if (bytes.compare(0, 2, "PF") == 0 || bytes.compare(0, 2, "Pf") == 0) return read_pfm(bytes);
-        if (bytes.compare(0, 2, "#?") == 0) return read_hdr(bytes);
-        throw Error(Exit::failed, "it is none of PNG, EXR, HDR and PFM");
+        return decode_picture(bytes);
     } catch (const std::exception& e) {
         throw Error(Exit::failed, path + ": the picture cannot be read: " + e.what());
     }
+}
+
+bool holds_floats(const std::string& bytes) {
+    const Format format = format_of(bytes);
+    return format == Format::exr || format == Format::pfm || format == Format::hdr;
+}
+
+std::array<unsigned, 2> size_of_floats(const std::string& bytes) {
+    const Format format = format_of(bytes);
+    if (format == Format::exr) return size_of_exr(bytes);
+    if (format == Format::hdr) return size_of_hdr(bytes);
+    const PfmHead head = read_pfm_head(bytes);
+    return {static_cast<unsigned>(std::max(head.width, 0)), static_cast<unsigned>(std::max(head.height, 0))};
 }
 
 }  // namespace clarity

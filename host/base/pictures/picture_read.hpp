@@ -1,5 +1,6 @@
 // picture_read.hpp -- reads pictures of colours as floats: those that are compared, and skies.
 #pragma once
+#include <array>
 #include <string>
 
 #include "base/pictures/float_image.hpp"
@@ -10,5 +11,12 @@ namespace clarity {
 // (Radiance), or PNG (8 or 16 bit; sRGB is decoded by its exact curve, alpha is dropped). One channel becomes three equal ones.
 // Throws Error(failed) with file and reason. For any thread.
 FloatImage read_picture(const std::string& path);
+
+// The same of a picture in memory, `bytes` as in its file; messages name no file.
+FloatImage decode_picture(const std::string& bytes);
+// Whether it is a picture of floats: PFM, EXR or HDR. Asks the first bytes alone.
+bool holds_floats(const std::string& bytes);
+// Width and height as the picture of floats says, whose pixels may be missing. Throws as decode_picture() does.
+std::array<unsigned, 2> size_of_floats(const std::string& bytes);
 
 }  // namespace clarity

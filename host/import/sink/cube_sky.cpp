@@ -5,6 +5,7 @@
 
 #include "base/angle.hpp"
 #include "base/parallel_for.hpp"
+#include "base/pictures/shared_exponent.hpp"
 #include "base/pictures/srgb.hpp"
 #include "scene/vec.hpp"
 
@@ -36,6 +37,10 @@ Faces decoded(const Cube& cube) {
     Faces faces;
     for (size_t f = 0; f < 6; ++f)
         for (const uint32_t texel : cube[f].texels) {
+            if (cube[f].is_bright) {
+                faces[f].push_back(from_shared_exponent(texel));
+                continue;
+            }
             const double scale = 255.0 / std::max(1u, texel >> 24);
             faces[f].push_back({static_cast<float>(scale * linear[texel & 255]),
                                 static_cast<float>(scale * linear[texel >> 8 & 255]),

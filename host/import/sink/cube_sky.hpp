@@ -8,9 +8,10 @@
 
 namespace clarity::import {
 
-// A square picture, RGBA8, top row first, as rt_sky_desc::faces has it.
+// A square picture, RGBA8, top row first, as rt_sky_desc::faces has it; or the light itself.
 struct CubeFace {
     rt_u32 side = 0;
+    bool is_bright = false;  // scene/bright_texture.hpp
     std::vector<uint32_t> texels;
 };
 using Cube = std::array<CubeFace, 6>;

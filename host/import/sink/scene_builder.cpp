@@ -23,6 +23,7 @@
 #include "import/sink/texture.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
+#include "scene/bright_texture.hpp"
 #include "scene/map_edit.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/singular_instances.hpp"
@@ -38,7 +39,6 @@ constexpr size_t kMaxDepth = 16;
 // Bounds the number of placed objects: a few files that each load another one twice could place more than any machine can hold.
 constexpr uint64_t kMaxPlaced = 1u << 22;
 constexpr size_t kMaxWarnings = 100;
-constexpr const char* kLosesLight = "light above 1 is cut off, since surfaces have textures of 8 bits; a sky keeps it";
 
 std::string file_name(const std::string& path) {
     return fs::path(path).filename().string();
@@ -86,17 +86,16 @@ SceneBuilder::SceneBuilder(const PluginRegistry& plugins, ImporterParameters par
 }
 
 void SceneBuilder::warn(const std::string& file, const std::string& text) {
-    if (scene_.warnings.size() >= kMaxWarnings) {
-        ++warnings_left_out_;
-        return;
-    }
+    std::string warning = file + ": " + text;
     // Importers know a packed file by the name of what is in it.
-    for (const std::string& name : {file, name_without_gz(file)}) {
-        if (text.compare(0, name.size() + 1, name + ":") != 0) continue;
-        scene_.warnings.push_back(file + text.substr(name.size()));
-        return;
-    }
-    scene_.warnings.push_back(file + ": " + text);
+    for (const std::string& name : {file, name_without_gz(file)})
+        if (text.compare(0, name.size() + 1, name + ":") == 0) warning = file + text.substr(name.size());
+    // Of what many parts of a file have wrong alike, as a sampler that several textures name, once is enough.
+    if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) != scene_.warnings.end()) return;
+    if (scene_.warnings.size() < kMaxWarnings)
+        scene_.warnings.push_back(std::move(warning));
+    else
+        ++warnings_left_out_;
 }
 
 void SceneBuilder::add_root(const std::string& path) {
@@ -287,10 +286,11 @@ namespace {
 // Adds the smaller pictures of one that was just decoded.
 Problem completed(Problem why, const rt_texture_desc& d, std::vector<uint32_t>& texels, rt_texture& picture) {
     if (why) return why;
-    picture.flags = d.space == RT_SPACE_SRGB ? 0 : RT_TEXTURE_LINEAR;
-    if (d.space == RT_SPACE_HEIGHT) make_normals(texels.data() + picture.first, picture);
-    if (d.space == RT_SPACE_ALPHA || d.space == RT_SPACE_CLEARNESS)
-        make_opacities(texels.data() + picture.first, picture, d.space);
+    const bool is_height = d.space == RT_SPACE_HEIGHT, is_opacity = d.space == RT_SPACE_ALPHA || d.space == RT_SPACE_CLEARNESS;
+    if (is_bright(picture) && (is_height || is_opacity)) make_bytes(texels, picture);
+    if (!is_bright(picture)) picture.flags = d.space == RT_SPACE_SRGB ? 0 : RT_TEXTURE_LINEAR;
+    if (is_height) make_normals(texels.data() + picture.first, picture);
+    if (is_opacity) make_opacities(texels.data() + picture.first, picture, d.space);
     add_smaller_pictures(texels, picture);
     return {};
 }
@@ -316,12 +316,12 @@ rt_u32 SceneBuilder::texture_of_bytes(const std::string& from, const rt_texture_
     if (!is_new) return texture_of(picture, d);
     std::vector<uint32_t>& texels = scene_.texels.own();
     if (observer_) observer_->decoding(d.height == 0 ? memory_of_texture(d.bytes, d.byte_count) : 6 * d.byte_count);
-    const Problem why = completed(d.height == 0 ? decode_texture(d.bytes, d.byte_count, texels, picture)
+    std::string lost;
+    const Problem why = completed(d.height == 0 ? decode_texture(d.bytes, d.byte_count, texels, picture, lost)
                                                 : copy_texture(d.bytes, d.byte_count, d.width, d.height, texels, picture),
                                   d, texels, picture);
     if (why) warn(from, "an embedded texture is left out: " + why.text());
-    if (!why && d.height == 0 && loses_light(d.bytes, d.byte_count))
-        warn(from, std::string("an embedded texture: ") + kLosesLight);
+    if (!why && !lost.empty()) warn(from, "an embedded texture: " + lost);
     return texture_of(picture, d);
 }
 
@@ -344,8 +344,9 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const rt_texture_d
     if (!why) {
         const auto* const begin = reinterpret_cast<const uint8_t*>(bytes.data());
         if (observer_) observer_->decoding(memory_of_texture(begin, bytes.size()));
-        why = completed(decode_texture(begin, bytes.size(), texels, picture), d, texels, picture);
-        if (!why && loses_light(begin, bytes.size())) warn(from, "texture '" + path + "': " + kLosesLight);
+        std::string lost;
+        why = completed(decode_texture(begin, bytes.size(), texels, picture, lost), d, texels, picture);
+        if (!why && !lost.empty()) warn(from, "texture '" + path + "': " + lost);
     }
     progress_.stage("importing " + file_name(from));
     return why ? missing(why.text()) : texture_of(picture, d);

@@ -5,9 +5,11 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "base/pictures/shared_exponent.hpp"
 #include "import/sink/shape_parts.hpp"
 #include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
+#include "scene/bright_texture.hpp"
 #include "scene/camera.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/map_uses.hpp"
@@ -205,11 +207,32 @@ rt_u32 SceneSink::material(const rt_material_desc& d) {
     material.values = material_of(d, problem);
     if (d.texture != RT_NONE && !scene_texture(d.texture, material, material.values.texture)) return kFailed;
     if (!take_maps(d, material, problem)) return kFailed;
+    if (problem.empty()) problem = lost_light(material);
     if (!problem.empty()) builder_.warn(path_, "material '" + material.name + "' " + problem);
     Scene& scene = builder_.scene();
     materials_.push_back(static_cast<rt_u32>(scene.materials.size()));
     scene.materials.push_back(std::move(material));
     return static_cast<rt_u32>(materials_.size() - 1);
+}
+
+// What a material does not show of a colour that is a picture of floats.
+std::string SceneSink::lost_light(const Material& material) {
+    const Scene& scene = builder_.scene();
+    const rt_u32 map = material.maps[RT_MAP_COLOR], number = map == RT_NONE ? material.values.texture : scene.maps[map].texture;
+    if (number == RT_NONE || !is_bright(scene.textures[number])) return {};
+    const rt_texture& texture = scene.textures[number];
+    const uint32_t* const texels = scene.texels.data() + texture.first;
+    const auto is_above_1 = [](uint32_t texel) {
+        const std::array<float, 3> light = from_shared_exponent(texel);
+        return std::max({light[0], light[1], light[2]}) > 1;
+    };
+    if (material.values.model != RT_MODEL_UNLIT &&
+        std::any_of(texels, texels + size_t(texture.width) * texture.height, is_above_1))
+        return "has a picture of its colour with light above 1, which counts as 1: a surface sends no more than it gets; as "
+               "picture of the emission it is kept";
+    if (material.values.alpha != RT_ALPHA_OPAQUE)
+        return "has no alpha of the picture of its colour, which is one of floats: they have none here";
+    return {};
 }
 
 bool SceneSink::scene_texture(rt_u32 id, const Material& material, rt_u32& texture) {

@@ -50,6 +50,7 @@ class SceneSink {
     bool scene_texture(rt_u32 id, const Material& material, rt_u32& texture);
     // The first name that a file gives it counts.
     void name_texture(rt_u32 texture, const rt_texture_desc& d);
+    std::string lost_light(const Material& material);
     bool take_maps(const rt_material_desc& desc, Material& material, std::string& problem);
     bool scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material);
     void offer_motion();

@@ -11,6 +11,7 @@
 #include "import/sink/scene_builder.hpp"
 #include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
+#include "scene/bright_texture.hpp"
 #include "scene/usable.hpp"
 
 namespace clarity::import {
@@ -57,8 +58,11 @@ bool SceneBuilder::take_faces(const std::string& path, const rt_sky_desc& d, Sky
         }
         const uint8_t* const bytes = face.path ? reinterpret_cast<const uint8_t*>(content.data()) : face.bytes;
         rt_texture picture{};
-        if (const Problem why = decode_texture(bytes, face.path ? content.size() : face.byte_count, cube[i].texels, picture))
+        std::string lost;
+        if (const Problem why =
+                decode_texture(bytes, face.path ? content.size() : face.byte_count, cube[i].texels, picture, lost))
             return missing("face " + std::to_string(i) + ": " + why.text());
+        cube[i].is_bright = clarity::is_bright(picture);
         cube[i].side = picture.width;
         if (picture.width != picture.height || cube[i].side != cube[0].side)
             return missing("face " + std::to_string(i) + " has " + std::to_string(picture.width) + " x " +

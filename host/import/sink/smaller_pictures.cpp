@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "base/parallel_for.hpp"
+#include "base/pictures/shared_exponent.hpp"
 #include "base/pictures/srgb.hpp"
-#include "scene/scene.hpp"
+#include "scene/bright_texture.hpp"
 
 namespace clarity::import {
 namespace {
@@ -47,11 +48,36 @@ std::vector<Cover> covers(rt_u32 size, rt_u32 half) {
     return out;
 }
 
-}  // namespace
+// Texels of bytes, and of bright textures: how a share of one is added to a sum, and what a sum becomes.
+struct ByteTexels {
+    bool is_linear;
+    const Curves& curves;
+    void add(float share, uint32_t texel, float (&sum)[4]) const {
+        for (int k = 0; k < 4; ++k) {
+            const uint32_t byte = texel >> (8 * k) & 255u;
+            sum[k] += share * (is_linear || k == 3 ? static_cast<float>(byte) / 255 : curves.linear[byte]);
+        }
+    }
+    uint32_t texel(const float (&sum)[4]) const {
+        uint32_t out = 0;
+        for (int k = 0; k < 4; ++k) {
+            const bool plain = is_linear || k == 3;
+            out |= (plain ? static_cast<uint32_t>(std::clamp(sum[k], 0.f, 1.f) * 255 + 0.5f) : curves.byte_of(sum[k]))
+                   << (8 * k);
+        }
+        return out;
+    }
+};
+struct BrightTexels {
+    void add(float share, uint32_t texel, float (&sum)[4]) const {
+        const std::array<float, 3> light = from_shared_exponent(texel);
+        for (size_t k = 0; k < 3; ++k) sum[k] += share * light[k];
+    }
+    uint32_t texel(const float (&sum)[4]) const { return to_shared_exponent(sum); }
+};
 
-void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture) {
-    static const Curves curves;
-    const bool is_linear = (texture.flags & RT_TEXTURE_LINEAR) != 0;
+template <class Kind>
+void add_smaller(const Kind& kind, std::vector<uint32_t>& texels, rt_texture& texture) {
     rt_texture from = texture;
     while (from.width > 1 || from.height > 1) {
         const rt_texture to = smaller_picture(from);
@@ -64,24 +90,24 @@ void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture) {
                     for (rt_u32 i = 0; i < columns[x].count; ++i) {
                         const uint32_t texel =
                             texels[from.first + size_t(rows[y].first + j) * from.width + columns[x].first + i];
-                        const float share = rows[y].share[j] * columns[x].share[i];
-                        for (int k = 0; k < 4; ++k) {
-                            const uint32_t byte = texel >> (8 * k) & 255u;
-                            sum[k] += share * (is_linear || k == 3 ? static_cast<float>(byte) / 255 : curves.linear[byte]);
-                        }
+                        kind.add(rows[y].share[j] * columns[x].share[i], texel, sum);
                     }
-                uint32_t out = 0;
-                for (int k = 0; k < 4; ++k) {
-                    const bool plain = is_linear || k == 3;
-                    out |= (plain ? static_cast<uint32_t>(std::clamp(sum[k], 0.f, 1.f) * 255 + 0.5f) : curves.byte_of(sum[k]))
-                           << (8 * k);
-                }
-                texels[to.first + size_t(y) * to.width + x] = out;
+                texels[to.first + size_t(y) * to.width + x] = kind.texel(sum);
             }
         });
         from = to;
         ++texture.levels;
     }
+}
+
+}  // namespace
+
+void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture) {
+    static const Curves curves;
+    if (is_bright(texture))
+        add_smaller(BrightTexels{}, texels, texture);
+    else
+        add_smaller(ByteTexels{(texture.flags & RT_TEXTURE_LINEAR) != 0, curves}, texels, texture);
 }
 
 }  // namespace clarity::import

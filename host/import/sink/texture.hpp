@@ -15,13 +15,15 @@ inline constexpr rt_u32 kMaxTextureSide = 16384;
 inline constexpr uint64_t kMaxTexelBytes = uint64_t(16) << 30;
 inline constexpr uint64_t kMaxPictureFileBytes = 256u << 20;
 
-// Decodes a picture (PNG, JPEG, BMP, TGA, PSD, GIF, HDR, PNM; `bytes` as in the file), appends it to `texels` as RGBA8 with the
-// top row first, and describes it in `texture`. Returns nothing on success; otherwise the reason, and nothing is
-// appended.
-Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture);
+// Decodes a picture (PNG, JPEG, BMP, TGA, PSD, GIF, PNM; `bytes` as in the file), appends it to `texels` as RGBA8 with the top
+// row first, and describes it in `texture`. Pictures of floats (HDR, EXR, PFM) become bright textures, which keep light above 1
+// (scene/bright_texture.hpp). Returns nothing on success; otherwise the reason, and nothing is appended. lost: what of the
+// light is lost, for a warning; empty: nothing.
+Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture,
+                       std::string& lost);
 
-// Whether the picture has light above 1, which decode_texture() cuts off: Radiance's HDR.
-bool loses_light(const uint8_t* bytes, uint64_t byte_count);
+// Makes RGBA8 of a bright texture: numbers of 0..1 in linear steps. The texture's picture is the last one in `texels`.
+void make_bytes(std::vector<uint32_t>& texels, rt_texture& texture);
 
 // Bytes that decode_texture() takes for a picture, and what follows it with its smaller ones, while `texels` grows: those that
 // are there are copied then. 0: it is no picture.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/pictures/shared_exponent.hpp"
 #include "base/pictures/srgb.hpp"
+#include "scene/bright_texture.hpp"
 
 namespace clarity {
 namespace {
@@ -19,6 +21,10 @@ int64_t wrapped(int64_t at, int64_t size, rt_u32 mode) {
 
 double brightness(uint32_t texel, const rt_texture& texture) {
     double sum = 0;
+    if (is_bright(texture)) {
+        for (const float light : from_shared_exponent(texel)) sum += light;
+        return sum / 3;
+    }
     for (int k = 0; k < 3; ++k) {
         const auto byte = static_cast<uint8_t>(texel >> (8 * k));
         sum += texture.flags & RT_TEXTURE_LINEAR ? byte / 255.0 : linear_from_srgb(byte / 255.0);

@@ -3,6 +3,7 @@
 #include "plugin/capabilities.hpp"
 #include "render/kernels/shape_source.hpp"
 #include "render/kernels/traversal_source.hpp"
+#include "scene/bright_texture.hpp"
 
 namespace clarity {
 namespace {
@@ -102,6 +103,7 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
     write_layout(out, layout);
     write_numbers(out);
     write_features(out, features, settings, row);
+    if (features.textures && has_bright_textures(scene)) out.define_int("RT_HAS_BRIGHT_TEXTURES", 1);
     if (settings.portable) out.line("#define RT_PORTABLE");
     if (settings.debug) out.line("#define RT_DEBUG");
     if (source.limit_registers) out.line("#define RT_FEWER_REGISTERS");

@@ -41,12 +41,13 @@ constexpr Use kUses[] = {
     {aiTextureType_METALNESS, RT_MAP_METALLIC, RT_SPACE_LINEAR},
     {aiTextureType_DIFFUSE_ROUGHNESS, RT_MAP_ROUGHNESS, RT_SPACE_LINEAR},
     {aiTextureType_AMBIENT_OCCLUSION, RT_MAP_OCCLUSION, RT_SPACE_LINEAR},
+    {aiTextureType_SPECULAR, RT_MAP_SPECULAR_COLOR, RT_SPACE_SRGB},
 };
 // Those that mean nothing here, with names for the warning.
 constexpr std::pair<aiTextureType, const char*> kLeftOut[] = {
-    {aiTextureType_AMBIENT, "ambient"},           {aiTextureType_SPECULAR, "specular"},
-    {aiTextureType_SHININESS, "shininess"},       {aiTextureType_REFLECTION, "reflection"},
-    {aiTextureType_DISPLACEMENT, "displacement"}, {aiTextureType_LIGHTMAP, "light map"},
+    {aiTextureType_AMBIENT, "ambient"},       {aiTextureType_SHININESS, "shininess"},
+    {aiTextureType_REFLECTION, "reflection"}, {aiTextureType_DISPLACEMENT, "displacement"},
+    {aiTextureType_LIGHTMAP, "light map"},
 };
 
 std::string picture_of(const aiMaterial& m, aiTextureType type) {
@@ -87,8 +88,17 @@ void lay(const aiMaterial& m, aiTextureType type, float (&matrix)[6]) {
     std::copy(out, out + 6, matrix);
 }
 
-void apply_phong(const aiMaterial& m, rt_material_desc& out) {
-    const aiColor3D specular = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
+// assimp's values of COLLADA materials that state none, as Lambert's (measured from assimp 5.2.4).
+bool is_unstated(const aiColor3D& specular, float shininess) {
+    return specular == aiColor3D(0.4f, 0.4f, 0.4f) && shininess == 10;
+}
+
+// A picture of the highlight replaces its value.
+void apply_phong(const aiMaterial& m, bool has_strengths, rt_material_desc& out) {
+    const aiColor3D stated = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
+    const aiColor3D specular = has_strengths                                            ? aiColor3D(1, 1, 1)
+                               : is_unstated(stated, number(m, AI_MATKEY_SHININESS, 0)) ? aiColor3D(0, 0, 0)
+                                                                                        : stated;
     const float strength = importers::limited(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
     importers::store_color(specular, strength, 1, out.specular);
     out.shininess = importers::limited(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
@@ -141,12 +151,17 @@ rt_u32 MaterialTable::id(unsigned material) {
         keys.set("metallic", importers::has_map(maps, RT_MAP_METALLIC) ? 1 : metallic);
         keys.set("roughness", importers::has_map(maps, RT_MAP_ROUGHNESS) ? 1 : number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1));
     } else {
-        apply_phong(m, out);
+        apply_phong(m, importers::has_map(maps, RT_MAP_SPECULAR_COLOR), out);
     }
     importers::AlphaKeys alpha;
     const bool is_cut = !picture_of(m, aiTextureType_OPACITY).empty();
     importers::apply_transparency(is_cut ? 1 : number(m, AI_MATKEY_OPACITY, 1), number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0),
                                   number(m, AI_MATKEY_REFRACTI, 0), alpha, out);
+    const bool has_highlight = keys.empty() && importers::add_highlight(out, keys);
+    if (importers::has_map(maps, RT_MAP_SPECULAR_COLOR) && !has_highlight) {
+        importers::drop_map(maps, RT_MAP_SPECULAR_COLOR);
+        add_word(left_out, "specular");
+    }
     if (is_cut) read_transparency(m, maps, alpha, left_out);
     alpha.give(keys);
     keys.give(out);

@@ -19,21 +19,25 @@ struct Use {
 };
 constexpr Use kUses[] = {{"EmissiveColor", RT_MAP_EMISSION, RT_SPACE_SRGB},
                          {"NormalMap", RT_MAP_NORMAL, RT_SPACE_LINEAR},
-                         {"Bump", RT_MAP_NORMAL, RT_SPACE_HEIGHT}};
+                         {"Bump", RT_MAP_NORMAL, RT_SPACE_HEIGHT},
+                         {"SpecularColor", RT_MAP_SPECULAR_COLOR, RT_SPACE_SRGB}};
 
 bool is_color(std::string_view property) {
     const std::string plain = plain_name(property);
     return property == "DiffuseColor" || plain == "basecolor" || plain == "color";  // Maya|TEX_color_map of Stingray PBS
 }
 
-void read_phong(const Properties& p, bool has_texture, bool has_emission, AlphaKeys& alpha, rt_material_desc& out) {
+void read_phong(const Properties& p, std::vector<rt_map_desc>& maps, MaterialKeys& keys, AlphaKeys& alpha,
+                rt_material_desc& out, std::vector<std::string>& left_out) {
     // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
+    const bool has_texture = has_map(maps, RT_MAP_COLOR), has_emission = has_map(maps, RT_MAP_EMISSION),
+               has_strengths = has_map(maps, RT_MAP_SPECULAR_COLOR);
     const Vec3 diffuse = has_texture ? Vec3{1, 1, 1} : color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8});
     store_color(diffuse, has_texture ? 1 : p.number("DiffuseFactor", 1), 1, out.color);
     store_color(has_emission ? Vec3{1, 1, 1} : color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1), 1000,
                 out.emission);
     const double strength = limited(p.number("SpecularFactor", 1), 0, 1, 1);
-    store_color(color(p, "SpecularColor", "Specular", {}), strength, 1, out.specular);
+    store_color(has_strengths ? Vec3{1, 1, 1} : color(p, "SpecularColor", "Specular", {}), strength, 1, out.specular);
     out.shininess = limited(p.number("ShininessExponent", p.number("Shininess", 0)), 1, 10000, 1);
     const Vec3 reflection = p.vector("ReflectionColor", {});
     out.reflect = limited(p.number("ReflectionFactor", 0) * std::max({reflection[0], reflection[1], reflection[2]}), 0, 1, 0);
@@ -42,6 +46,9 @@ void read_phong(const Properties& p, bool has_texture, bool has_emission, AlphaK
     const Vec3 clear = p.vector("TransparentColor", {});
     const double share = (clear[0] + clear[1] + clear[2]) / 3 * p.number("TransparencyFactor", 1);
     apply_transparency(p.number("Opacity", 1 - share), 0, 0, alpha, out);
+    if (add_highlight(out, keys) || !has_strengths) return;
+    drop_map(maps, RT_MAP_SPECULAR_COLOR);
+    left_out.emplace_back("SpecularColor");
 }
 
 // The place on the picture of a point of the surface: UVSwap, scaling and rotation about their pivots, then translation, with
@@ -109,17 +116,16 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const std::string& name = context_.objects[material].name;
     rt_material_desc out = rt::material(name.empty() ? nullptr : name.c_str());
     std::vector<std::string> left_out = pictures_left_out(material);
-    const std::vector<rt_map_desc> maps = maps_of(material, used(material, model), left_out);
-    give_maps(maps, out);
-    const bool has_color = has_map(maps, RT_MAP_COLOR);
+    std::vector<rt_map_desc> maps = maps_of(material, used(material, model), left_out);
     AlphaKeys alpha;
     MaterialKeys keys;
     const Properties properties = context_.properties(material);
     const Surface surface(properties);
     if (surface.is_physical())
-        surface.read(maps, has_color, keys, alpha, out, left_out);
+        surface.read(maps, has_map(maps, RT_MAP_COLOR), keys, alpha, out, left_out);
     else
-        read_phong(properties, has_color, has_map(maps, RT_MAP_EMISSION), alpha, out);
+        read_phong(properties, maps, keys, alpha, out, left_out);
+    give_maps(maps, out);
     // A texture of the transparency replaces its value. Programs connect the picture of the colour again where its alpha
     // counts.
     const uint32_t clear = transparency(material), found = texture(material, model);
@@ -149,10 +155,15 @@ std::vector<UsedTexture> Materials::used(uint32_t material, uint32_t model) cons
     const std::vector<const Link*> links = context_.objects.below(material);
     for (const Use& use : kUses)
         for (const Link* link : links)
-            if (link->property == use.property) add(link->from, use.use, use.space);
+            if (link->property == use.property && takes(material, use.use)) add(link->from, use.use, use.space);
     for (const Link* link : links)
         if (const SurfaceMap* map = surface_map(plain_name(link->property))) add(link->from, map->use, map->space);
     return out;
+}
+
+// Physically based materials have strengths of reflections by names of their own.
+bool Materials::takes(uint32_t material, rt_u32 use) const {
+    return use != RT_MAP_SPECULAR_COLOR || !Surface(context_.properties(material)).is_physical();
 }
 
 std::vector<rt_map_desc> Materials::maps_of(uint32_t material, const std::vector<UsedTexture>& used,
@@ -182,9 +193,10 @@ std::vector<std::string> Materials::pictures_left_out(uint32_t material) const {
     for (const Link* link : context_.objects.below(material)) {
         const std::string_view name = link->property;
         const bool is_picture = context_.objects[link->from].kind == "Texture" && !name.empty();
-        const bool is_used =
-            is_color(name) || name == "TransparentColor" || name == "TransparencyFactor" || surface_map(plain_name(name)) ||
-            std::any_of(std::begin(kUses), std::end(kUses), [&](const Use& use) { return name == use.property; });
+        const bool is_used = is_color(name) || name == "TransparentColor" || name == "TransparencyFactor" ||
+                             surface_map(plain_name(name)) ||
+                             std::any_of(std::begin(kUses), std::end(kUses),
+                                         [&](const Use& use) { return name == use.property && takes(material, use.use); });
         if (is_picture && !is_used && std::find(out.begin(), out.end(), name) == out.end()) out.emplace_back(name);
     }
     return out;

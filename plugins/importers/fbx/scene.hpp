@@ -73,6 +73,7 @@ class Materials {
     uint32_t transparency(uint32_t material) const;             // its texture, likewise
     std::string_view file_of(uint32_t texture) const;
     std::vector<UsedTexture> used(uint32_t material, uint32_t model) const;
+    bool takes(uint32_t material, rt_u32 use) const;  // whether the material may have a map of the use
     std::string_view uv_set(uint32_t texture) const;
     UvSets sets_of(const std::vector<UsedTexture>& used) const;
     std::vector<rt_map_desc> maps_of(uint32_t material, const std::vector<UsedTexture>& used,

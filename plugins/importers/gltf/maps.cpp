@@ -18,9 +18,10 @@ struct Use {
     rt_u32 space = RT_SPACE_LINEAR;
     const char* scale = nullptr;  // the member of the texture's description that is rt_map_desc::scale
 };
+constexpr const char *kGloss = "KHR_materials_pbrSpecularGlossiness", *kGlossTexture = "specularGlossinessTexture";
 // Of two with the same use the first counts.
 constexpr Use kUses[] = {
-    {RT_MAP_COLOR, "KHR_materials_pbrSpecularGlossiness", nullptr, "diffuseTexture", RT_SPACE_SRGB},
+    {RT_MAP_COLOR, kGloss, nullptr, "diffuseTexture", RT_SPACE_SRGB},
     {RT_MAP_COLOR, nullptr, "pbrMetallicRoughness", "baseColorTexture", RT_SPACE_SRGB},
     {RT_MAP_EMISSION, nullptr, nullptr, "emissiveTexture", RT_SPACE_SRGB},
     {RT_MAP_NORMAL, nullptr, nullptr, "normalTexture", RT_SPACE_LINEAR, "scale"},
@@ -32,6 +33,7 @@ constexpr Use kUses[] = {
     {RT_MAP_CLEARCOAT_ROUGHNESS, "KHR_materials_clearcoat", nullptr, "clearcoatRoughnessTexture"},
     {RT_MAP_CLEARCOAT_NORMAL, "KHR_materials_clearcoat", nullptr, "clearcoatNormalTexture", RT_SPACE_LINEAR, "scale"},
     {RT_MAP_SPECULAR, "KHR_materials_specular", nullptr, "specularTexture"},
+    {RT_MAP_SPECULAR_COLOR, kGloss, nullptr, kGlossTexture, RT_SPACE_SRGB},
     {RT_MAP_SPECULAR_COLOR, "KHR_materials_specular", nullptr, "specularColorTexture", RT_SPACE_SRGB},
     {RT_MAP_SHEEN_COLOR, "KHR_materials_sheen", nullptr, "sheenColorTexture", RT_SPACE_SRGB},
     {RT_MAP_SHEEN_ROUGHNESS, "KHR_materials_sheen", nullptr, "sheenRoughnessTexture"},
@@ -110,13 +112,16 @@ TextureSets Maps::sets(const Value& material) const {
     return sets;
 }
 
-std::vector<rt_map_desc> Maps::read(const Value& material, bool emits) {
+std::vector<rt_map_desc> Maps::read(const Value& material, bool emits, std::vector<std::string>& left_out) {
     const TextureSets known = sets(material);
     std::vector<rt_map_desc> maps;
     each_use(material, [&](const Use& use, const Value& info) {
         if (use.use == RT_MAP_EMISSION && !emits) return;
         spared(sink_, "the material stays without that texture", [&] {
-            rt_map_desc out = rt::map(use.use, texture(info, use.space));
+            std::string why_not;
+            rt_map_desc out = rt::map(use.use, texture(info, use.space, why_not));
+            if (!why_not.empty()) left_out.push_back(use.property + why_not);
+            if (use.property == kGlossTexture) left_out.push_back("the alpha of " + std::string(kGlossTexture));
             spared(sink_, "the texture lies as the coordinates say", [&] { read_transform(info, out); });
             spared(sink_, "the first set is taken", [&] {
                 const auto at = std::find(known.begin(), known.end(), set_of(info));
@@ -131,14 +136,18 @@ std::vector<rt_map_desc> Maps::read(const Value& material, bool emits) {
     return maps;
 }
 
-rt_u32 Maps::texture(const Value& info, rt_u32 space) {
+// why_not: what follows the name of a texture that is left out.
+rt_u32 Maps::texture(const Value& info, rt_u32 space, std::string& why_not) {
     if (!info.has("index")) return RT_NONE;
     const Value texture = textures_[info["index"].index(textures_)];
     const auto image = texture.index("source", images_);
     if (!image) {
-        // Only an extension names an image, of a kind that the host does not read (WebP, KTX).
-        const std::string text = texture.path() + " has no 'source', so the material stays without it";
-        return rt::warn(sink_, text), RT_NONE;
+        // An extension may name an image of a kind that the host does not read: KTX, WebP, AVIF.
+        const Value extensions = texture.object("extensions");
+        for (const char* name : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif"})
+            if (extensions.has(name)) why_not = std::string(" (its picture is of ") + name + " alone)";
+        if (why_not.empty()) why_not = " (" + texture.path() + " has no 'source')";
+        return RT_NONE;
     }
     rt_texture_desc look{};
     look.struct_bytes = sizeof look;

@@ -32,11 +32,11 @@ class Maps {
 
     // The sets that a material uses, two at most. Says nothing of what is wrong: read() does.
     TextureSets sets(const Value& material) const;
-    // The maps of a material. emits: whether its emission is not black.
-    std::vector<rt_map_desc> read(const Value& material, bool emits);
+    // The maps of a material. emits: whether its emission is not black. Adds what is not understood to left_out.
+    std::vector<rt_map_desc> read(const Value& material, bool emits, std::vector<std::string>& left_out);
 
  private:
-    rt_u32 texture(const Value& info, rt_u32 space);
+    rt_u32 texture(const Value& info, rt_u32 space, std::string& why_not);
     rt_u32 wrap_mode(const Value& sampler, const char* key) const;
     rt_u32 add_image(const Value& image, rt_texture_desc look);
 

@@ -45,21 +45,32 @@ void read_property(const Value& of, const Property& p, importers::MaterialKeys& 
         keys.set(p.key, p.factor * of.number(p.name, 0));
 }
 
-// One warning for each material names the extensions that are left out.
-void name_unknown(const Value& material, const rt_scene_sink& sink) {
+// The extensions of a material that are left out.
+std::vector<std::string> unknown_extensions(const Value& material) {
     constexpr const char* kOthers[] = {"KHR_materials_ior", "KHR_materials_volume", "KHR_materials_emissive_strength",
                                        "KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"};
-    if (!material.has("extensions") || !material["extensions"].json().is_object()) return;
-    std::string unknown;
+    std::vector<std::string> unknown;
+    if (!material.has("extensions") || !material["extensions"].json().is_object()) return unknown;
     for (const auto& extension : material["extensions"].json().items()) {
         const std::string& name = extension.key();
         const auto is_name = [&](const char* known) { return name == known; };
         const bool known =
             std::any_of(std::begin(kOthers), std::end(kOthers), is_name) ||
             std::any_of(std::begin(kProperties), std::end(kProperties), [&](const Property& p) { return name == p.extension; });
-        if (!known) unknown += (unknown.empty() ? "" : ", ") + name;
+        if (!known) unknown.push_back(name);
     }
-    if (!unknown.empty()) rt::warn(sink, material.path() + " has " + unknown + ", which is left out");
+    return unknown;
+}
+
+// KHR_materials_pbrSpecularGlossiness (archived): a surface that is no metal, with the reflectance straight on that it states,
+// which is that of an ior of 1.5 times a color, and a roughness of 1 - glossiness.
+void read_gloss(const Value& extension, importers::MaterialKeys& keys) {
+    constexpr double kOfIor = 0.04;
+    std::array<double, 3> color = extension.numbers<3>("specularFactor", {1, 1, 1});
+    for (double& channel : color) channel /= kOfIor;
+    keys.set("metallic", 0);
+    keys.set("specular_color", color);
+    keys.set("roughness", 1 - extension.number("glossinessFactor", 1));
 }
 
 // KHR_materials_ior: 0 stands for an infinite one, which reflects all light, as one near 0 does.
@@ -127,9 +138,9 @@ rt_u32 Materials::add(const Value& material) {
         base = factor;
         importers::store_color(base, 1, 1, out.color);
     });
-    name_unknown(material, sink_);
+    std::vector<std::string> left_out = unknown_extensions(material);
     keys.set("model", extensions.has("KHR_materials_unlit") ? importers::unlit_model : importers::gltf_model);
-    keys.set("metallic", is_gloss ? 0 : 1);  // specified defaults, which are not those of the host
+    keys.set("metallic", 1);  // specified defaults, which are not those of the host
     keys.set("roughness", 1);
     for (const Property& p : kProperties)
         group([&] {
@@ -137,6 +148,7 @@ rt_u32 Materials::add(const Value& material) {
             if (is_core && is_gloss) return;
             read_property(is_core ? material.object("pbrMetallicRoughness") : extensions.object(p.extension), p, keys);
         });
+    if (is_gloss) group([&] { read_gloss(extensions.object("KHR_materials_pbrSpecularGlossiness"), keys); });
     group([&] { read_ior(extensions.object("KHR_materials_ior"), keys); });
     group([&] { read_volume(extensions.object("KHR_materials_volume"), keys); });
     group([&] {
@@ -147,12 +159,17 @@ rt_u32 Materials::add(const Value& material) {
     std::vector<rt_map_desc> maps;
     group([&] {
         const bool emits = out.emission[0] > 0 || out.emission[1] > 0 || out.emission[2] > 0;
-        maps = maps_.read(material, emits);
+        maps = maps_.read(material, emits, left_out);
         importers::give_maps(maps, out);
     });
     group([&] { read_alpha(material, base[3], alpha); });
     alpha.give(keys);
     keys.give(out);
+    if (!left_out.empty()) {
+        std::string list;
+        for (const std::string& what : left_out) list += (list.empty() ? "" : ", ") + what;
+        rt::warn(sink_, (name.empty() ? material.path() : "material '" + name + "'") + ": left out " + list);
+    }
     return rt::id(sink_.material(sink_.ctx, &out));
 }
 

@@ -201,6 +201,9 @@ const Part& Meshes::add_vertices(const Value& primitive, Geometry& g) {
         const std::string set = "TEXCOORD_" + std::to_string(sets[k]);
         const char* const uv = attributes.has(set.c_str()) ? set.c_str() : "TEXCOORD_0";
         if (!attributes.has(uv)) continue;
+        if (set != uv)
+            rt::warn(sink_,
+                     attributes.path() + ": the material names " + set + ", which is missing; " + uv + " takes its place");
         spared(sink_, "the texture coordinates are left out", [&] {
             std::vector<float>& to = k == 0 ? g.uvs : g.uvs2;
             const Elements<float> uvs = floats(part, uv, "VEC2", count);

@@ -10,9 +10,11 @@ namespace {
 
 // Statements of maps, lower case; those of kPbr come besides. `norm` is of the extension for physically based rendering.
 constexpr std::pair<std::string_view, ObjTexture MtlStatements::*> kMaps[] = {
-    {"map_kd", &MtlStatements::texture},    {"map_d", &MtlStatements::dissolve_map},  {"map_ke", &MtlStatements::emission_map},
-    {"norm", &MtlStatements::normal_map},   {"map_norm", &MtlStatements::normal_map}, {"map_kn", &MtlStatements::normal_map},
-    {"map_bump", &MtlStatements::bump_map}, {"bump", &MtlStatements::bump_map},       {"map_tf", &MtlStatements::filter_map},
+    {"map_kd", &MtlStatements::texture},      {"map_d", &MtlStatements::dissolve_map},
+    {"map_ke", &MtlStatements::emission_map}, {"norm", &MtlStatements::normal_map},
+    {"map_norm", &MtlStatements::normal_map}, {"map_kn", &MtlStatements::normal_map},
+    {"map_bump", &MtlStatements::bump_map},   {"bump", &MtlStatements::bump_map},
+    {"map_tf", &MtlStatements::filter_map},   {"map_ks", &MtlStatements::specular_map},
 };
 // Statements that change nothing here, so that no warning is worth it: `ambient` is the scene's, not a material's, and maps
 // are smooth.
@@ -161,6 +163,9 @@ void Reader::map(std::string_view word, std::string_view rest, ObjTexture& out) 
 void Reader::close() {
     if (!is_open_) return;
     ObjMaterial material = to_material(statements_);
+    const bool has_strengths = std::any_of(material.maps.begin(), material.maps.end(),
+                                           [](const ObjMap& map) { return map.use == RT_MAP_SPECULAR_COLOR; });
+    if (!statements_.specular_map.names.empty() && !has_strengths) leave_out("map_Ks");
     material.folder = folder_;
     material.left_out = std::move(left_out_);
     library_.materials[name_] = std::move(material);

@@ -50,8 +50,7 @@ void read_pbr(const MtlStatements& s, ObjMaterial& m) {
     m.keys.set("metallic", 0);
     m.keys.set("sheen_roughness", 0.5);
     m.keys.set("clearcoat_roughness", 0.03);
-    // Of Blinn's exponent: alpha = roughness^2 = sqrt(2 / (Ns + 2)) (Walter et al. 2007, section 5.3).
-    m.keys.set("roughness", std::sqrt(std::sqrt(2 / (std::max(s.exponent, 0.0f) + 2))));
+    m.keys.set("roughness", importers::roughness_of(s.exponent));
     if (s.ior > 1) m.keys.set("ior", std::min(s.ior, 10.0f));
     for (size_t i = 0; i < kPbrCount; ++i) {
         if (is_there(s.pbr_maps[i]))
@@ -75,8 +74,9 @@ void read_illumination(const MtlStatements& s, ObjMaterial& m) {
     const bool mirrors = s.illumination == 3 || s.illumination == 5 || s.illumination == 8;
     const bool is_glass = s.illumination == 4 || s.illumination == 6 || s.illumination == 7 || s.illumination == 9;
     if (s.illumination == 0) m.keys.set("model", importers::unlit_model);
+    const bool is_dull = s.illumination == 0 || s.illumination == 1, is_unstated = largest(s.specular) == 0;
     for (int k = 0; k < 3; ++k)
-        out.specular[k] = s.illumination == 0 || s.illumination == 1 ? 0 : std::min(s.specular[k], 1.0f);
+        out.specular[k] = is_dull ? 0 : is_there(s.specular_map) && is_unstated ? 1 : std::min(s.specular[k], 1.0f);
     out.shininess = std::clamp(s.exponent, 1.0f, 10000.0f);
     out.ior = 1;
     if (is_glass) {
@@ -93,6 +93,8 @@ void read_illumination(const MtlStatements& s, ObjMaterial& m) {
         read_alpha(s, m);
     }
     if (mirrors) out.reflect = std::min(largest(s.specular), 1 - out.refract);
+    if (importers::add_highlight(out, m.keys) && is_there(s.specular_map))
+        m.maps.push_back({RT_MAP_SPECULAR_COLOR, RT_SPACE_SRGB, s.specular_map});
 }
 
 }  // namespace

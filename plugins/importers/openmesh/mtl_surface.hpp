@@ -33,7 +33,7 @@ struct MtlStatements {
     float exponent = 1, ior = 1, dissolve = 1;
     bool has_diffuse = false, has_dissolve = false, has_filter = false;
     int illumination = -1;
-    ObjTexture texture, dissolve_map, emission_map, normal_map, bump_map, filter_map;
+    ObjTexture texture, dissolve_map, specular_map, emission_map, normal_map, bump_map, filter_map;
     std::array<std::optional<float>, kPbrCount> pbr;
     std::array<ObjTexture, kPbrCount> pbr_maps;
 };

@@ -1,6 +1,8 @@
 // collada_materials_test.cpp -- the pictures of COLLADA's materials, and what is transparent.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "measure.hpp"
 
 namespace clarity::test {
@@ -132,14 +134,32 @@ TEST(ColladaMaterials, PicturesLieInSetsAndAreTransformed) {
     EXPECT_TRUE(square(folder, kDiffuse).uvs2.empty()) << "a set that no picture names";
 }
 
+TEST(ColladaMaterials, HighlightsAreReflections) {
+    NEEDS_IMPORTER("a.dae");
+    const Scratch folder;
+    const auto read = [&](const std::string& phong) { return square(folder, kDiffuse + phong); };
+    const std::string shininess = "<shininess><float>98</float></shininess>";
+    const MaterialValues m = read("<specular><color>.25 .25 .125 1</color></specular>" + shininess).materials.back().values;
+    EXPECT_EQ(m.model, RT_MODEL_GLTF);
+    EXPECT_FLOAT_EQ(m.roughness, std::sqrt(std::sqrt(2 / 100.0f)));
+    EXPECT_FLOAT_EQ(m.layers.specular_weight, 0.5f);
+    EXPECT_FLOAT_EQ(m.layers.specular_color[2], 0.5f);
+    EXPECT_EQ(m.specular[0], 0.25f);
+    EXPECT_EQ(m.shininess, 98);
+    EXPECT_EQ(read("").materials.back().values.model, RT_MODEL_WHITTED);
+    const Scene mapped = read("<specular>" + picture("other") + "</specular>" + shininess);
+    EXPECT_TRUE(mapped.warnings.empty()) << mapped.warnings[0];
+    EXPECT_NE(mapped.materials.back().maps[RT_MAP_SPECULAR_COLOR], RT_NONE);
+    EXPECT_EQ(mapped.materials.back().values.specular[2], 1);
+}
+
 TEST(ColladaMaterials, SayWhichPicturesAreLeftOut) {
     NEEDS_IMPORTER("a.dae");
     const Scratch folder;
     const Scene scene = square(
         folder, kDiffuse + "<specular>" + picture("other") + "</specular><reflective>" + picture("other") + "</reflective>");
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("'m': left out the pictures of specular, reflection"), std::string::npos)
-        << scene.warnings[0];
+    EXPECT_NE(scene.warnings[0].find("'m': left out the pictures of reflection"), std::string::npos) << scene.warnings[0];
 }
 
 }  // namespace

@@ -31,6 +31,30 @@ class FbxSurface : public FbxForms {
 };
 INSTANTIATE_TEST_SUITE_P(Forms, FbxSurface, kFbxForms, fbx_form_name);
 
+TEST_P(FbxSurface, HighlightsOfPhongAreReflections) {
+    const std::vector<FbxNode> phong = {property("DiffuseColor", {0.5, 0.5, 0.5}), property("SpecularColor", {1, 0.5, 0}),
+                                        property("SpecularFactor", {0.25}), property("ShininessExponent", {98})};
+    const MaterialValues m = square(phong).materials.back().values;
+    EXPECT_EQ(m.model, RT_MODEL_GLTF);
+    EXPECT_FLOAT_EQ(m.roughness, std::sqrt(std::sqrt(2 / 100.0f)));
+    EXPECT_FLOAT_EQ(m.layers.specular_weight, 0.5f);
+    for (size_t k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(m.layers.specular_color[k], (std::array{1.0f, 0.5f, 0.0f}[k]));
+    EXPECT_FLOAT_EQ(m.specular[1], 0.125f) << "Whitted's highlight is that of the file";
+    EXPECT_EQ(m.shininess, 98);
+    EXPECT_EQ(square({property("DiffuseColor", {0.5, 0.5, 0.5})}).materials.back().values.model, RT_MODEL_WHITTED);
+    std::vector<FbxNode> mirror = phong;
+    mirror.push_back(property("ReflectionColor", {1, 1, 1}));
+    mirror.push_back(property("ReflectionFactor", {0.5}));
+    const Scene mapped = square(phong, {"SpecularColor"}), left_out = square(mirror, {"SpecularColor"});
+    EXPECT_TRUE(mapped.warnings.empty()) << mapped.warnings[0];
+    EXPECT_NE(mapped.materials.back().maps[RT_MAP_SPECULAR_COLOR], RT_NONE);
+    EXPECT_FLOAT_EQ(mapped.materials.back().values.specular[2], 0.25f) << "the picture replaces the colour";
+    EXPECT_EQ(left_out.materials.back().values.model, RT_MODEL_WHITTED);
+    EXPECT_EQ(left_out.materials.back().maps[RT_MAP_SPECULAR_COLOR], RT_NONE);
+    ASSERT_EQ(left_out.warnings.size(), 1u);
+    EXPECT_NE(left_out.warnings[0].find("'M': left out SpecularColor"), std::string::npos) << left_out.warnings[0];
+}
+
 TEST_P(FbxSurface, StandardSurfaceOfMaya) {
     const Scene scene =
         square({property("Maya|base", {0.5}), property("Maya|baseColor", {0.8, 0.6, 0.4}), property("Maya|specular", {0.7}),

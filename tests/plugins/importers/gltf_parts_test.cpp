@@ -76,7 +76,7 @@ TEST_F(GltfParts, AreAllReadWhereNothingIsWrong) {
     model["materials"][0]["extras"] = "x";
     const Scene scene = import(model);
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("materials[0] has KHR_materials_nobody_knows, which is left out"), std::string::npos);
+    EXPECT_NE(scene.warnings[0].find("material 'paint': left out KHR_materials_nobody_knows"), std::string::npos);
     EXPECT_EQ(scene.cameras.size(), 1u);
     EXPECT_EQ(scene.lights.size(), 1u);
     ASSERT_EQ(scene.textures.size(), 1u);
@@ -144,6 +144,12 @@ TEST_F(GltfParts, CostTexturesAndImages) {
                                     m["images"][0] = {{"bufferView", 44}};
                                 })),
               RT_NONE);
+    EXPECT_EQ(texture_of(spared("left out baseColorTexture (its picture is of KHR_texture_basisu alone)",
+                                [](Model& m) {
+                                    m["textures"][0].erase("source");
+                                    m["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 0}}}};
+                                })),
+              RT_NONE);
     const Scene wrong = spared(
         "samplers[0].wrapT: found 7, expected 10497 (repeat), 33071 (clamp to edge) or 33648 (mirrored "
         "repeat); the texture repeats",
@@ -156,6 +162,10 @@ TEST_F(GltfParts, CostTexturesAndImages) {
 TEST_F(GltfParts, CostNormalsAndTextureCoordinates) {
     EXPECT_TRUE(
         spared("attributes.NORMAL: found 99", [](Model& m) { m.primitive()["attributes"]["NORMAL"] = 99; }).normals.empty());
+    EXPECT_FALSE(
+        spared("attributes: the material names TEXCOORD_3, which is missing; TEXCOORD_0 takes its place", [](Model& m) {
+            m["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 3;
+        }).uvs.empty());
     EXPECT_TRUE(spared("; the texture coordinates are left out", [](Model& m) { m["accessors"][3]["count"] = 3; }).uvs.empty());
 }
 
@@ -236,6 +246,11 @@ TEST_F(GltfParts, MaterialsHaveTheLayersOfTheirExtensions) {
     EXPECT_EQ(core.layers.metallic, 0.25f);
     EXPECT_EQ(core.roughness, 0.5f);
     EXPECT_EQ(core.reflect, 0.125f) << "what Whitted's tracers show";
+    const MaterialValues gloss =
+        read(R"({"KHR_materials_pbrSpecularGlossiness": {"specularFactor": [0.04, 0.02, 0.5], "glossinessFactor": 0.75}})");
+    EXPECT_EQ(gloss.layers.metallic, 0);
+    EXPECT_EQ(gloss.roughness, 0.25f);
+    for (size_t k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(gloss.layers.specular_color[k], (std::array{1.0f, 0.5f, 12.5f}[k]));
     EXPECT_EQ(read(R"({"KHR_materials_unlit": {}})").model, RT_MODEL_UNLIT);
     EXPECT_EQ(read(R"({"KHR_materials_ior": {"ior": 1.25}})").ior, 1.25f);
     EXPECT_EQ(read(R"({"KHR_materials_ior": {"ior": 0}})").ior, 1e-3f) << "reflects all";
@@ -270,7 +285,7 @@ TEST_F(GltfParts, MaterialsHaveTheLayersOfTheirExtensions) {
                            more.iridescence_thickness};
     const float expected[] = {0.125f, 2, 0.375f, 0.625f, 0.75f, 0.875f, 0.5f, 57.29578f, 0.75f, 1.75f, 50, 250};
     for (size_t i = 0; i < std::size(expected); ++i) EXPECT_FLOAT_EQ(found[i], expected[i]) << i;
-    spared("materials[0] has EXT_a, EXT_b, which is left out", [](Model& m) {
+    spared("material 'paint': left out EXT_a, EXT_b", [](Model& m) {
         m["materials"][0]["extensions"] = json::parse(R"({"EXT_a": {}, "KHR_materials_sheen": {}, "EXT_b": {}})");
     });
     spared("materials[0].extensions.KHR_materials_clearcoat.clearcoatFactor: found 'much'", [](Model& m) {

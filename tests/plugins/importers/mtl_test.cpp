@@ -1,4 +1,6 @@
 // mtl_test.cpp -- what becomes of the materials of OBJ files.
+#include <cmath>
+
 #include "mesh_files.hpp"
 
 namespace clarity::test {
@@ -192,15 +194,45 @@ TEST_F(Mtl, ModelsOfIllumination) {
     EXPECT_TRUE(warns(square_of("illum 10"), "'a': left out illum"));
 }
 
+// A strength of 1 is a reflectance of 0.08 straight on: that of glTF's plain surface, 0.04, times weight and colour.
+TEST_F(Mtl, HighlightsAreReflections) {
+    folder_.write("four.ppm", picture());
+    const MaterialValues plastic = values_of("Ks .5 .5 .5\nNs 98\nillum 2");
+    EXPECT_EQ(plastic.model, RT_MODEL_GLTF);
+    EXPECT_FLOAT_EQ(plastic.roughness, std::sqrt(std::sqrt(2 / 100.0f)));
+    EXPECT_EQ(plastic.ior, 1.5f);
+    EXPECT_EQ(plastic.layers.metallic, 0);
+    EXPECT_FLOAT_EQ(plastic.layers.specular_weight, 1);
+    EXPECT_FLOAT_EQ(plastic.layers.specular_color[1], 1);
+    EXPECT_EQ(plastic.specular[1], 0.5f) << "Whitted's highlight is that of the file";
+    EXPECT_EQ(plastic.shininess, 98);
+    EXPECT_EQ(plastic.reflect, 0);
+    const MaterialValues weak = values_of("Ks .25 .125 0"), strong = values_of("Ks 1 .5 .5");
+    EXPECT_FLOAT_EQ(weak.layers.specular_weight, 0.5f);
+    for (size_t k = 0; k < 3; ++k) EXPECT_FLOAT_EQ(weak.layers.specular_color[k], (std::array{1.0f, 0.5f, 0.0f}[k]));
+    EXPECT_FLOAT_EQ(strong.layers.specular_weight, 1);
+    EXPECT_FLOAT_EQ(strong.layers.specular_color[0], 2);
+    for (const char* dull : {"Ks 0 0 0\nillum 2", "Ks .5 .5 .5\nillum 1", "Ks .5 .5 .5\nillum 3", "Ks .5 .5 .5\nd .5\nillum 4"})
+        EXPECT_EQ(values_of(dull).model, RT_MODEL_WHITTED) << dull;
+    const Scene mapped = square_of("map_Ks -s 2 2 four.ppm\nNs 30");
+    EXPECT_TRUE(mapped.warnings.empty()) << mapped.warnings[0];
+    const Material& m = mapped.materials.back();
+    EXPECT_EQ(m.values.specular[0], 1) << "the picture is the strength";
+    ASSERT_NE(m.maps[RT_MAP_SPECULAR_COLOR], RT_NONE);
+    EXPECT_EQ(mapped.maps[m.maps[RT_MAP_SPECULAR_COLOR]].matrix[0], 2);
+    EXPECT_EQ(mapped.textures[mapped.maps[m.maps[RT_MAP_SPECULAR_COLOR]].texture].flags, 0u) << "a colour";
+}
+
 // One warning for each material that is used, whatever its number of statements.
 TEST_F(Mtl, WhatIsLeftOutIsOneWarningForEachMaterial) {
-    folder_.write("m.mtl",
-                  "newmtl a\nKa 1 1 1\nmap_Ks x.png\ndisp y.png\nsharpness 60\nnewmtl b\nKm .5\nmap_Ns -mm 0 2 z.png\n"
-                  "newmtl c\nfoo 1\nnewmtl d\nKd 1 1 1\n");
+    folder_.write(
+        "m.mtl",
+        "newmtl a\nKa 1 1 1\nKs 1 1 1\nillum 3\nmap_Ks x.png\ndisp y.png\nsharpness 60\nnewmtl b\nKm .5\nmap_Ns -mm 0 2 z.png\n"
+        "newmtl c\nfoo 1\nnewmtl d\nKd 1 1 1\n");
     const Scene scene =
         import("a.obj", "mtllib m.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl d\nf 1 3 4\n");
     ASSERT_EQ(scene.warnings.size(), 2u);
-    EXPECT_TRUE(warns(scene, "material 'a': left out map_Ks, disp")) << scene.warnings[0];
+    EXPECT_TRUE(warns(scene, "material 'a': left out disp, map_Ks")) << scene.warnings[0];
     EXPECT_TRUE(warns(scene, "material 'b': left out Km, map_Ns")) << scene.warnings[1];
 }
 
