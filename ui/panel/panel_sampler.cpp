@@ -49,7 +49,7 @@ void plot(const SamplerPoints& points, const Strata& strata, unsigned across, un
 }  // namespace
 
 void draw_sampler_rows(const SamplerPoints& points, UiState& state) {
-    if (points.dimensions < 2 || !folding_section("SAMPLER", false)) return;
+    if (points.dimensions < 2 || !folding_section("SAMPLER")) return;
     dimension_row("Across", "the random number that is shown from left to right", points.dimensions, state.points_across);
     dimension_row("Up", "the random number that is shown from below to above", points.dimensions, state.points_up);
     const auto across = static_cast<unsigned>(state.points_across), up = static_cast<unsigned>(state.points_up);
