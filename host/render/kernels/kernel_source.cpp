@@ -95,9 +95,9 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
     KernelSource source;
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;
-    // Exception: with instances, polygons or shapes more registers would be spilled, which costs more than the limit gains.
-    source.limit_registers =
-        row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons && !features.shapes;
+    // Of Whitted's tracers instances, polygons and shapes would spill more registers, which costs more than the limit gains.
+    const bool is_plain = !features.instances && !features.polygons && !features.shapes;
+    source.limit_registers = !layout.cpu && (row.has(kLimitRegistersAlways) || (row.has(kLimitRegisters) && is_plain));
 
     SourceWriter out;
     write_layout(out, layout);
@@ -116,7 +116,8 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
 
     source.scene_arguments = write_preamble(out, layout, accel, scene, features, row);
     write_queries(out, row, layout, features, accel);
-    for (const char* name : {"lanes/vec.h", "shading/surface.h", "shading/point.h", "tracers/camera.h"}) out.include(name);
+    for (const char* name : {"lanes/vec.h", "shading/power.h", "shading/surface.h", "shading/point.h", "tracers/camera.h"})
+        out.include(name);
     for (const char* name : row.headers) out.include(name);
     out.include(row.file);
 
