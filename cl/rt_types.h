@@ -114,13 +114,14 @@ typedef struct rt_emitter {
     rt_u32 kind;     /* RT_LIGHT_* or RT_EMITTER_* */
     rt_u32 at;       /* number of the light; position of the primitive in leaf order */
     rt_u32 instance; /* of the primitive; RT_NONE: it is in the world */
-    rt_u32 prim;
+    rt_u32 leaf;     /* node of the light tree, by which it is picked; `pick` is then that of the tree. RT_NONE: the table picks it */
     rt_f32 area;     /* of a polygon, one side */
 } rt_emitter;
 #define RT_PICK_BITS 24u
 #define RT_PICKS 16777216
 #define RT_EMITTER_SURFACE RT_LIGHT_KINDS
 #define RT_EMITTER_SKY (RT_LIGHT_KINDS + 1u)
+#define RT_EMITTER_TREE (RT_LIGHT_KINDS + 2u) /* stands in the table for all emitters of the light tree */
 /* Numbers of what shines and is no light of the frame. */
 #define RT_LIGHT_OF_SURFACES 0x40000000
 #define RT_LIGHT_OF_SKY 0x40000001
@@ -159,6 +160,21 @@ typedef struct rt_emitter {
 #define RT_LIGHTS_SOLID (RT_LIGHTS_FLAT | 1u << RT_LIGHT_SPHERE) /* they are somewhere, with a size */
 #define RT_LIGHTS_BEYOND (1u << RT_LIGHT_SUN | 1u << RT_EMITTER_SKY)
 #define RT_LIGHTS_GIVEN ((1u << RT_LIGHT_KINDS) - 1u) /* lights of the frame, of any kind */
+
+/* A node of the light tree (shading/light_tree.h): what bounds the emitters below it. They lie in a box, and shine within an angle of
+ * directions that lie within an angle of an axis. 64 B. */
+typedef struct rt_light_node {
+    rt_f32 lower[3];
+    rt_f32 intensity; /* sum of their intensities straight on, as a share of the tree's */
+    rt_f32 upper[3];
+    rt_f32 cos_spread; /* cosine of the angle around the axis */
+    rt_f32 axis[3];    /* unit */
+    rt_f32 cos_reach;  /* cosine of the angle around each direction */
+    rt_u32 two_sided;  /* the same holds around the opposite axis */
+    rt_u32 child;      /* number of the first of two children, which follow each other; RT_NONE: a leaf */
+    rt_u32 emitter;    /* of a leaf */
+    rt_u32 parent;     /* RT_NONE: the root, which is node 0 */
+} rt_light_node;
 
 /* Primitives of consecutive numbers that are emitters of consecutive numbers, as many as up to the next run's first emitter. 8 B. */
 typedef struct rt_emitter_run {

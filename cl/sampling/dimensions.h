@@ -11,7 +11,7 @@
  *                3           Russian roulette
  *   2 + 2 event  0           pick of a light
  *                1, 2        point or direction of that light
- *                3           free
+ *                3           the light tree, if the pick is of it
  *   beyond       0           whether a surface that is there in part stops the ray: a set for each that it meets before its next event */
 #ifndef RT_DIMENSIONS_H
 #define RT_DIMENSIONS_H

@@ -43,6 +43,16 @@ RT_INLINE vmask rt_is_diffuse(const rt_bsdf *b)
     return RT_MASK(b->diffuse > rt_vfloat(0.0f));
 #endif
 }
+/* The lanes with light that comes from the other side. */
+RT_INLINE vmask rt_lets_through(const rt_bsdf *b)
+{
+    const vfloat zero = rt_vfloat(0.0f);
+    vmask through = RT_MASK(b->glass > zero);
+#if RT_MAY_SCATTER(RT_LOBE_LAYERS)
+    through |= b->layered.lanes & RT_MASK(b->layered.thin > zero);
+#endif
+    return through;
+}
 RT_INLINE vmask rt_is_sheet(const rt_bsdf *b)
 {
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)

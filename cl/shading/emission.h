@@ -1,5 +1,5 @@
 /* emission.h -- what a ray finds of light: area lights, which are no primitives, and surfaces that emit; and the density with which
- * rt_light_draw() would have drawn the same direction from the ray's origin. */
+ * rt_light_draw() would have drawn the same direction from the ray's origin, with the normal of the surface that it left. */
 #ifndef RT_EMISSION_H
 #define RT_EMISSION_H
 
@@ -35,7 +35,7 @@ RT_INLINE void rt_hit_lights(const rt_ctx *ctx, const constant rt_frame *frame, 
 }
 
 /* The radiance of the area lights that rays found at distances t, for the lanes with light >= 0. */
-RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfloat t, vint light, vmask lanes, vfloat *pdf)
+RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfloat t, vint light, vmask lanes RT_TREE_ARG(rt_vec normal), vfloat *pdf)
 {
     const vfloat zero = rt_vfloat(0.0f);
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
@@ -52,14 +52,20 @@ RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfl
             const vfloat cosine = fabs(rt_dot(rt_spread(l->normal), rt_vec_of(ray->dx, ray->dy, ray->dz)));
             density = rt_flat_density(t * t, rt_vfloat(rt_flat_side(l)), rt_max(cosine, rt_vfloat(1e-20f)));
         }
-        *pdf = rt_select(mine, rt_vfloat(ctx->emitters[i].pick) * density, *pdf);
+#ifdef RT_LIGHT_TREE
+        const vfloat pick = rt_picks_of(ctx, ctx->emitters + i, rt_vec_of(ray->ox, ray->oy, ray->oz), normal, rt_bits(mine));
+#else
+        const vfloat pick = rt_vfloat(ctx->emitters[i].pick);
+#endif
+        *pdf = rt_select(mine, pick * density, *pdf);
         sum = rt_choose(mine, rt_spread(l->color), sum);
     }
     return sum;
 }
 
 /* The radiance that the surfaces of hits emit towards the rays' origins. pdf is 0 where no light is drawn from that surface. */
-RT_PART rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, const rt_surface *surface, vmask lanes, vfloat *pdf)
+RT_PART rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, const rt_surface *surface, vmask lanes
+                                  RT_TREE_ARG(rt_vec normal), vfloat *pdf)
 {
     const vfloat zero = rt_vfloat(0.0f);
     const rt_vec direction = rt_vec_of(ray->dx, ray->dy, ray->dz);
@@ -96,12 +102,21 @@ RT_PART rt_vec rt_emission_of_hit(const rt_ctx *ctx, const rt_rays *ray, const r
     rt_store(hit->instance, instance);
     for (uint l = 0; l < RT_LANES; ++l) pick[l] = 0.0f, size[l] = 1.0f, middle[l] = middle[RT_LANES + l] = middle[2 * RT_LANES + l] = 0.0f;
     vmask round = rt_vint(0);
+#ifdef RT_LIGHT_TREE
+    float points[6 * RT_LANES];
+    rt_store_lit_points(rt_vec_of(ray->ox, ray->oy, ray->oz), normal, points);
+#endif
     for (; left != 0u; left &= left - 1u) {
         const uint l = rt_lowest(left);
         const global rt_emitter *e = rt_emitter_of_prim(ctx, (uint)prim[l]);
         if (!e || leaf_at[l] < 0) continue;
         const global rt_packed_prim *leaf = ctx->leaves + leaf_at[l];
+#ifdef RT_LIGHT_TREE
+        const rt_lit_point point = rt_lit_point_of(points, l);
+        pick[l] = rt_pick_of(ctx, e, &point);
+#else
         pick[l] = e->pick;
+#endif
 #if RT_HAS_SPHERES
         if (RT_REF_KIND(leaf->ref) == RT_REF_SPHERE) {
             for (int k = 0; k < 3; ++k) middle[k * (int)RT_LANES + (int)l] = leaf->a[k];

@@ -216,20 +216,35 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
     return kind;
 }
 
-/* The emitters that the numbers u_pick of [0, 1) pick. u1: a second number, for what an emitter consists of. */
-RT_INLINE rt_lit rt_pick_emitters(const rt_ctx *ctx, vfloat u_pick, vfloat u1)
+/* The emitters that the numbers u_pick of [0, 1) pick. u1: a second number, for what an emitter consists of. u_tree, at, normal: a number
+ * for the light tree, and where light is asked for. */
+RT_INLINE rt_lit rt_pick_emitters(const rt_ctx *ctx, vfloat u_pick, vfloat u1 RT_TREE_ARG(vfloat u_tree) RT_TREE_ARG(rt_vec at) RT_TREE_ARG(rt_vec normal))
 {
     const uint rest_bits = RT_PICK_BITS - ctx->lighting->cell_bits;
     int number[RT_LANES], kind[RT_LANES], light[RT_LANES], falloff[RT_LANES], two_sided[RT_LANES], map[RT_LANES];
     float first[RT_LANES], columns[RT_LIT_FIELDS * RT_LANES];
     rt_store(min(max(rt_to_int(u_pick * rt_vfloat((float)RT_PICKS)), rt_vint(0)), rt_vint(RT_PICKS - 1)), number);
     rt_store(u1, first);
+#ifdef RT_LIGHT_TREE
+    float in_tree[RT_LANES], points[6 * RT_LANES];
+    rt_store(u_tree, in_tree);
+    rt_store_lit_points(at, normal, points);
+#endif
     for (uint l = 0; l < RT_LANES; ++l) {
         const uint cell = (uint)number[l] >> rest_bits, rest = (uint)number[l] & ((1u << rest_bits) - 1u);
         const global rt_emitter *e = ctx->emitters + cell;
         if (rest >= e->threshold) e = ctx->emitters + e->alias;
         uint flags;
+#ifdef RT_LIGHT_TREE
+        float chance = 1.0f;
+        if (e->kind == RT_EMITTER_TREE) {
+            const rt_lit_point point = rt_lit_point_of(points, l);
+            const uint picked = rt_descend_lights(ctx, &point, in_tree[l], &chance);
+            if (chance > 0.0f) e = ctx->emitters + picked;
+        }
+#endif
         kind[l] = (int)rt_load_emitter(ctx, e, first[l], &flags, map + l, columns + l);
+        RT_BY_TREE(columns[(int)RT_LIT_PICK * (int)RT_LANES + (int)l] *= chance;)
         light[l] = (int)e->at;
         if (e->kind == RT_EMITTER_SURFACE) light[l] = (int)RT_LIGHT_OF_SURFACES;
         if (e->kind == RT_EMITTER_SKY) light[l] = (int)RT_LIGHT_OF_SKY;

@@ -198,9 +198,10 @@ RT_INLINE rt_vec rt_drawn_map(const rt_ctx *ctx, const rt_lit *lit, vfloat u1, v
 }
 #endif
 
-/* Draws a light and a direction towards it from the points `at`, by three random numbers of [0, 1). */
+/* Draws a light and a direction towards it from the points `at`, by three random numbers of [0, 1). u_tree, normal: see
+ * rt_pick_emitters(). */
 RT_PART rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame *frame, rt_vec at, vfloat u_pick, vfloat u1, vfloat u2,
-                                        vmask lanes)
+                                        vmask lanes RT_TREE_ARG(vfloat u_tree) RT_TREE_ARG(rt_vec normal))
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     rt_light_sample out;
@@ -211,7 +212,7 @@ RT_PART rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame
     out.valid = out.delta = rt_vint(0);
     out.light = rt_vint(-1);
     if (ctx->lighting->emitter_count == 0u) return out;
-    const rt_lit lit = rt_pick_emitters(ctx, u_pick, u1);
+    const rt_lit lit = rt_pick_emitters(ctx, u_pick, u1 RT_TREE_ARG(u_tree) RT_TREE_ARG(at) RT_TREE_ARG(normal));
     lanes &= RT_MASK(lit.pick > zero);
     out.light = lit.light;
     const vfloat legacy = rt_select(lit.falloff, one, rt_vfloat(RT_PI)); /* irradiance of lights without falloff: pi times color */

@@ -105,6 +105,11 @@ void add_why(CLI::App& app, WhyCommand& why) {
     single(app.add_option("--csv", why.csv_file,
                           "Write the ten brightest paths: each event and each light, with throughput, densities and weight"))
         ->type_name("FILE");
+    single(app.add_option(
+               "--points", why.points_file,
+               "Write the random numbers of all samples, a column for each dimension: pixel, lens, and of each event up to "
+               "--depth"))
+        ->type_name("FILE");
     app.add_flag("--json", why.json, "As JSON");
     single(
         app.add_option("--fps", why.fps, "Frames a second, of which --shutter is a share; default: those of the clip, else 24"))

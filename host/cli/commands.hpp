@@ -106,10 +106,11 @@ struct WhyCommand {
     SceneOptions scene;
     TraceOptions trace;
     PoseOptions pose;
-    double fps = 0;        // for motion blur; 0: the clip's own
-    std::string pixel;     // x,y from the top left
-    int samples = 0;       // 0: those of `trace`, or a number that suits
-    std::string csv_file;  // gets the brightest paths; "": none
+    double fps = 0;           // for motion blur; 0: the clip's own
+    std::string pixel;        // x,y from the top left
+    int samples = 0;          // 0: those of `trace`, or a number that suits
+    std::string csv_file;     // gets the brightest paths; "": none
+    std::string points_file;  // gets the random numbers of all samples
     bool json = false, quiet = false;
 };
 int run_why(const PluginRegistry& plugins, const WhyCommand& command);

@@ -42,7 +42,8 @@ Pixel pixel_of(const std::string& text, const Settings& settings) {
 }
 
 // The samples are those of the first device alone: others of its kind would give the same.
-Replay replay_of(const PluginRegistry& plugins, FrameScene& scene, TraceWords& words, const Pixel& pixel, Progress& progress) {
+Replay replay_of(const PluginRegistry& plugins, FrameScene& scene, TraceWords& words, const Pixel& pixel, SamplerPoints* points,
+                 Progress& progress) {
     Settings& settings = words.settings;
     const Devices devices = open_devices({choose_device(words.device)});
     MultiPreparer preparer(plugins, devices);
@@ -62,6 +63,9 @@ Replay replay_of(const PluginRegistry& plugins, FrameScene& scene, TraceWords& w
         const MotionBlur::Sample& sample = blur->at(s, scene.view(), part);
         trace(*sample.prepared, scene.view(sample), 1, part);
     }
+    if (points)
+        *points = replayer.points(*prepared->first(), settings, scene.view(), pixel.x, pixel.y, samples,
+                                  unsigned(settings.depth), progress);
     return replay;
 }
 
@@ -159,7 +163,8 @@ void print_report(const Replay& replay, const NoiseReport& report, const NoiseNa
 }  // namespace
 
 int run_why(const PluginRegistry& plugins, const WhyCommand& command) {
-    if (!command.csv_file.empty()) check_writable(command.csv_file);
+    for (const std::string& file : {command.csv_file, command.points_file})
+        if (!file.empty()) check_writable(file);
     RenderOptions options;
     options.scene = command.scene;
     options.trace = command.trace;
@@ -187,12 +192,14 @@ int run_why(const PluginRegistry& plugins, const WhyCommand& command) {
     const import::ImportOptions with_pictures = import_options(options.scene, words);
     scene.take(std::make_shared<const Scene>(import::import_scene(plugins, options.scene.files, with_pictures, progress)));
     scene.place({});
-    const Replay replay = replay_of(plugins, scene, words, pixel, progress);
+    SamplerPoints points;
+    const Replay replay = replay_of(plugins, scene, words, pixel, command.points_file.empty() ? nullptr : &points, progress);
     progress.clear();
     const NoiseNames names = noise_names(*scene.scene(), scene.view(), settings);
     const NoiseReport report = noise_report(replay, names);
     if (!command.csv_file.empty())
         write_text_file(command.csv_file, paths_csv(replay, report.brightest, names, *scene.scene()));
+    if (!command.points_file.empty()) write_text_file(command.points_file, points_csv(points));
     const bool may_rest = adaptive_bound(settings) > 0;
     if (command.json)
         print_json(report, pixel, may_rest);

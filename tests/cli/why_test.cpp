@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "base/pictures/picture_read.hpp"
 #include "cli/run_program.hpp"
@@ -143,6 +145,36 @@ TEST_F(Why, WritesTheBrightestPaths) {
     for (const Json& sample : json["brightest"])
         EXPECT_NE(text.find("\n" + sample.dump() + ",begins,0,"), std::string::npos) << sample;
     EXPECT_NE(text.find("transmission smooth,,\"clear\""), std::string::npos) << text.substr(0, 2000);
+}
+
+// Of `sobol` the first two dimensions of a set have one point in each of 16 x 16 cells; `independent` leaves cells empty.
+TEST_F(Why, WritesTheNumbersOfTheSampler) {
+    for (const std::string sampler : {"sobol", "independent"}) {
+        const std::string file = scratch_.path(sampler + ".csv");
+        const Json json =
+            why(kLamp, {"--pixel", "32,24", "--samples", "256", "--depth", "2", "--sampler", sampler, "--points", file});
+        ASSERT_FALSE(json.is_null());
+        std::istringstream lines(scratch_.read(sampler + ".csv"));
+        std::string line;
+        std::getline(lines, line);
+        EXPECT_EQ(line.rfind("sample,pixel x,pixel y,lens u,lens v,event 1 lobe,event 1 direction u,", 0), 0u) << line;
+        EXPECT_EQ(std::count(line.begin(), line.end(), ','), 4 + 2 * 8);
+        std::set<std::pair<int, int>> pixel, light;
+        int samples = 0;
+        while (std::getline(lines, line)) {
+            std::vector<double> fields;
+            std::istringstream words(line);
+            for (std::string word; std::getline(words, word, ',');) fields.push_back(std::stod(word));
+            ASSERT_EQ(fields.size(), 21u);
+            EXPECT_EQ(fields[0], samples++);
+            for (size_t i = 1; i < fields.size(); ++i) ASSERT_TRUE(fields[i] >= 0 && fields[i] < 1) << line;
+            pixel.emplace(int(fields[1] * 16), int(fields[2] * 16));
+            light.emplace(int(fields[9] * 16), int(fields[10] * 16));
+        }
+        EXPECT_EQ(samples, 256);
+        EXPECT_EQ(pixel.size() == 256, sampler == "sobol");
+        EXPECT_EQ(light.size() == 256, sampler == "sobol");
+    }
 }
 
 TEST_F(Why, RefusesWhatItCannotDo) {

@@ -16,7 +16,7 @@ fail() { echo "$*" >&2; exit 1; }
 
 docs=$(dirname "$(find "$prefix" -name write_an_importer.md)")
 [ -f "$docs/plugins.md" ] || fail "the pages are not installed together"
-for page in plugins plugin_abi clarity_bvh check write_an_acceleration_structure write_an_importer write_a_shape; do
+for page in plugins plugin_abi clarity_bvh check write_an_acceleration_structure write_an_importer write_a_shape light_exercises; do
     # Links stand in the text, not in blocks.
     for link in $(awk '/^```/ { code = !code; next } !code' "$docs/$page.md" | grep -o '](\([^)# ]*\)[^) ]*)' | sed 's/^](//; s/[#)].*//' | grep -v '^http' | sort -u); do
         [ -e "$docs/$link" ] || fail "$page.md: the link '$link' leads to nothing where it is installed"
@@ -36,6 +36,7 @@ follow write_an_acceleration_structure
 follow write_an_importer
 follow write_a_shape
 follow plugins
+follow light_exercises
 for picture in write_an_acceleration_structure/boxes write_an_acceleration_structure/tree write_an_importer/house write_a_shape/dish plugins/median; do
     [ -s "$root/my $picture.png" ] || fail "the page wrote no $picture.png"
 done

@@ -160,6 +160,55 @@ TEST_F(Mouse, ADragOrbitsAndPicksNothing) {
     EXPECT_NEAR(distance(now["eye"], now["target"]), 5, 1e-3);
 }
 
+// Ctrl + drag: that part alone is traced, bit for bit, the rest is darker. Clicks find the pixels of the whole. V traces it
+// all.
+TEST_F(Mouse, ADragWithCtrlTracesAPart) {
+    const auto was = window->state();
+    const Pixels whole = window->picture();
+    window->key_down("ctrl");
+    window->drag(at(-1.6, 0.6), at(-0.4, -0.5));
+    window->key_up("ctrl");
+    window->settle();
+    expect_same_view(was);
+    const std::string line = window->query("command_line part.png")["command"];
+    int x = 0, y = 0, w = 0, h = 0;
+    const size_t option = line.find(" --crop ");
+    ASSERT_NE(option, std::string::npos) << line;
+    ASSERT_EQ(std::sscanf(line.c_str() + option, " --crop %d,%d,%d,%d", &x, &y, &w, &h), 4) << line;
+    const Place first = pixel_of(-1.6, 0.6), last = pixel_of(-0.4, -0.5);
+    EXPECT_NEAR(x, first.x, 2);
+    EXPECT_NEAR(y, first.y, 2);
+    EXPECT_NEAR(x + w, last.x, 2);
+    EXPECT_NEAR(y + h, last.y, 2);
+    const Pixels part = window->picture();
+    ASSERT_EQ(part.width, kWidth);
+    ASSERT_EQ(part.height, kHeight);
+    const auto sum_of = [](const Pixels& of, int column, int row) {
+        const unsigned char* const p = &of.rgb[3 * (size_t(row) * size_t(of.width) + size_t(column))];
+        return p[0] + p[1] + p[2];
+    };
+    for (int row = 0; row < kHeight; ++row)
+        for (int column = 0; column < kWidth; ++column) {
+            const bool inside = column >= x && column < x + w && row >= y && row < y + h;
+            const int now = sum_of(part, column, row), then = sum_of(whole, column, row);
+            if (inside)
+                ASSERT_EQ(now, then) << column << "," << row;
+            else
+                ASSERT_LT(now, std::max(1, then)) << column << "," << row;
+        }
+    EXPECT_EQ(selected_by_click(-1, 0)["instance"], 0);  // in the part
+    EXPECT_EQ(selected_by_click(1, 0)["instance"], 1);   // and beside it
+    const std::string saved = folder.path() + "/part.png";
+    save(*window, saved);
+    const Pixels file = read_png(saved);
+    EXPECT_EQ(file.width, w);
+    EXPECT_EQ(file.height, h);
+    window->key("v");
+    window->settle();
+    EXPECT_EQ(difference(window->picture(), whole, 0), 0);
+    EXPECT_EQ(std::string(window->query("command_line part.png")["command"]).find("--crop"), std::string::npos);
+}
+
 TEST_F(Mouse, TheViewersMapLooksAround) {
     ASSERT_EQ(window->command("map viewer"), "");
     const auto was = window->state();

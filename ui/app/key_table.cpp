@@ -52,6 +52,8 @@ void add_common(KeyMap& map) {
              [](KeyTarget& to) { to.state.show_lights = !to.state.show_lights; }),
         once(GLFW_KEY_M, "M", "show handles that move, turn and scale what is selected",
              [](KeyTarget& to) { to.state.move_handles = !to.state.move_handles; }),
+        once(GLFW_KEY_V, "V", "trace the whole picture again, after a part of it",
+             [](KeyTarget& to) { to.session.desired.part.reset(); }),
         once(GLFW_KEY_G, "G", "bring what is selected into view, or all", [](KeyTarget& to) { frame_selection(to.session); }),
         once(GLFW_KEY_B, "B", "bookmark this view", add_bookmark),
         once(GLFW_KEY_N, "N", "next bookmark, or camera of the file", go_to_next_bookmark),

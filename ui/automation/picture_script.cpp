@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "ui/automation/scripted_window.hpp"
 
 namespace clarity::ui {
@@ -15,6 +16,14 @@ CompareMode mode_of(const std::string& text) {
     if (text == "side") return CompareMode::side_by_side;
     if (text == "difference") return CompareMode::difference;
     throw Error(Exit::usage, "no mode `" + text + "`; there are wipe, side, difference");
+}
+
+// "x,y,width,height" in shares of the picture, or "off".
+std::optional<PicturePart> part_of(const std::string& text) {
+    if (text == "off") return std::nullopt;
+    const std::vector<float> n = read_numbers<float>(text);
+    if (n.size() != 4) throw Error(Exit::usage, "part: expected x,y,width,height or off");
+    return PicturePart{n[0], n[1], n[2], n[3]};
 }
 
 nlohmann::json json_of(const Rect& rect) {
@@ -50,6 +59,8 @@ bool run_picture_command(ScriptedWindow& window, const std::string& command, con
         state.show_rays = text == "1";
     else if (command == "lights")
         state.show_lights = text == "1";
+    else if (command == "part")
+        window.session.desired.part = part_of(text);
     else if (command == "behind")
         window.overlay.hide_behind(text == "0");
     else if (command == "layout")

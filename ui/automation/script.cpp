@@ -388,7 +388,7 @@ std::string Script::state_text(ScriptedWindow& window) const {
         json["packet"] = std::to_string(s.packet_w) + "x" + std::to_string(s.packet_h);
         json["lanes"] = s.lanes;
         json["depth"] = s.depth;
-        json["size"] = std::to_string(s.width) + "x" + std::to_string(s.height);
+        json["size"] = std::to_string(s.whole_width()) + "x" + std::to_string(s.whole_height());
         json["samples"] = picture->main.stats.samples;
         json["convergence"] = convergence_json(picture->main.convergence);
         json["spp"] = s.spp;

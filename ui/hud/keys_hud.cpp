@@ -96,6 +96,7 @@ void draw_key_table(const UiState& state) {
         ImGui::PopFont();
     }
     mouse_line("Left drag", "orbit about the target", "look around");
+    mouse_line("Ctrl + left drag", "trace that part of the picture alone; V: all of it", "the same");
     mouse_line("Middle, right drag", "shift the view", "shift the view");
     mouse_line("Wheel", "nearer, farther", "nearer, farther");
     mouse_line("Click", "select, and inspect the pixel", "the same");

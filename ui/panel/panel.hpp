@@ -22,6 +22,7 @@ void draw_sky_rows(Session& session);
 void draw_bookmark_rows(Session& session, UiState& state);
 void draw_inspect_tab(Session& session, UiState& state);
 void draw_noise_rows(Session& session, UiState& state, unsigned x, unsigned y);  // why that pixel is noisy
+void draw_sampler_rows(const SamplerPoints& points, UiState& state);
 void draw_statistics_tab(Session& session);
 void draw_log_tab(Session& session, UiState& state);
 void draw_plugins_tab(Session& session);

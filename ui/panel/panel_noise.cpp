@@ -158,6 +158,7 @@ void report_rows(Session& session, UiState& state, const NoiseInspection& noise)
     ImGui::SameLine();
     if (button("Save CSV", "the brightest paths with throughput, densities and weights, into the folder of pictures", half))
         save_csv(session, state, noise);
+    draw_sampler_rows(noise.points, state);
 }
 
 }  // namespace

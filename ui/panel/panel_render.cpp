@@ -152,11 +152,24 @@ void size_rows(Session& session, const UiState& state) {
         session.desired.moving_fps = fps < 0.5f ? 0 : fps;
 }
 
+void part_row(Session& session) {
+    const std::optional<PicturePart>& part = session.desired.part;
+    row_label("Part", "Ctrl + drag on the picture: that part alone is traced, with the pixels of the whole picture; as --crop");
+    if (!part) return dim_text("all of it");
+    const Settings& settings = session.desired.main.settings;
+    if (button((crop_text(*part, settings.width, settings.height) + "##part").c_str(), "trace all of it again (V)", -FLT_MIN))
+        session.desired.part.reset();
+    note_rect("Part");
+}
+
 void group_rows(SettingGroup group, Session& session, const UiState& state) {
     for (const Setting& row : settings_table()) {
         if (row.group != group || !row.used(session.edited().settings)) continue;
         setting_row(row, session.settings_for(row.key));
-        if (row.key == "size") size_rows(session, state);
+        if (row.key == "size") {
+            size_rows(session, state);
+            part_row(session);
+        }
     }
 }
 

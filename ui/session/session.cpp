@@ -222,6 +222,7 @@ void Session::post_frame() {
     job.continuous = desired.continuous;
     // Samples that are spread in time have their number beforehand.
     job.equal_time = desired.other && desired.equal_time && find_aov(ready_->main.settings.aov).adds_samples();
+    job.part = desired.part;
     job.resolution_scale = std::clamp(desired.resolution_scale, 0.05f, 4.0f);
     const bool first = !posted_job_.ready;
     const bool moved = !first && (!same_view(job.view, posted_job_.view) ||
@@ -242,7 +243,8 @@ void Session::post_frame() {
     job.equal_time &= job.open_s <= 0;
     const bool anew = first || moved || other_times || job.equal_time != posted_job_.equal_time ||
                       job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
-                      job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
+                      job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale ||
+                      job.part != posted_job_.part;
     const bool filtered = job.settings.denoise == "moving" && job.moving != posted_job_.moving;
     const bool shown = first || filtered || !displays_same(job.settings, posted_job_.settings);
     const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||

@@ -107,7 +107,8 @@ std::string Session::render_command(const std::string& output) const {
     preset.device = ready_->main.devices_text();
     std::vector<std::string> files = ready_->loaded->files;
     for (std::string& file : files) file = std::filesystem::absolute(file).lexically_normal().string();
-    return clarity::render_command(plugins_, preset, files, output);
+    const std::string command = clarity::render_command(plugins_, preset, files, output);
+    return desired.part ? command + " --crop " + crop_text(*desired.part, width, height) : command;
 }
 
 }  // namespace clarity::ui

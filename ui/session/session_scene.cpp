@@ -9,10 +9,20 @@
 #include "ui/session/session.hpp"
 
 namespace clarity::ui {
+namespace {
+
+// Pixels are those of the whole picture, also if a part of it is traced.
+FrameJob whole_job(const Picture& picture) {
+    FrameJob job = picture.job;
+    job.settings = of_whole(job.settings);
+    return job;
+}
+
+}  // namespace
 
 void Session::inspect(unsigned x, unsigned y) {
     if (!picture_) return;
-    inspector_.ask(picture_->job, x, y);
+    inspector_.ask(whole_job(*picture_), x, y);
 }
 
 void Session::explain(unsigned x, unsigned y) {
@@ -20,12 +30,12 @@ void Session::explain(unsigned x, unsigned y) {
     std::vector<std::string> names;
     for (const DesiredLight& light : desired.lights)
         if (light.on) names.push_back(light.name);
-    inspector_.ask_why(picture_->job, x, y, std::move(names));
+    inspector_.ask_why(whole_job(*picture_), x, y, std::move(names));
 }
 
 void Session::pick(unsigned x, unsigned y) {
     if (!picture_) return;
-    pick_request_ = inspector_.ask(picture_->job, x, y);
+    pick_request_ = inspector_.ask(whole_job(*picture_), x, y);
 }
 
 // Selects the object that the camera ray of the picked pixel hit.

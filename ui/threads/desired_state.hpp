@@ -7,6 +7,7 @@
 #include "render/edit/edit.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/motion/pose_time.hpp"
+#include "ui/threads/picture_part.hpp"
 
 namespace clarity::ui {
 
@@ -36,13 +37,14 @@ struct DesiredState {
     std::vector<MaterialValues> materials;  // the edited materials; empty: those of the scene
     InstanceEdits instances;                // moved and hidden
     MapEdits maps;                          // other textures of materials
-    PoseTime pose;                 // when the scene is shown; its clip is the chosen one even while the scene is at rest
-    CameraPath camera_path;        // the camera is there when the time changes
-    std::array<double, 2> loop{};  // the seconds of the clip that are played, again and again
-    float speed = 1;               // of the clip's clock while it plays
-    bool continuous = false;       // trace again and again, to measure
-    bool equal_time = false;       // the second side gets the seconds of the first, and not its samples
-    float resolution_scale = 1;    // factor for the picture's width and height
+    PoseTime pose;                    // when the scene is shown; its clip is the chosen one even while the scene is at rest
+    CameraPath camera_path;           // the camera is there when the time changes
+    std::array<double, 2> loop{};     // the seconds of the clip that are played, again and again
+    float speed = 1;                  // of the clip's clock while it plays
+    bool continuous = false;          // trace again and again, to measure
+    bool equal_time = false;          // the second side gets the seconds of the first, and not its samples
+    float resolution_scale = 1;       // factor for the picture's width and height
+    std::optional<PicturePart> part;  // that alone is traced
     // Target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels.
     float moving_fps = kMovingFps;
 };

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
@@ -224,7 +225,7 @@ void FrameThread::save_waiting() {
             notes.texts.emplace_back("Command", save.command);
         try {
             if (writes_display(outcome.path))
-                write_image(outcome.path, {}, picture->main.image, notes);
+                write_image(outcome.path, {}, cropped(picture->main.image, picture->main.settings), notes);
             else
                 write_image(outcome.path, tracers_[0].frames->read_picture(picture->main.settings), {}, notes);
         } catch (const std::exception& error) {
@@ -285,13 +286,15 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
     side.frame_ms = ms_since(begin);
     side.convergence = tracer.convergence;
     if (side.scale.map != FalseColorScale::Map::none)
-        side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
+        side.values = std::make_shared<const FloatImage>(
+            in_whole(tracer.frames->read_values(), settings, std::numeric_limits<float>::quiet_NaN()));
     if (!order.retrace && last) side.frame_ms = last->frame_ms;
     if (order.distance) {
         if (last && last->distance && order.sample > 0)
             side.distance = last->distance;
         else
-            side.distance = std::make_shared<const FloatImage>(tracer.frames->read_distance());
+            side.distance = std::make_shared<const FloatImage>(
+                in_whole(tracer.frames->read_distance(), settings, std::numeric_limits<float>::infinity()));
     }
     return side;
 }
@@ -316,6 +319,7 @@ bool FrameThread::finish(bool held_up) {
         share_scale(picture.main, *picture.other);
         picture.difference = compare_pictures(picture.main.image, picture.other->image);
     }
+    surroundings_.put_around(picture);
     if (traced.finished) {
         keep_image(picture.main, traced.finished->main);
         if (picture.other && traced.finished->other) keep_image(*picture.other, *traced.finished->other);
@@ -402,6 +406,10 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         const bool keep = !retrace && before;
         settings.width = keep ? before->settings.width : std::max(1, static_cast<int>(std::lround(settings.width * scale)));
         settings.height = keep ? before->settings.height : std::max(1, static_cast<int>(std::lround(settings.height * scale)));
+        if (keep)
+            settings.crop = before->settings.crop;
+        else if (job.part)
+            crop_picture(settings, crop_text(*job.part, settings.width, settings.height));
         return settings;
     };
     fit_tracer(tracers_[0], on_main->devices, job.ready->request.kernel_revision);

@@ -112,6 +112,7 @@ class FrameThread {
 
     const std::function<void()> wake_;
     Tracer tracers_[2];
+    Surroundings surroundings_;
     double ms_per_pixel_ = 0;             // of the last picture; 0: not known
     uint64_t told_revision_ = 0;          // of the job of which the log has named samples that are not finite
     std::shared_ptr<const Ready> paced_;  // what ms_per_pixel_ was measured with

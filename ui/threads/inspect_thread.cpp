@@ -10,6 +10,7 @@ namespace {
 
 // As many samples as the picture has, but enough to see a cause, and few enough to be there soon.
 constexpr int kLeastReplayed = 256, kMostReplayed = 4096;
+constexpr int kShownEvents = 4;  // of which the random numbers are shown
 
 }  // namespace
 
@@ -130,6 +131,8 @@ std::shared_ptr<const NoiseInspection> InspectThread::answer_why(NoiseInspection
         const auto samples = static_cast<unsigned>(std::clamp(job.settings.spp, kLeastReplayed, kMostReplayed));
         Progress never_cancelled;
         replayer_->trace(*prepared, job.settings, job.view, answer->x, answer->y, samples, never_cancelled, answer->replay);
+        answer->points = replayer_->points(*prepared, job.settings, job.view, answer->x, answer->y, samples,
+                                           unsigned(std::min(job.settings.depth, kShownEvents)), never_cancelled);
         answer->names.strategy = job.settings.strategy;
         answer->report = noise_report(answer->replay, answer->names);
     } catch (const std::exception& error) {

@@ -31,7 +31,8 @@ struct NoiseInspection {
     NoiseNames names;
     Replay replay;
     NoiseReport report;
-    std::string failure;  // why there is no report; empty: there is
+    SamplerPoints points;  // the random numbers of the samples, of a few events
+    std::string failure;   // why there is no report; empty: there is
 };
 
 // The thread. All public members may be called from any thread; only release() waits.

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "render/settings/aov.hpp"
+#include "scene/camera.hpp"
 
 namespace clarity::ui {
 
@@ -40,6 +41,24 @@ void keep_image(PictureSide& side, const PictureSide& finished) {
     side.values = finished.values;
     side.convergence = finished.convergence;
     side.stats.samples = finished.stats.samples;
+}
+
+void Surroundings::put_around(Picture& picture) {
+    PictureSide* const sides[] = {&picture.main, picture.other ? &*picture.other : nullptr};
+    const std::shared_ptr<const void> loaded = picture.job.ready->loaded;
+    const bool whole = picture.main.settings.crop.whole_width == 0;
+    const bool known = loaded_.lock() == loaded && same_camera(camera_, picture.job.view.camera);
+    for (size_t i = 0; i < 2; ++i)
+        if (whole)
+            images_[i] = sides[i] ? sides[i]->image : ByteImage();
+        else if (sides[i])
+            sides[i]->image = in_whole(sides[i]->image, sides[i]->settings, known ? images_[i] : ByteImage());
+    if (whole) {
+        camera_ = picture.job.view.camera;
+        loaded_ = loaded;
+    } else if (picture.difference) {
+        picture.difference->image = in_whole(picture.difference->image, picture.main.settings, {});
+    }
 }
 
 }  // namespace clarity::ui

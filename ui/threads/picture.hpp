@@ -7,6 +7,7 @@
 #include "render/film/false_colors.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "ui/threads/convergence.hpp"
+#include "ui/threads/picture_part.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
@@ -27,12 +28,13 @@ struct FrameJob {
     float resolution_scale = 1;                   // factor for the settings' width and height
     bool moving = false;                          // something moves
     std::shared_ptr<const FloatImage> reference;  // what pictures of its size should be; nullptr: not known
+    std::optional<PicturePart> part;              // that alone is traced
     float moving_fps = 0;  // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
 };
 
 // One side of a picture.
 struct PictureSide {
-    ByteImage image;
+    ByteImage image;        // the whole, also if a part was traced, as `settings` then say
     FalseColorScale scale;  // the scale of an AOV; without a map for colours
     Settings settings;      // as traced
     FrameStats stats;
@@ -72,5 +74,17 @@ void share_scale(PictureSide& a, PictureSide& b);
 // Replaces the image of a side by that of the finished picture. The picture is being traced again for its times, and its first
 // samples are jagged: to show them between finished pictures would flicker.
 void keep_image(PictureSide& side, const PictureSide& finished);
+
+// What is shown around a part of a picture: the last whole one that was seen from there.
+class Surroundings {
+ public:
+    // Puts images of a part into the whole. Remembers those of a whole picture.
+    void put_around(Picture& picture);
+
+ private:
+    ByteImage images_[2];
+    Camera camera_;
+    std::weak_ptr<const void> loaded_;
+};
 
 }  // namespace clarity::ui

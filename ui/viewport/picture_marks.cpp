@@ -57,6 +57,7 @@ void PicturePane::draw_hud(ImDrawList& list, const Session& session, VolumeOverl
     if (overlay.level())
         for (size_t i = 0; i < places_.size(); ++i) draw_volume_hud(list, i, overlay);
     if (rays_shown_) draw_ray_legend(list);
+    draw_part_card(list);
 }
 
 void PicturePane::draw_caption(ImDrawList& list, const Session& session, size_t side) {
@@ -131,6 +132,39 @@ void PicturePane::draw_wipe(ImDrawList& list) const {
     for (const float way : {-1.0f, 1.0f})
         list.AddTriangleFilled({x + way * 7 * scale, y}, {x + way * 2.5f * scale, y - 4.5f * scale},
                                {x + way * 2.5f * scale, y + 4.5f * scale}, dark);
+}
+
+// The frame of the part that is traced alone, or that is being drawn with the mouse.
+void PicturePane::draw_part(ImDrawList& list) const {
+    const auto frame = [&](const Rect& r) {
+        const ImVec2 a(r.x - 1, r.y - 1), b(r.x + r.width + 1, r.y + r.height + 1);
+        list.AddRect(a, b, kHalo, 0, 0, 3 * ui_scale());
+        list.AddRect(a, b, ImGui::GetColorU32(colors::kAccent), 0, 0, 1.4f * ui_scale());
+    };
+    if (const auto& drawn = mouse_.drawn_part()) return frame(*drawn);
+    const Settings& traced = picture_->main.settings;
+    if (traced.crop.whole_width == 0) return;
+    for (const PicturePlace& place : places_) {
+        const float x = place.area.width / static_cast<float>(traced.whole_width()),
+                    y = place.area.height / static_cast<float>(traced.whole_height());
+        list.PushClipRect({place.shown.x, place.shown.y},
+                          {place.shown.x + place.shown.width, place.shown.y + place.shown.height}, true);
+        frame({place.area.x + x * static_cast<float>(traced.crop.x), place.area.y + y * static_cast<float>(traced.crop.y),
+               x * static_cast<float>(traced.width), y * static_cast<float>(traced.height)});
+        list.PopClipRect();
+    }
+}
+
+void PicturePane::draw_part_card(ImDrawList& list) {
+    const Settings& traced = picture_->main.settings;
+    if (traced.crop.whole_width == 0) return;
+    const auto size_text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    const std::vector<HudText> lines = {
+        {"Part of the picture", colors::kText, true},
+        {size_text(traced.width, traced.height) + " of " + size_text(traced.whole_width(), traced.whole_height()) + " pixels",
+         colors::kText, false, true},
+        {"V: all of it", colors::kDim}};
+    if (const auto box = take_hud_box(0, Corner::top_left, card_size(lines, card_width(0)))) draw_hud_box(list, *box, lines);
 }
 
 void PicturePane::draw_handles(ImDrawList& list, const Session& session) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "scene/light_kinds.hpp"
@@ -64,7 +65,10 @@ void PictureMouse::press(const Target& target, Session& session, const glm::vec2
     grab_ = Grab::camera;
     offset_ = {0, 0};
     if (button_ != ImGuiMouseButton_Left) return;
-    if (hovered_light_ >= 0) {
+    if (ImGui::GetIO().KeyCtrl) {
+        grab_ = Grab::part;
+        part_area_ = target.places[hover_ ? hover_->place : 0].area;
+    } else if (hovered_light_ >= 0) {
         grab_ = Grab::light;
         light_ = static_cast<unsigned>(hovered_light_);
         session.selected_light = light_;
@@ -124,9 +128,28 @@ void PictureMouse::drag(const Target& target, Session& session, UiState& state, 
             session.desired.instances.set_shift(moved_instance_,
                                                 dragged(move_drag_, Projection(area, camera_of(target.picture)), mouse));
             break;
+        case Grab::part:
+            draw_part(mouse);
+            break;
         case Grab::nothing:
             break;
     }
+}
+
+// A rectangle from where the button was pressed to the mouse, within the picture.
+void PictureMouse::draw_part(const glm::vec2& mouse) {
+    const glm::vec2 first(part_area_.x, part_area_.y), last(part_area_.x + part_area_.width, part_area_.y + part_area_.height);
+    const glm::vec2 a = glm::clamp(pressed_, first, last), b = glm::clamp(mouse, first, last);
+    const glm::vec2 corner = glm::min(a, b), size = glm::abs(b - a);
+    drawn_part_ = {corner.x, corner.y, size.x, size.y};
+}
+
+void PictureMouse::take_part(Session& session) {
+    const Rect drawn = *drawn_part_;
+    drawn_part_.reset();
+    if (drawn.width > 0 && drawn.height > 0)
+        session.desired.part = {(drawn.x - part_area_.x) / part_area_.width, (drawn.y - part_area_.y) / part_area_.height,
+                                drawn.width / part_area_.width, drawn.height / part_area_.height};
 }
 
 void PictureMouse::click(const Target& target, Session& session, UiState& state) {
@@ -189,6 +212,7 @@ void PictureMouse::update(const Target& target, Session& session, UiState& state
     }
     if (ImGui::IsItemDeactivated()) {
         if (!moved_ && grab_ != Grab::nothing) click(target, session, state);
+        if (drawn_part_) take_part(session);
         grab_ = Grab::nothing;
     }
     focus_when_known(session);

@@ -1,6 +1,7 @@
 // picture_mouse.hpp -- mouse input on the picture.
 //
 //   left drag      orbits, or looks around; on a handle, drags the wipe or a light (Shift: along the line of sight)
+//   Ctrl + left drag     draws the part of the picture that alone is traced
 //   middle, right drag   shifts the view          wheel     nears the target
 //   left click     selects what is there          double    looks at it
 //   right click, Shift + left click               follows that pixel's rays
@@ -42,17 +43,20 @@ class PictureMouse {
     int hovered_light() const { return hovered_light_; }     // -1: none
     MoveHandle move_handle() const { return move_handle_; }  // that is hovered or held
     bool wipe_hovered() const { return wipe_hovered_; }
+    const std::optional<Rect>& drawn_part() const { return drawn_part_; }  // while it is drawn, in the window
     // Whether the last click asked for a pixel's rays and not for a selection.
     bool rays_asked() const { return rays_asked_; }
 
  private:
-    enum class Grab { nothing, camera, wipe, light, instance };
+    enum class Grab { nothing, camera, wipe, light, instance, part };
     void find_hovered(const Target& target, const glm::vec2& mouse, bool hovered);
     void press(const Target& target, Session& session, const glm::vec2& mouse);
     void drag(const Target& target, Session& session, UiState& state, const glm::vec2& mouse, const glm::vec2& moved);
     void drag_camera(const Rect& area, Camera& camera, bool look, const glm::vec2& moved) const;
     void click(const Target& target, Session& session, UiState& state);
     void focus_when_known(Session& session);
+    void draw_part(const glm::vec2& mouse);
+    void take_part(Session& session);
 
     Grab grab_ = Grab::nothing;
     int button_ = 0;
@@ -63,6 +67,8 @@ class PictureMouse {
     MoveHandle move_handle_ = MoveHandle::none;
     MoveDrag move_drag_;
     rt_u32 moved_instance_ = 0;
+    Rect part_area_;  // of the picture in which a part is drawn
+    std::optional<Rect> drawn_part_;
     std::optional<Hover> hover_;
     uint64_t hover_revision_ = 0;
     std::optional<Hover> inspected_hover_;

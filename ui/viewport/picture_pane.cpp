@@ -257,6 +257,7 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe, move_handles_ ? &*move_handles_ : nullptr}, session,
                       state);
         if (wipe) draw_wipe(list);
+        draw_part(list);
         draw_pixel_marks(list, session, state);
         list.ChannelsSplit(2);  // boxes are drawn over handles; the handles' labels avoid the boxes
         list.ChannelsSetCurrent(1);

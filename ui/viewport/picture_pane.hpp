@@ -74,6 +74,8 @@ class PicturePane {
     void draw_move_handles(ImDrawList& list) const;
     void draw_pixel_marks(ImDrawList& list, const Session& session, const UiState& state);
     void draw_wipe(ImDrawList& list) const;
+    void draw_part(ImDrawList& list) const;
+    void draw_part_card(ImDrawList& list);
     const PictureSide& side_of(const PicturePlace& place) const;
     bool side_by_side() const { return places_.size() == 2 && places_[0].area.x != places_[1].area.x; }
     // Takes room for a box at a picture: in its corner, or below the picture if pictures lie side by side and there is enough

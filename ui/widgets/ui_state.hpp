@@ -53,7 +53,8 @@ struct UiState {
     int selected_ray = -1;         // index of the ray that is marked in the scene, among those of the inspected pixel; -1: none
     bool show_paths = true;        // the brightest paths of the explained pixel are drawn in the scene
     int selected_path = -1;        // which of them is marked; -1: none
-    std::string browser_folder;    // the folder that the file browser shows
+    int points_across = 0, points_up = 1;      // the dimensions of the random numbers that are shown
+    std::string browser_folder;                // the folder that the file browser shows
     std::vector<std::string> recent_files;     // newest first
     std::vector<Bookmark> bookmarks;           // of the open scene
     size_t next_bookmark = 0;                  // which view the next press of N shows, among cameras and bookmarks

@@ -19,6 +19,14 @@ typedef struct rt_meeting {
     rt_bsdf bsdf;
 } rt_meeting;
 
+#ifdef RT_LIGHT_TREE
+/* The normal by which lights are picked: surfaces that let light through are lit from both sides. */
+RT_INLINE rt_vec rt_lit_normal(const rt_meeting *m)
+{
+    return rt_choose(rt_lets_through(&m->bsdf), rt_splat(0.0f, 0.0f, 0.0f), m->point.normal);
+}
+#endif
+
 /* Paths of fewer events than this end by roulette nowhere. */
 #define RT_ROULETTE_EVENT 3
 
@@ -143,7 +151,7 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
     const vfloat zero = rt_vfloat(0.0f);
     const rt_numbers n = rt_draw_set(sampler, RT_LIGHT_SET(p->event));
     const rt_vec outside = rt_along(point->outward, point->geometric, point->at);
-    const rt_light_sample s = rt_light_draw(ctx, frame, outside, n.a, n.b, n.c, lanes);
+    const rt_light_sample s = rt_light_draw(ctx, frame, outside, n.a, n.b, n.c, lanes RT_TREE_ARG(n.d) RT_TREE_ARG(rt_lit_normal(m)));
     const rt_vec wi = rt_to_local(m->s, m->t, point->normal, s.towards);
     vfloat surface_pdf;
     rt_vec light = rt_bsdf_eval(&m->bsdf, m->wo, wi, lanes, &surface_pdf);
@@ -211,6 +219,7 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     p->direction = rt_choose(on, direction, p->direction);
     p->weight = rt_choose(on, weight, p->weight);
     p->pdf = rt_select(on, s.pdf, p->pdf);
+    RT_BY_TREE(p->normal = rt_choose(on, rt_lit_normal(m), p->normal);)
     p->sharp = rt_select(on, s.delta, p->sharp);
     p->scale = rt_select(on, scale, p->scale);
 #ifdef RT_HAS_MIPS
@@ -266,7 +275,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     const vmask missed = p->alive & ~lights & ~hits;
     vfloat pdf;
     if (RT_MAY_SHINE(RT_LIGHTS_SOLID) && rt_any(lights)) {
-        const rt_vec found = rt_emission_of_light(ctx, &ray, t, light, lights, &pdf);
+        const rt_vec found = rt_emission_of_light(ctx, &ray, t, light, lights RT_TREE_ARG(p->normal), &pdf);
         rt_collect(frame, p, lights, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, light);
     }
     if (RT_MAY_SHINE(RT_LIGHTS_BEYOND) && rt_any(missed)) {
@@ -291,7 +300,7 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     rt_meeting m;
     m.point = rt_point_of(&ray, &surface, hits);
     if (RT_MAY_SHINE(1u << RT_EMITTER_SURFACE)) {
-        const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits, &pdf);
+        const rt_vec found = rt_emission_of_hit(ctx, &ray, &hit, &surface, hits RT_TREE_ARG(p->normal), &pdf);
         RT_RECORD(p->recorder->noted.material = surface.material)
         rt_collect(frame, p, hits, rt_scale(rt_found_weight(frame, p, pdf), found), p->event, RT_BY_BSDF, p->first, rt_vint(RT_LIGHT_OF_SURFACES));
     }

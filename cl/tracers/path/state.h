@@ -17,6 +17,7 @@ typedef struct rt_path {
     rt_vec origin, direction;
     rt_vec weight, light;
     vfloat pdf;        /* density per solid angle with which the surface has drawn `direction` */
+    RT_BY_TREE(rt_vec normal;) /* of that surface; 0, 0, 0: it is lit from both sides */
     vfloat scale;      /* by which entered glass makes the weight small */
     rt_vec absorption; /* of the medium around the ray, per unit of length */
 #if RT_MAY_SCATTER(RT_LOBE_GLASS)
@@ -150,6 +151,7 @@ RT_INLINE rt_path rt_no_paths(const constant rt_frame *frame)
     p.sample = rt_vint((int)(frame->sample + frame->samples));
     p.origin = p.weight = p.light = p.absorption = rt_splat(0.0f, 0.0f, 0.0f);
     p.direction = rt_splat(0.0f, 0.0f, 1.0f);
+    RT_BY_TREE(p.normal = p.origin;)
     p.pdf = rt_vfloat(0.0f);
     p.scale = rt_vfloat(1.0f);
 #if RT_MAY_SCATTER(RT_LOBE_GLASS)

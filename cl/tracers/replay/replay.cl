@@ -38,6 +38,25 @@ replay_samples(const constant rt_frame *frame, const uint x, const uint y, globa
         }
 }
 
+/* The random numbers of the first samples of pixel (x, y) of the film: of each sample `sets` sets of four, from the camera's on. */
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+draw_numbers(const constant rt_frame *frame, const uint x, const uint y, const uint sets, global float4 *numbers)
+{
+    const uint first = (uint)get_global_id(0) * RT_LANES;
+    if (first >= frame->samples) return;
+    rt_path path = rt_no_paths(frame);
+    path.sample = rt_vint((int)first) + rt_lane_index();
+    path.pixel = rt_vint((int)((y + frame->first_y) * frame->whole_width + x + frame->first_x));
+    const rt_sampler sampler = rt_sampler_of(frame, &path);
+    for (uint set = 0; set < sets; ++set) {
+        const rt_numbers n = rt_draw_set(&sampler, rt_vint((int)set));
+        float a[RT_LANES], b[RT_LANES], c[RT_LANES], d[RT_LANES];
+        rt_store(n.a, a), rt_store(n.b, b), rt_store(n.c, c), rt_store(n.d, d);
+        for (uint l = 0; l < RT_LANES && first + l < frame->samples; ++l)
+            numbers[(size_t)(first + l) * sets + set] = (float4)(a[l], b[l], c[l], d[l]);
+    }
+}
+
 /* Adds samples to the two values of one pixel: see sum.h. One work-item. */
 kernel void sum_samples(const global float4 *lights, const uint samples, const uint adds, global float4 *film)
 {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/angle.hpp"
 #include "render/emitters/map_mean.hpp"
@@ -21,6 +22,30 @@ double mean(const rt_f32* color) {
 double scene_radius(const Bounds& bounds) {
     const double radius = bounds.empty ? 0 : 0.5 * bounds.diagonal();
     return radius > 0 && std::isfinite(radius) ? radius : 1;
+}
+
+bool mirrors(const rt_f32* m) {
+    return dot(to_vec(m), cross(to_vec(m + 4), to_vec(m + 8))) < 0;
+}
+
+// Moves emitters from the table into the light tree, for which they leave one entry there.
+void plant_tree(const std::vector<LightBound>& bounds, EmitterTable& out, std::vector<double>& powers) {
+    double power = 0;
+    std::vector<LightBound> planted;
+    for (const LightBound& bound : bounds)
+        if (powers[bound.emitter] > 0) {
+            planted.push_back(bound);
+            power += std::exchange(powers[bound.emitter], 0);
+        }
+    if (planted.empty()) return;
+    std::vector<rt_u32> leaves;
+    out.nodes = build_light_tree(planted, leaves);
+    for (size_t i = 0; i < planted.size(); ++i) out.emitters[planted[i].emitter].leaf = leaves[i];
+    rt_emitter tree{};
+    tree.kind = RT_EMITTER_TREE;
+    tree.instance = tree.leaf = RT_NONE;
+    out.emitters.push_back(tree);
+    powers.push_back(power);
 }
 
 void set_sky(const SkyValues& values, const View& view, rt_lighting& out) {
@@ -57,14 +82,15 @@ double flux_of_sky(const rt_lighting& sky, const SkyTable& picture) {
 class Collector {
  public:
     Collector(const Scene& scene, const AccelData& accel, const MovedPrims* moved, const View& view, EmitterTable& out,
-              std::vector<double>& powers)
+              std::vector<double>& powers, std::vector<LightBound>& bounds)
         : scene_(scene),
           accel_(accel),
           leaves_(moved ? moved->leaves.data() : static_cast<const rt_packed_prim*>(accel.leaves.data())),
           instances_(moved ? moved->instances : accel.instances),
           view_(view),
           out_(out),
-          powers_(powers) {
+          powers_(powers),
+          bounds_(bounds) {
         for (size_t i = 0; i < scene.materials.size(); ++i) {
             emits_.push_back(emits(material(i)) && is_drawn(material(i), scene.materials[i]));
             emits_evenly_.push_back(emits_.back() && scene.materials[i].maps[RT_MAP_EMISSION] == RT_NONE);
@@ -100,8 +126,10 @@ class Collector {
         return found;
     }
 
-    // share: of the material's emission that it has in the mean.
-    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, double share = 1) {
+    // bound: of its place and normal. facing: the largest area that is seen of it from one side. share: of the material's
+    // emission that it has in the mean.
+    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, double facing, LightBound bound,
+             double share = 1) {
         if (!(share > 0) || !(area > 0) || !std::isfinite(area)) return;
         if (out_.emitters.size() >= kMostPicked) {
             ++out_.left_out;
@@ -114,33 +142,35 @@ class Collector {
         emitter.kind = RT_EMITTER_SURFACE;
         emitter.at = at;
         emitter.instance = instance;
-        emitter.prim = prim;
+        emitter.leaf = RT_NONE;
         emitter.area = static_cast<float>(area);
         out_.emitters.push_back(emitter);
         const rt_material& m = material(of_material);
+        bound.intensity = share * facing * mean(m.emission);
+        bound.two_sided = !(m.flags & RT_MATERIAL_ONE_SIDED);
+        bound.emitter = number;
+        bounds_.push_back(bound);
         powers_.push_back(share * area * kPi * mean(m.emission) * (m.flags & RT_MATERIAL_ONE_SIDED ? 1 : 2));
-    }
-
-    static double triangle_area(const rt_packed_prim& prim, const Affine* placed) {
-        Vec edge[2];
-        for (int e = 0; e < 2; ++e) {
-            const rt_f32* const end = e == 0 ? prim.b : prim.c;
-            const Vec in_mesh = to_vec(end) - to_vec(prim.a);
-            edge[e] = in_mesh;
-            if (placed)
-                for (int k = 0; k < 3; ++k) {
-                    const float* const row = placed->data() + 4 * k;
-                    edge[e][k] = row[0] * in_mesh[0] + row[1] * in_mesh[1] + row[2] * in_mesh[2];
-                }
-        }
-        return 0.5 * length(cross(edge[0], edge[1]));
     }
 
     // A triangle of the world or of an instance, before they are in order.
     struct Found {
         rt_u32 prim, at, instance, material;
-        double area;
+        std::array<Vec, 3> corners;
+        bool mirrored;  // by its instance, so that the corners run the other way round
     };
+
+    static std::array<Vec, 3> corners_of(const rt_packed_prim& prim, const Affine* placed) {
+        std::array<Vec, 3> corners = {to_vec(prim.a), to_vec(prim.b), to_vec(prim.c)};
+        for (size_t c = 0; placed && c < 3; ++c) {
+            const Vec in_mesh = corners[c];
+            for (size_t k = 0; k < 3; ++k) {
+                const float* const row = placed->data() + 4 * k;
+                corners[c][k] = row[0] * in_mesh[0] + row[1] * in_mesh[1] + row[2] * in_mesh[2] + row[3];
+            }
+        }
+        return corners;
+    }
 
     void add_triangles() {
         const BuildScene& build = accel_.scene;
@@ -153,7 +183,9 @@ class Collector {
                          end = group == 0 ? rt_u32(leaves.size()) : first + build.groups[group].count;
             const rt_instance* const placed = instance == RT_NONE ? nullptr : &instances_[instance];
             Affine world = kIdentity;
+            bool mirrored = false;
             if (placed) {
+                mirrored = mirrors(placed->object_from_world);
                 Affine inverse;
                 std::copy_n(placed->object_from_world, 12, inverse.begin());
                 invert(inverse, world);
@@ -164,7 +196,7 @@ class Collector {
                 const rt_u32 of = placed && placed->material != RT_NONE ? placed->material : prim.material;
                 if (!emits_[of]) continue;
                 found.push_back({(placed ? placed->first_prim : 0) + prim.prim, leaves[ref], instance, of,
-                                 triangle_area(prim, placed ? &world : nullptr)});
+                                 corners_of(prim, placed ? &world : nullptr), mirrored});
             }
         };
         add_group(0, RT_NONE);
@@ -174,15 +206,21 @@ class Collector {
         for (const Found& f : found) {
             const rt_u32 map = scene_.materials[f.material].maps[RT_MAP_EMISSION];
             const rt_u32 triangle = build.attribute_triangle[RT_REF_INDEX(leaf(f.at).ref)];
-            add(f.at, f.instance, f.prim, f.material, f.area, map == RT_NONE ? 1 : mean_of_map(scene_, map, triangle));
+            const Vec normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
+            const double area = 0.5 * length(normal);
+            add(f.at, f.instance, f.prim, f.material, area, area,
+                bound_of_flat(f.corners.data(), 3, (f.mirrored ? -1.0 : 1.0) * normal),
+                map == RT_NONE ? 1 : mean_of_map(scene_, map, triangle));
         }
     }
 
     void add_spheres() {
         const std::vector<rt_u32> leaves = leaves_of(RT_REF_SPHERE, accel_.scene.spheres.size(), false);
         for (const rt_u32 at : leaves)
-            if (at != RT_NONE)
-                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * kPi * double(leaf(at).b[0]) * leaf(at).b[0]);
+            if (at != RT_NONE) {
+                const double radius = leaf(at).b[0], disc = kPi * radius * radius;
+                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * disc, disc, bound_of_ball(to_vec(leaf(at).a), radius));
+            }
     }
 
     void add_polygons() {
@@ -193,11 +231,12 @@ class Collector {
             const rt_polygon& polygon = build.polygon_table[i];
             const float* const corners = &build.polygon_corners[3 * size_t(polygon.first)];
             if (!is_convex(corners, polygon.count)) continue;
+            std::vector<Vec> all;
+            for (rt_u32 c = 0; c < polygon.count; ++c) all.push_back(to_vec(corners + 3 * size_t(c)));
             double area = 0;
-            for (rt_u32 c = 2; c < polygon.count; ++c)
-                area += 0.5 * length(cross(to_vec(corners + 3 * (c - 1)) - to_vec(corners),
-                                           to_vec(corners + 3 * c) - to_vec(corners)));
-            add(leaves[i], RT_NONE, leaf(leaves[i]).prim, leaf(leaves[i]).material, area);
+            for (rt_u32 c = 2; c < polygon.count; ++c) area += 0.5 * length(cross(all[c - 1] - all[0], all[c] - all[0]));
+            add(leaves[i], RT_NONE, leaf(leaves[i]).prim, leaf(leaves[i]).material, area, area,
+                bound_of_flat(all.data(), all.size(), to_vec(leaf(leaves[i]).a)));
         }
     }
 
@@ -208,6 +247,7 @@ class Collector {
     const View& view_;
     EmitterTable& out_;
     std::vector<double>& powers_;
+    std::vector<LightBound>& bounds_;
     // So that light is drawn from it, and from all of it alike.
     std::vector<bool> emits_, emits_evenly_;
 };
@@ -215,8 +255,8 @@ class Collector {
 }  // namespace
 
 const std::vector<const char*>& emitter_headers() {
-    static const std::vector<const char*> headers = {"shading/emitter_table.h", "shading/sky.h", "shading/emitters.h",
-                                                     "shading/emission.h"};
+    static const std::vector<const char*> headers = {"shading/light_tree.h", "shading/emitter_table.h", "shading/sky.h",
+                                                     "shading/emitters.h", "shading/emission.h"};
     return headers;
 }
 
@@ -227,15 +267,22 @@ bool has_emitting_surfaces(const Scene& scene, const View& view) {
 }
 
 EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
-                                const MovedPrims* moved) {
+                                const MovedPrims* moved, bool tree) {
     EmitterTable out;
     std::vector<double> powers;
+    std::vector<LightBound> bounds;  // of those that fit into a light tree
     const double radius = scene_radius(accel.scene.bounds);
     for (const rt_light& light : view.lights) {
         rt_emitter emitter{};
         emitter.kind = light.kind;
         emitter.at = rt_u32(out.emitters.size());
-        emitter.instance = emitter.prim = RT_NONE;
+        emitter.instance = emitter.leaf = RT_NONE;
+        LightBound bound;
+        if (bound_light(light, bound)) {
+            bound.emitter = emitter.at;
+            bound.intensity *= mean(light.color);
+            bounds.push_back(bound);
+        }
         out.emitters.push_back(emitter);
         powers.push_back(light_kind_of(light).power(light, radius) * mean(light.color));
         out.lighting.sun_count += light.kind == RT_LIGHT_SUN;
@@ -247,19 +294,25 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         out.lighting.sky_emitter = rt_u32(out.emitters.size());
         rt_emitter emitter{};
         emitter.kind = RT_EMITTER_SKY;
-        emitter.instance = emitter.prim = RT_NONE;
+        emitter.instance = emitter.leaf = RT_NONE;
         out.emitters.push_back(emitter);
         powers.push_back(flux * kPi * radius * radius);
     }
-    Collector(scene, accel, moved, view, out, powers).collect();
+    Collector(scene, accel, moved, view, out, powers, bounds).collect();
     // A file that says what lies behind its objects says what lights them. Without a word of it, lights that stand in stay.
     const bool lit = values.kind != RT_NONE || has_emitting_surfaces(scene, view) ||
                      (scene.background != Scene{}.background && out.lighting.sky_emitter != RT_NONE);
     for (size_t i = 0; lit && i < view.lights.size(); ++i)
         if (view.lights[i].flags & RT_LIGHT_STAND_IN) powers[i] = 0;
+    if (tree) plant_tree(bounds, out, powers);
     const bool any = std::any_of(powers.begin(), powers.end(), [](double power) { return power > 0; });
     out.lighting.emitter_count = any ? rt_u32(powers.size()) : 0;
     out.lighting.cell_bits = fill_pick_table(powers, out.emitters);
+    if (!out.nodes.empty()) {
+        const float share = out.emitters[powers.size() - 1].pick;  // of the tree
+        for (size_t i = 0; i + 1 < powers.size(); ++i)
+            if (out.emitters[i].leaf != RT_NONE) out.emitters[i].pick = share;
+    }
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/accel/accel_build.hpp"
+#include "render/emitters/light_tree.hpp"
 #include "render/emitters/sky_table.hpp"
 #include "render/view/view.hpp"
 #include "scene/scene.hpp"
@@ -15,6 +16,7 @@ namespace clarity {
 struct EmitterTable {
     std::vector<rt_emitter> emitters;  // 2^cell_bits of them
     std::vector<rt_emitter_run> runs;
+    std::vector<rt_light_node> nodes;  // of the light tree
     rt_lighting lighting{};
     uint64_t left_out = 0;  // emissive primitives beyond those that the table can hold: rays alone find them
 };
@@ -29,9 +31,10 @@ struct MovedPrims {
 };
 
 // The emitters of a view. accel: where the scene's primitives are now. sky: of scene.sky. moved: leaves and instances in place
-// of those of accel; nullptr: nothing has moved on the device.
+// of those of accel; nullptr: nothing has moved on the device. tree: emitters whose light falls off with the distance are in a
+// light tree, which has one place in the table.
 EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
-                                const MovedPrims* moved = nullptr);
+                                const MovedPrims* moved, bool tree);
 // Whether a surface emits, so that the table depends on where primitives are.
 bool has_emitting_surfaces(const Scene& scene, const View& view);
 

@@ -192,7 +192,7 @@ struct FrameRenderer::Impl {
         }
         view.write(queue, *prepared.scene, *prepared.on_device, frames, view_of, table);
         if (program->row.has(kPicksLights))
-            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of,
+            view.write_emitters(queue, *prepared.scene, prepared.accel, view_of, prepared.settings,
                                 prepared.is_moved ? prepared.on_device.get() : nullptr);
 
         const auto go_on = [&progress = picture.progress] {

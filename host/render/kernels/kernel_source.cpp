@@ -46,6 +46,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Sett
     if (features.wraps) out.define_int("RT_HAS_WRAPS", 1);
     if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
     if (features.sky_picture && row.has(kPicksLights)) out.define_int("RT_HAS_SKY_PICTURE", 1);
+    if (features.light_tree) out.define_int("RT_LIGHT_TREE", 1);
     const Optics optics = optics_known(row, features.optics);
     if (row.has(kPicksLights | kWhitted)) out.define_uint("RT_LIGHTS", optics.lights);
     if (row.has(kPicksLights)) out.define_uint("RT_LOBES", optics.lobes);
@@ -89,7 +90,8 @@ void write_queries(SourceWriter& out, const KernelRow& row, const Layout& layout
 KernelSource kernel_for(const KernelRow& row, const Settings& settings, const Layout& layout, const Scene& scene,
                         const AccelData& data) {
     const rt_plugin& accel = *data.layout;
-    const SceneFeatures features = features_of(scene, data.scene, settings.optics);
+    SceneFeatures features = features_of(scene, data.scene, settings.optics);
+    features.light_tree = row.has(kPicksLights) && has_light_tree(settings);
     KernelSource source;
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;

@@ -41,6 +41,7 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"float", "shape_numbers", "numbers of shapes", 0, &SceneFeatures::shapes},
     {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), nullptr, true},
     {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, nullptr, true},
+    {"rt_light_node", "light_nodes", "light tree", sizeof(rt_light_node), &SceneFeatures::light_tree, true},
     {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), nullptr, true},
     {"ushort", "sky_texels", "picture of the sky", 0, nullptr, true},
     {"uint", "sky_picks", "tables of the sky", 0, nullptr, true},

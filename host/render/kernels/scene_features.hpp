@@ -11,12 +11,13 @@ struct SceneFeatures {
          shapes = false;
     bool masks = false;  // an instance is passed by some kinds of rays
     bool sky_picture = false;
-    bool colors = false;    // vertices have colours
-    bool maps = false;      // a material has textures besides a plain one of its colour
-    bool mips = false;      // a texture has smaller pictures
-    bool tangents = false;  // a map of normals is one of them
-    bool uvs2 = false;      // they may name a second set of texture coordinates
-    bool wraps = false;     // a texture is clamped or mirrored somewhere; otherwise all repeat
+    bool colors = false;      // vertices have colours
+    bool maps = false;        // a material has textures besides a plain one of its colour
+    bool mips = false;        // a texture has smaller pictures
+    bool tangents = false;    // a map of normals is one of them
+    bool uvs2 = false;        // they may name a second set of texture coordinates
+    bool light_tree = false;  // lights are picked by one: see has_light_tree()
+    bool wraps = false;       // a texture is clamped or mirrored somewhere; otherwise all repeat
     Optics optics;
 };
 // more: what views have that the scene's own has not.

@@ -44,14 +44,15 @@ void ViewBuffers::write(Queue& queue, const Scene& scene, const DeviceScene& on_
 }
 
 void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
-                                 const View& view, const DeviceScene* moved) {
+                                 const View& view, const Settings& settings, const DeviceScene* moved) {
+    const bool tree = has_light_tree(settings);
     const auto same = [](const auto& a, const auto& b) {
         return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
     };
     if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
         same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background &&
         same_sky(emitters_of_.sky, sky_of(scene, view)) && sky_of_.shares(scene.sky.texels) &&
-        same(emitters_of_.maps, scene.maps) &&
+        same(emitters_of_.maps, scene.maps) && emitters_of_.tree == tree &&
         std::equal(emitters_of_.emission_maps.begin(), emitters_of_.emission_maps.end(), scene.materials.begin(),
                    scene.materials.end(),
                    [](rt_u32 map, const Material& material) { return map == material.maps[RT_MAP_EMISSION]; }))
@@ -81,11 +82,12 @@ void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::sh
         read(buffers.leaves, prims.leaves, accel->leaf_count);
         read(buffers.instances, prims.instances, accel->instances.size());
     }
-    const EmitterTable table = make_emitter_table(scene, *accel, view, sky_, moved ? &prims : nullptr);
+    const EmitterTable table = make_emitter_table(scene, *accel, view, sky_, moved ? &prims : nullptr, tree);
     upload(emitters_, table.emitters);
     upload(emitter_runs_, table.runs);
+    if (tree) upload(light_nodes_, table.nodes);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view), scene.maps, {}};
+    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view), scene.maps, {}, tree};
     for (const Material& material : scene.materials) emitters_of_.emission_maps.push_back(material.maps[RT_MAP_EMISSION]);
 }
 
@@ -120,6 +122,7 @@ void ViewBuffers::bind(const DeviceScene& scene, KernelArguments& kernel) const 
     kernel.set("ctx_emitters", emitters_.get())
         .set("ctx_emitter_runs", emitter_runs_.get())
         .set("ctx_lighting", lighting_.get());
+    if (kernel.has("ctx_light_nodes")) kernel.set("ctx_light_nodes", light_nodes_.get());
     kernel.set("ctx_sky_texels", sky_texels_.get()).set("ctx_sky_picks", sky_picks_.get());
 }
 

@@ -38,9 +38,10 @@ class ViewBuffers {
                const View& view, const std::vector<rt_u32>& rows = {});
     // Uploads the table of emitters, for kernels with kPicksLights. The view is that of write(). Makes the table only if the
     // structure, the lights or the materials have changed, or after forget_emitters(). moved: the buffers of a structure that
-    // was moved on the device, of which surfaces that emit are read back; nullptr: it is where accel has it.
+    // was moved on the device, of which surfaces that emit are read back; nullptr: it is where accel has it. settings: say
+    // whether there is a light tree.
     void write_emitters(Queue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel, const View& view,
-                        const DeviceScene* moved = nullptr);
+                        const Settings& settings, const DeviceScene* moved = nullptr);
     void forget_emitters() { emitters_of_ = {}; }
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets `frame` and the scene's arguments of the kernel.
@@ -56,8 +57,10 @@ class ViewBuffers {
         SkyValues sky;
         std::vector<rt_map> maps;           // an edit of textures keeps the structure
         std::vector<rt_u32> emission_maps;  // of each material
+        bool tree = false;
     };
-    UploadedBuffer frame_, lights_, materials_, layers_, emitters_, emitter_runs_, lighting_, sky_texels_, sky_picks_;
+    UploadedBuffer frame_, lights_, materials_, layers_, emitters_, emitter_runs_, light_nodes_, lighting_, sky_texels_,
+        sky_picks_;
     std::vector<rt_material> plain_materials_;  // these two are kept for their memory: frames allocate nothing
     std::vector<rt_layers> material_layers_;
     EmittersOf emitters_of_;

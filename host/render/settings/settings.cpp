@@ -160,6 +160,10 @@ void check_pixel(const Settings& settings, unsigned x, unsigned y) {
                                      std::to_string(settings.width) + "x" + std::to_string(settings.height));
 }
 
+bool has_light_tree(const Settings& settings) {
+    return settings.light_sampling == "tree";
+}
+
 bool blurs(const Settings& settings) {
     return settings.shutter > 0 && settings.spp > 1 && find_aov(settings.aov).adds_samples();
 }
@@ -214,6 +218,11 @@ std::vector<Setting> settings_of_paths() {
             "random numbers of `path`. independent: noise falls with the square root of the samples; sobol: numbers that are "
             "spread evenly over the samples of a pixel, with less noise",
             {"independent", "sobol"}, Effect::frame, &Settings::sampler),
+        choice(
+            "light_sampling", "Light pick",
+            "how `path` picks the lamp or glowing surface that an event draws. table: by its power; tree: for the place too, "
+            "by distance and direction, which costs more a pick and pays where lights are many and near",
+            {"table", "tree"}, Effect::recompile, &Settings::light_sampling),
         kernel_number("seed", "Seed", "of `path`: pictures of two seeds have independent noise", 0, 1 << 30, 0),
         choice("filter", "Pixel filter",
                "of `path`. box: the points of a pixel count alike; gaussian: points near its middle count more, and those of "

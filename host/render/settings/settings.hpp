@@ -46,10 +46,11 @@ struct Settings {
     bool shadows = true;
     std::string mips = "auto";  // auto|off|nearest|smooth
     // Of the tracer `path`.
-    std::string strategy = "mis";   // nee|bsdf|mis
-    std::string mis = "power";      // balance|power
-    std::string sampler = "sobol";  // independent|sobol
-    std::string filter = "box";     // box|gaussian
+    std::string strategy = "mis";          // nee|bsdf|mis
+    std::string mis = "power";             // balance|power
+    std::string sampler = "sobol";         // independent|sobol
+    std::string light_sampling = "table";  // table|tree
+    std::string filter = "box";            // box|gaussian
     // The paths that count: found by nee|bsdf|any; whose first event is diffuse|glossy|transmission|any.
     std::string only_by = "any", only_first = "any";
     std::string aov = "color";  // a name of aov_table()
@@ -72,6 +73,8 @@ struct Settings {
 bool denoises(const Settings& settings);
 // Throws Error(usage) for a pixel outside of the picture.
 void check_pixel(const Settings& settings, unsigned x, unsigned y);
+// Whether `path` picks lights by a light tree.
+bool has_light_tree(const Settings& settings);
 // Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.
 bool blurs(const Settings& settings);
 

@@ -33,7 +33,8 @@ struct SmallFrame {
         distances = buffer(layout.packets(width, height) * layout.rays() * sizeof(float));
         buffers.write(queue, *prepared->scene, *prepared->on_device, {make_frame(view, settings, layout, *prepared->accel, 0)},
                       view);
-        if (prepared->program->row.has(kPicksLights)) buffers.write_emitters(queue, *prepared->scene, prepared->accel, view);
+        if (prepared->program->row.has(kPicksLights))
+            buffers.write_emitters(queue, *prepared->scene, prepared->accel, view, prepared->settings);
         tracer = open_tracer(device, prepared->program);
         const unsigned groups = layout.groups_x(width) * layout.groups_y(height);
         const FrameLaunch frame{*prepared, settings, view, buffers, queue, film, distances, 0, groups, 0};

@@ -75,8 +75,16 @@ View full_view() {
 
 // Without light that has no size. Each drawn ray meets what was drawn, unless something is before it, and finds its radiance
 // and its density.
-TEST(Lights, RaysFindWhatWasDrawn) {
-    LightBench bench(full_scene(), full_view());
+class Lights : public testing::TestWithParam<bool> {
+ protected:
+    const bool tree = GetParam();
+    LightBench bench{full_scene(), full_view(), 8, tree};
+};
+INSTANTIATE_TEST_SUITE_P(Picked, Lights, testing::Bool(), [](const testing::TestParamInfo<bool>& info) {
+    return std::string(info.param ? "ByTree" : "ByTable");
+});
+
+TEST_P(Lights, RaysFindWhatWasDrawn) {
     size_t seen = 0, of_surfaces = 0, of_sky = 0, of_lights = 0;
     for (const LightDraw& draw : bench.draw({0.1f, 0.05f, -0.2f}, even_numbers(1 << 14, 1))) {
         if (!draw.valid || draw.occluded) continue;
@@ -102,7 +110,7 @@ TEST(Lights, RaysFindWhatWasDrawn) {
 // Expects drawn directions to be distributed as the density says that rays find: Pearson's chi-square in 8 x 16 cells of equal
 // solid angle, against integrals of the density, which itself integrates to the share of draws that shine. A failure is tried
 // again with another seed. Returns the cells that are looked at.
-int expect_distribution(LightBench& bench, const Point& at) {
+int expect_distribution(LightBench& bench, const Point& at, const Vec& normal = {}) {
     for (unsigned seed = 1;; ++seed) {
         constexpr int kRows = 8, kColumns = 16;
         std::vector<double> drawn(kRows * kColumns, 0), expected(kRows * kColumns, 0);
@@ -113,7 +121,7 @@ int expect_distribution(LightBench& bench, const Point& at) {
         };
         const size_t draws = 1 << 16, rays = 1 << 18;
         size_t hidden = 0;
-        for (const LightDraw& draw : bench.draw(at, random_numbers(draws, seed))) {
+        for (const LightDraw& draw : bench.draw(at, random_numbers(draws, seed), normal)) {
             // A ray finds the nearest light only, so draws of what is behind are left out on both sides.
             const bool nearest = draw.valid && !draw.occluded && draw.found_distance >= draw.distance * 0.9999f;
             if (nearest)
@@ -122,7 +130,7 @@ int expect_distribution(LightBench& bench, const Point& at) {
                 ++hidden;
         }
         double total = 0;
-        for (const LightDraw& ray : bench.find(at, even_numbers(rays, seed))) {
+        for (const LightDraw& ray : bench.find(at, even_numbers(rays, seed), normal)) {
             const double share = ray.found_pdf * kFullSphere / double(rays);
             expected[size_t(cell(ray.towards))] += share * double(draws);
             total += share;
@@ -144,14 +152,15 @@ int expect_distribution(LightBench& bench, const Point& at) {
     }
 }
 
-TEST(Lights, DrawsAreDistributedAsTheirDensitySays) {
-    LightBench bench(full_scene(), full_view());
+TEST_P(Lights, DrawsAreDistributedAsTheirDensitySays) {
     ASSERT_GT(expect_distribution(bench, {0.1f, 0.05f, -0.2f}), 100);
+    if (!tree) return;
+    ASSERT_GT(expect_distribution(bench, {0.1f, 0.05f, -0.2f}, normalized({0.2, 1, -0.5})), 60);
 }
 
 // Each direction to a gradient is as likely as the light that comes from there, of all channels together: what a draw brings is
 // always the light of the whole sky.
-TEST(Lights, GradientsAreDrawnByTheirRadiance) {
+TEST(Gradients, AreDrawnByTheirRadiance) {
     const auto gray = [](float value) { return std::array<float, 3>{value, value, value}; };
     struct Row {
         std::array<float, 3> zenith, horizon, ground;
@@ -184,12 +193,13 @@ TEST(Lights, GradientsAreDrawnByTheirRadiance) {
     }
 }
 
-TEST(Lights, AllLanesDrawTheSame) {
+TEST_P(Lights, AllLanesDrawTheSame) {
     const Numbers numbers = even_numbers(4096, 2);
     std::vector<LightDraw> first;
     for (const int lanes : lane_counts()) {
-        LightBench bench(full_scene(), full_view(), lanes);
-        const std::vector<LightDraw> draws = bench.draw({0.1f, 0.05f, -0.2f}, numbers);
+        if (tree && lanes != 1 && lanes != 8) continue;
+        LightBench other(full_scene(), full_view(), lanes, tree);
+        const std::vector<LightDraw> draws = other.draw({0.1f, 0.05f, -0.2f}, numbers);
         if (first.empty()) first = draws;
         for (size_t i = 0; i < draws.size(); ++i) {
             const auto &a = first[i], &b = draws[i];
@@ -203,8 +213,7 @@ TEST(Lights, AllLanesDrawTheSame) {
 }
 
 // Points at which a density could be infinite or no number.
-TEST(Lights, NothingIsInfiniteNearLights) {
-    LightBench bench(full_scene(), full_view());
+TEST_P(Lights, NothingIsInfiniteNearLights) {
     const std::vector<Point> points = {{-2, 2, 2},    {-2, 2.5f, 2}, {-2, 2.500001f, 2}, {0, 0, 4},   {0, 3, 0},
                                        {-3, 1.2f, 0}, {-3, 0, 0},    {2, 2, 2},          {1, -1, -3}, {1e6f, 1e6f, -1e6f}};
     for (const Point& at : points)
@@ -218,8 +227,8 @@ TEST(Lights, NothingIsInfiniteNearLights) {
         }
 }
 
-TEST(Lights, WithoutAnyNothingIsDrawn) {
-    LightBench bench(empty_scene(), dark_view());
+TEST_P(Lights, WithoutAnyNothingIsDrawn) {
+    LightBench bench(empty_scene(), dark_view(), 8, tree);
     for (const LightDraw& draw : bench.draw({0, 0, 0}, even_numbers(64, 1))) {
         EXPECT_FALSE(draw.valid);
         EXPECT_EQ(draw.found[0], 0);

@@ -18,11 +18,13 @@ constexpr size_t kDraws = 1 << 15;
 // for them.
 void expect_irradiance(const Scene& scene, const View& view, const Point& at, const Vec& normal, double wanted,
                        bool by_rays = false) {
-    LightBench bench(scene, view);
-    double error = 0;
-    const double found = bench.irradiance(at, normal, random_numbers(kDraws, 1), &error);
-    EXPECT_NEAR(found / wanted, 1, 4 * error / wanted + 1e-5);
-    EXPECT_LT(error / wanted, 0.01) << "too noisy to tell anything";
+    LightBench bench(scene, view), by_tree(scene, view, 8, true);
+    for (LightBench* const each : {&by_tree, &bench}) {
+        double error = 0;
+        const double found = each->irradiance(at, normal, random_numbers(kDraws, 1), &error);
+        EXPECT_NEAR(found / wanted, 1, 4 * error / wanted + 1e-5);
+        EXPECT_LT(error / wanted, 0.01) << "too noisy to tell anything";
+    }
     if (!by_rays) return;
     EXPECT_NEAR(bench.irradiance_by_rays(at, normal, even_numbers(1 << 16, 1)) / wanted, 1, 0.01);
 }

@@ -14,7 +14,7 @@
 namespace clarity::test {
 namespace {
 
-constexpr unsigned kIn = 3, kOut = 15;
+constexpr unsigned kIn = 4, kOut = 15, kMostChances = 1024;
 
 // Numbers of all samples follow each other field by field.
 constexpr const char* kKernel = R"(
@@ -32,16 +32,17 @@ RT_INLINE void rt_test_store(global float *to, uint first, vfloat value)
 }
 kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 try_lights(const constant rt_frame *frame, const uint count, const uint draws, const float x, const float y, const float z,
-                       const global float *numbers, global float *answers, RT_CTX_PARAMS)
+           const float nx, const float ny, const float nz, const global float *numbers, global float *answers, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint first = (uint)get_global_id(0) * RT_LANES;
     const vfloat pick = rt_test_load(numbers, first), u1 = rt_test_load(numbers, count + first), u2 = rt_test_load(numbers, 2u * count + first);
     const vmask all = rt_vint(-1);
     const rt_vec at = rt_splat(x, y, z);
+    RT_BY_TREE(const rt_vec normal = rt_splat(nx, ny, nz); const vfloat u_tree = rt_test_load(numbers, 3u * count + first);)
     rt_light_sample s;
     if (draws != 0u) {
-        s = rt_light_draw(&ctx, frame, at, pick, u1, u2, all);
+        s = rt_light_draw(&ctx, frame, at, pick, u1, u2, all RT_TREE_ARG(u_tree) RT_TREE_ARG(normal));
     } else {
         s.towards = rt_warp_cone(u1, u2, rt_vfloat(2.0f));
         s.radiance_over_pdf = rt_splat(0.0f, 0.0f, 0.0f);
@@ -67,8 +68,8 @@ try_lights(const constant rt_frame *frame, const uint count, const uint draws, c
     vint light;
     rt_hit_lights(&ctx, frame, &ray, &t, &light);
     const vmask lit = RT_MASK(light >= rt_vint(0)), on = surface.hit & ~lit, off = ~surface.hit & ~lit;
-    rt_vec found = rt_emission_of_light(&ctx, &ray, t, light, all, &pdf);
-    const rt_vec of_surface = rt_emission_of_hit(&ctx, &ray, &hit, &surface, on, &other);
+    rt_vec found = rt_emission_of_light(&ctx, &ray, t, light, all RT_TREE_ARG(normal), &pdf);
+    const rt_vec of_surface = rt_emission_of_hit(&ctx, &ray, &hit, &surface, on RT_TREE_ARG(normal), &other);
     found = rt_choose(on, of_surface, found);
     pdf = rt_select(on, other, pdf);
     const rt_vec of_sky = rt_sky(&ctx, frame, s.towards, off, &other);
@@ -79,6 +80,19 @@ try_lights(const constant rt_frame *frame, const uint count, const uint draws, c
                                s.distance, s.pdf, rt_to_float(flags), rt_as_vfloat(s.light), found.x, found.y, found.z, pdf, t};
     for (uint i = 0; i < 15u; ++i) rt_test_store(answers, i * count + first, fields[i]);
 }
+#ifdef RT_LIGHT_TREE
+/* Of each emitter the probability that it is picked, behind how many there are. */
+kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
+try_chances(const constant rt_frame *frame, const float x, const float y, const float z, const float nx, const float ny, const float nz,
+            global float *answers, RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    const rt_lit_point point = {{x, y, z}, {nx, ny, nz}};
+    const uint count = ctx.lighting->emitter_count;
+    answers[0] = (float)count;
+    for (uint i = 0; i < count; ++i) answers[1u + i] = ctx.emitters[i].kind == RT_EMITTER_TREE ? 0.0f : rt_pick_of(&ctx, ctx.emitters + i, &point);
+}
+#endif
 )";
 
 const KernelRow& kernel_row() {
@@ -155,12 +169,13 @@ struct LightBench::Impl {
     ViewBuffers buffers;
 };
 
-LightBench::LightBench(const Scene& scene, const View& view, int lanes) : impl_(std::make_unique<Impl>()) {
+LightBench::LightBench(const Scene& scene, const View& view, int lanes, bool tree) : impl_(std::make_unique<Impl>()) {
     Impl& im = *impl_;
     im.scene = shared_scene(with_all_kinds(scene));
     im.view = view;
     im.device = Workbench::get().shared_device();
-    Settings settings = make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}});
+    Settings settings =
+        make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}, {"light_sampling", tree ? "tree" : "table"}});
     settings.optics = {RT_LIGHTS_ALL, RT_LOBES_ALL & ~RT_LOBE_COAT};  // varnish above a lamp needs the headers of surfaces
     Progress progress;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
@@ -175,25 +190,27 @@ LightBench::LightBench(const Scene& scene, const View& view, int lanes) : impl_(
 
 LightBench::~LightBench() = default;
 
-std::vector<LightDraw> LightBench::run(const Point& at, const Numbers& numbers, bool draws) {
+std::vector<LightDraw> LightBench::run(const Point& at, const Numbers& numbers, const Vec& normal, bool draws) {
     Impl& im = *impl_;
     return wrap_cl_errors(*im.device, "drawing lights", [&] {
         const unsigned lanes = im.prepared->layout.lanes;
         const size_t count = (numbers.size() + lanes - 1) / lanes * lanes;
         std::vector<float> in(kIn * count, 0.5f), out(kOut * count);
         for (size_t i = 0; i < numbers.size(); ++i)
-            for (unsigned k = 0; k < kIn; ++k) in[k * count + i] = numbers[i][k];
+            for (unsigned k = 0; k < kIn; ++k)
+                in[k * count + i] = k < 3 ? numbers[i][k] : numbers[i][0] * 1024 - std::floor(numbers[i][0] * 1024);
         Queue& queue = im.device->queue();
         Settings settings = im.prepared->settings;
         im.buffers.write(queue, *im.scene, *im.prepared->on_device,
                          {make_frame(im.view, settings, im.prepared->layout, *im.prepared->accel, 0)}, im.view);
-        im.buffers.write_emitters(queue, *im.scene, im.prepared->accel, im.view);
+        im.buffers.write_emitters(queue, *im.scene, im.prepared->accel, im.view, settings);
         const cl::Context& context = im.device->context();
         const cl::Buffer from(context, CL_MEM_READ_ONLY, in.size() * sizeof(float)),
             to(context, CL_MEM_READ_WRITE, out.size() * sizeof(float));
         queue.enqueueWriteBuffer(from, CL_TRUE, 0, in.size() * sizeof(float), in.data());
         KernelArguments kernel = im.program->kernel("try_lights");
         kernel.set("count", cl_uint(count)).set("draws", cl_uint(draws)).set("x", at[0]).set("y", at[1]).set("z", at[2]);
+        kernel.set("nx", float(normal[0])).set("ny", float(normal[1])).set("nz", float(normal[2]));
         kernel.set("numbers", from).set("answers", to);
         im.buffers.bind(*im.prepared->on_device, kernel);
         queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(count / lanes), cl::NDRange(1));
@@ -221,17 +238,34 @@ std::vector<LightDraw> LightBench::run(const Point& at, const Numbers& numbers, 
     });
 }
 
-std::vector<LightDraw> LightBench::draw(const Point& at, const Numbers& numbers) {
-    return run(at, numbers, true);
+std::vector<LightDraw> LightBench::draw(const Point& at, const Numbers& numbers, const Vec& normal) {
+    return run(at, numbers, normal, true);
 }
 
-std::vector<LightDraw> LightBench::find(const Point& at, const Numbers& numbers) {
-    return run(at, numbers, false);
+std::vector<LightDraw> LightBench::find(const Point& at, const Numbers& numbers, const Vec& normal) {
+    return run(at, numbers, normal, false);
+}
+
+std::vector<float> LightBench::chances(const Point& at, const Vec& normal) {
+    Impl& im = *impl_;
+    draw(at, even_numbers(8, 1), normal);  // uploads the scene
+    return wrap_cl_errors(*im.device, "asking for chances", [&] {
+        std::vector<float> out(1 + kMostChances);
+        const cl::Buffer to(im.device->context(), CL_MEM_READ_WRITE, out.size() * sizeof(float));
+        KernelArguments kernel = im.program->kernel("try_chances");
+        kernel.set("x", at[0]).set("y", at[1]).set("z", at[2]).set("answers", to);
+        kernel.set("nx", float(normal[0])).set("ny", float(normal[1])).set("nz", float(normal[2]));
+        im.buffers.bind(*im.prepared->on_device, kernel);
+        Queue& queue = im.device->queue();
+        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(1), cl::NDRange(1));
+        queue.enqueueReadBuffer(to, CL_TRUE, 0, out.size() * sizeof(float), out.data());
+        return std::vector<float>(out.begin() + 1, out.begin() + 1 + std::ptrdiff_t(out[0]));
+    });
 }
 
 double LightBench::irradiance(const Point& at, const Vec& normal, const Numbers& numbers, double* error) {
     double sum = 0, squares = 0;
-    for (const LightDraw& draw : run(at, numbers, true)) {
+    for (const LightDraw& draw : run(at, numbers, normal, true)) {
         if (!draw.valid || draw.occluded) continue;
         const double brought = draw.light[0] * std::max(0.0, dot(normal, to_vec(draw.towards)));
         sum += brought;
@@ -244,7 +278,8 @@ double LightBench::irradiance(const Point& at, const Vec& normal, const Numbers&
 
 double LightBench::irradiance_by_rays(const Point& at, const Vec& normal, const Numbers& numbers) {
     double sum = 0;
-    for (const LightDraw& ray : run(at, numbers, false)) sum += ray.found[0] * std::max(0.0, dot(normal, to_vec(ray.towards)));
+    for (const LightDraw& ray : run(at, numbers, normal, false))
+        sum += ray.found[0] * std::max(0.0, dot(normal, to_vec(ray.towards)));
     return sum * 4 * kPi / double(numbers.size());
 }
 

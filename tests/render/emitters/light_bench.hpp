@@ -30,19 +30,22 @@ Numbers random_numbers(size_t count, unsigned seed);
 
 class LightBench {
  public:
-    LightBench(const Scene& scene, const View& view, int lanes = 8);
+    // tree: lights are picked by a light tree.
+    LightBench(const Scene& scene, const View& view, int lanes = 8, bool tree = false);
     ~LightBench();
-    // Draws lights from a point.
-    std::vector<LightDraw> draw(const Point& at, const Numbers& numbers);
+    // Draws lights from a point. normal: of the surface there, for the light tree; 0, 0, 0: it is lit from both sides.
+    std::vector<LightDraw> draw(const Point& at, const Numbers& numbers, const Vec& normal = {});
     // Does not draw, but sends rays in directions that fill the sphere evenly, by the second and third number; `pdf` is 0.
-    std::vector<LightDraw> find(const Point& at, const Numbers& numbers);
+    std::vector<LightDraw> find(const Point& at, const Numbers& numbers, const Vec& normal = {});
+    // With which probability each emitter is picked at a point, by its number.
+    std::vector<float> chances(const Point& at, const Vec& normal);
     // The irradiance at a point with a normal: the mean of what draws bring, in red. error: its standard error.
     double irradiance(const Point& at, const Vec& normal, const Numbers& numbers, double* error = nullptr);
     // The same by rays in all directions.
     double irradiance_by_rays(const Point& at, const Vec& normal, const Numbers& numbers);
 
  private:
-    std::vector<LightDraw> run(const Point& at, const Numbers& numbers, bool draws);
+    std::vector<LightDraw> run(const Point& at, const Numbers& numbers, const Vec& normal, bool draws);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -68,7 +68,7 @@ struct PathReplayer::Impl {
         rt_frame frame = make_frame(of_frame, settings, prepared.layout, *prepared.accel, first);
         frame.samples = count;
         view.write(queue, *prepared.scene, *prepared.on_device, {frame}, of_frame);
-        view.write_emitters(queue, *prepared.scene, prepared.accel, of_frame,
+        view.write_emitters(queue, *prepared.scene, prepared.accel, of_frame, prepared.settings,
                             prepared.is_moved ? prepared.on_device.get() : nullptr);
         KernelArguments kernel = program.kernel();
         kernel.set("x", cl_uint(x)).set("y", cl_uint(y)).set("capacity", capacity);
@@ -86,6 +86,23 @@ struct PathReplayer::Impl {
         queue.enqueueNDRangeKernel(sum.kernel(), cl::NullRange, cl::NDRange(1), cl::NDRange(1));
         finish(*device, queue, "tracing the samples of a pixel once more");
         read(first, count, capacity, replay);
+    }
+
+    SamplerPoints draw(const TraceProgram& program, const Prepared& prepared, const Settings& settings, const View& of_frame,
+                       unsigned x, unsigned y, unsigned count, unsigned events) {
+        const cl_uint sets = 1 + 2 * events;
+        SamplerPoints points{count, 4 * sets, std::vector<float>(size_t(count) * 4 * sets)};
+        rt_frame frame = make_frame(of_frame, settings, prepared.layout, *prepared.accel, 0);
+        frame.samples = count;
+        view.write(queue, *prepared.scene, *prepared.on_device, {frame}, of_frame);
+        KernelArguments kernel = program.kernel("draw_numbers");
+        kernel.set("frame", view.frame()).set("x", cl_uint(x)).set("y", cl_uint(y)).set("sets", sets);
+        kernel.set("numbers", records.fit(device->context(), points.values.size() * sizeof(float)));
+        const size_t local = prepared.layout.local_size(), lanes = prepared.layout.lanes;
+        const size_t items = ((count + lanes - 1) / lanes + local - 1) / local * local;
+        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(items), cl::NDRange(local));
+        queue.enqueueReadBuffer(records.get(), CL_TRUE, 0, points.values.size() * sizeof(float), points.values.data());
+        return points;
     }
 
     void read(unsigned first, unsigned count, cl_uint capacity, Replay& replay) {
@@ -131,6 +148,16 @@ void PathReplayer::trace(const Prepared& prepared, const Settings& settings, con
             done += next;
         }
     });
+}
+
+SamplerPoints PathReplayer::points(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y,
+                                   unsigned count, unsigned events, Progress& progress) {
+    Impl& im = *impl_;
+    check_pixel(settings, x, y);
+    prepared.expect_known(view);
+    const auto program = tried_program(im.programs, prepared, replay_row(), progress);
+    return wrap_cl_errors(*im.device, "drawing the random numbers of a pixel",
+                          [&] { return im.draw(*program, prepared, settings, view, x, y, count, events); });
 }
 
 const Tracer& replay_tracer() {

@@ -8,6 +8,7 @@
 #include "device/device.hpp"
 #include "render/launch/prepared.hpp"
 #include "render/settings/settings.hpp"
+#include "render/tracers/replay/sampler_points.hpp"
 #include "render/view/view.hpp"
 #include "rt_types.h"
 #include "tracers/replay/path_record.h"
@@ -38,6 +39,9 @@ class PathReplayer {
     // Error(failed), and Cancelled.
     void trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y, unsigned count,
                Progress& progress, Replay& replay);
+    // The random numbers of the first `count` samples of a pixel, of its camera ray and of `events` events. Throws as trace().
+    SamplerPoints points(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y,
+                         unsigned count, unsigned events, Progress& progress);
 
  private:
     struct Impl;

@@ -1,0 +1,180 @@
+#include "render/emitters/light_tree.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace clarity {
+namespace {
+
+constexpr int kBins = 12;
+// Added to the angles of cones, in radians, since their cosines are rounded to floats.
+constexpr double kSlack = 1e-3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The solid angle that light of a cone goes into, weighted by the cosine beyond it (equation 1 of the paper).
+double orientation_cost(const LightBound& b) {
+    const double o = b.spread, w = std::min(o + b.reach, kPi);
+    return 2 * kPi * (1 - std::cos(o)) +
+           kPi / 2 * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
+}
+// The area of the box. The squared diagonal tells lights in a row apart, whose box has none.
+double size_cost(const LightBound& b) {
+    const Vec d = b.upper - b.lower;
+    return 2 * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]) + dot(d, d);
+}
+double cost(const LightBound& b) {
+    return b.intensity * orientation_cost(b) * size_cost(b);
+}
+
+double middle(const LightBound& b, int axis) {
+    return 0.5 * (b.lower[size_t(axis)] + b.upper[size_t(axis)]);
+}
+
+struct Split {
+    double cost = kInfinity;
+    int axis = 0, bin = 0;  // the bins up to this one go to the first child
+};
+
+// The bins of middles along an axis.
+struct Bins {
+    double low, scale;
+    int operator()(double at) const { return std::min(kBins - 1, int((at - low) * scale)); }
+};
+
+class Builder {
+ public:
+    Builder(const std::vector<LightBound>& bounds, std::vector<rt_u32>& leaves) : bounds_(bounds), leaves_(leaves) {
+        order_.resize(bounds.size());
+        std::iota(order_.begin(), order_.end(), size_t(0));
+        leaves_.assign(bounds.size(), RT_NONE);
+    }
+
+    std::vector<rt_light_node> build() {
+        struct Task {
+            size_t begin, end;
+            rt_u32 node;
+        };
+        std::vector<Task> tasks;
+        if (!order_.empty()) {
+            nodes_.reserve(2 * order_.size());
+            nodes_.emplace_back().parent = RT_NONE;
+            tasks.push_back({0, order_.size(), 0});
+        }
+        double all = 1;
+        while (!tasks.empty()) {
+            const Task task = tasks.back();
+            tasks.pop_back();
+            const LightBound bound = joined(task.begin, task.end);
+            if (task.node == 0) all = bound.intensity;
+            write(task.node, bound, all);
+            if (task.end - task.begin == 1) {
+                nodes_[task.node].emitter = bound.emitter;
+                leaves_[order_[task.begin]] = task.node;
+                continue;
+            }
+            const size_t half = divide(task.begin, task.end, bound);
+            const auto child = rt_u32(nodes_.size());
+            nodes_[task.node].child = child;
+            for (int k = 0; k < 2; ++k) nodes_.emplace_back().parent = task.node;
+            tasks.push_back({half, task.end, child + 1});
+            tasks.push_back({task.begin, half, child});
+        }
+        return std::move(nodes_);
+    }
+
+ private:
+    const LightBound& at(size_t i) const { return bounds_[order_[i]]; }
+
+    LightBound joined(size_t begin, size_t end) const {
+        LightBound all = at(begin);
+        for (size_t i = begin + 1; i < end; ++i) all = join(all, at(i));
+        return all;
+    }
+
+    void write(rt_u32 number, const LightBound& bound, double all) {
+        rt_light_node& node = nodes_[number];
+        for (size_t k = 0; k < 3; ++k) {
+            node.lower[k] = static_cast<float>(bound.lower[k]);
+            node.upper[k] = static_cast<float>(bound.upper[k]);
+            node.axis[k] = static_cast<float>(bound.axis[k]);
+        }
+        node.intensity = static_cast<float>(bound.intensity / all);
+        node.cos_spread = static_cast<float>(std::cos(std::min(bound.spread + kSlack, kPi)));
+        node.cos_reach = static_cast<float>(std::cos(std::min(bound.reach + kSlack, kPi / 2)));
+        node.two_sided = bound.two_sided;
+        node.child = RT_NONE;
+    }
+
+    // Brings the emitters of the first child to the front and returns where those of the second begin.
+    size_t divide(size_t begin, size_t end, const LightBound& parent) {
+        Vec low{kInfinity, kInfinity, kInfinity}, high = -1.0 * low;
+        for (size_t i = begin; i < end; ++i)
+            for (int k = 0; k < 3; ++k) {
+                low[size_t(k)] = std::min(low[size_t(k)], middle(at(i), k));
+                high[size_t(k)] = std::max(high[size_t(k)], middle(at(i), k));
+            }
+        const Vec size = parent.upper - parent.lower;
+        const double longest = std::max({size[0], size[1], size[2]});
+        Split best;
+        for (int k = 0; k < 3; ++k) {
+            const double width = high[size_t(k)] - low[size_t(k)];
+            if (!(width > 0)) continue;
+            // Thin boxes are no good bounds: the paper's regularization.
+            Split split = best_split(begin, end, k, {low[size_t(k)], kBins / width});
+            split.cost *= longest / size[size_t(k)];
+            if (split.cost < best.cost) best = split;
+        }
+        const auto first = order_.begin() + std::ptrdiff_t(begin), last = order_.begin() + std::ptrdiff_t(end);
+        if (best.cost < kInfinity) {
+            const size_t k = size_t(best.axis);
+            const Bins bin{low[k], kBins / (high[k] - low[k])};
+            const auto half =
+                std::partition(first, last, [&](size_t i) { return bin(middle(bounds_[i], best.axis)) <= best.bin; });
+            if (half != first && half != last) return size_t(half - order_.begin());
+        }
+        return begin + (end - begin) / 2;  // all are in one place
+    }
+
+    Split best_split(size_t begin, size_t end, int axis, const Bins& bin) const {
+        LightBound bins[kBins];
+        bool used[kBins] = {};
+        for (size_t i = begin; i < end; ++i) {
+            const int b = bin(middle(at(i), axis));
+            bins[b] = used[b] ? join(bins[b], at(i)) : at(i);
+            used[b] = true;
+        }
+        // Costs of the bins from each one on.
+        double behind[kBins + 1] = {};
+        LightBound sum;
+        bool any = false;
+        for (int b = kBins; b-- > 0;) {
+            if (used[b]) sum = any ? join(sum, bins[b]) : bins[b];
+            any = any || used[b];
+            behind[b] = any ? cost(sum) : kInfinity;
+        }
+        Split best;
+        best.axis = axis;
+        any = false;
+        for (int b = 0; b + 1 < kBins; ++b) {
+            if (used[b]) sum = any ? join(sum, bins[b]) : bins[b];
+            any = any || used[b];
+            const double both = any ? cost(sum) + behind[b + 1] : kInfinity;
+            if (both < best.cost) best.cost = both, best.bin = b;
+        }
+        return best;
+    }
+
+    const std::vector<LightBound>& bounds_;
+    std::vector<rt_u32>& leaves_;
+    std::vector<size_t> order_;
+    std::vector<rt_light_node> nodes_;
+};
+
+}  // namespace
+
+std::vector<rt_light_node> build_light_tree(const std::vector<LightBound>& bounds, std::vector<rt_u32>& leaves) {
+    return Builder(bounds, leaves).build();
+}
+
+}  // namespace clarity
