@@ -131,7 +131,8 @@ std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, P
 
 void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {
     const Wanted wanted = hits.instance || hits.uv ? Wanted::hits : Wanted::nearest;
-    trace(rays, wanted, progress, [&](size_t first, size_t count, const rt_hit* some) { write_hits(some, count, hits, first); });
+    trace(rays, wanted, progress,
+          [&](size_t first, size_t count, const rt_hit* some) { write_hits(some, count, hits, first); });
 }
 
 void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& progress) {
