@@ -67,6 +67,20 @@ typedef struct rt_hits {
 #endif
 } rt_hits;
 
+#if RT_HAS_INSTANCES
+/* What is kept of rays in the world while they are in an instance. */
+typedef struct rt_visit {
+    uint root;    /* of the mesh's tree */
+    int instance; /* its index; a traversal may set -1 where the rays are in none */
+    int first;    /* number of its first primitive */
+    vint before;  /* number of the hit's primitive */
+#if RT_LANES > 1
+    vmask enters; /* the lanes that are in the instance */
+    vfloat t;     /* of the hits before */
+#endif
+} rt_visit;
+#endif
+
 /* Says of which kind rays are, RT_SEEN_BY_* as a vint. Nothing where no instance has a mask. */
 #if RT_HAS_MASKS
 #define RT_SEEN_BY(ray, kind) (ray)->mask = (kind);

@@ -14,7 +14,8 @@ class SourceWriter;
 enum : unsigned {
     kNearestOnly = 1,     // has no any-hit traversals
     kReadsUvs = 2,        // reads texture coordinates even if the scene has no texture
-    kLimitRegisters = 4,  // is faster on GPUs with fewer registers than it would take: program_cache.cpp has the numbers
+    kLimitRegisters = 4,  // is faster on GPUs with fewer registers than it would take, where a scene is of triangles and spheres
+                          // alone: program_cache.cpp has the numbers
     kVotes = 8,           // uses votes among the work-items of a warp: cl/lanes/subgroup.h
     kFrame = 16,          // traces frames; so on a frame of no size it ends at once
     kCountsRays = 32,     // traces more than camera rays: it has `counters`, and the `distances` of the camera rays
@@ -22,7 +23,8 @@ enum : unsigned {
     kPicksLights = 128,   // has the table of emitters and the sky: cl/shading/emitters.h
     kSumsSamples = 256,   // adds several samples of a launch in their order, to a film of two planes: cl/tracers/path/sum.h
     kWhitted = 512,       // lights with cl/shading/shading.h
-    kAllHits = 1024       // lists hits instead of looking for the nearest: cl/lanes/hit_list.h
+    kAllHits = 1024,      // lists hits instead of looking for the nearest: cl/lanes/hit_list.h
+    kLimitRegistersAlways = 2048  // is faster with fewer registers, whatever the scene holds
 };
 
 struct KernelRow {

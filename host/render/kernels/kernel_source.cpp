@@ -93,9 +93,9 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
     KernelSource source;
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;
-    // Exception: with instances, polygons or shapes more registers would be spilled, which costs more than the limit gains.
-    source.limit_registers =
-        row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons && !features.shapes;
+    // Of Whitted's tracers instances, polygons and shapes would spill more registers, which costs more than the limit gains.
+    const bool is_plain = !features.instances && !features.polygons && !features.shapes;
+    source.limit_registers = !layout.cpu && (row.has(kLimitRegistersAlways) || (row.has(kLimitRegisters) && is_plain));
 
     SourceWriter out;
     write_layout(out, layout);

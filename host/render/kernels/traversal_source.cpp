@@ -33,10 +33,10 @@ constexpr const char* kSingleRayPrototype =
     "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit);";
 
 // One instance of the template. name: name of the traversal's function, leaf: of the leaf tests' functions, both without the
-// query's suffix. mixed: whether leaves may hold other primitives than triangles.
+// query's suffix. mixed: whether leaves may hold other primitives than triangles. instances: whether they may hold instances.
 struct Instance {
     std::string name, leaf;
-    bool mixed;
+    bool mixed, instances;
 };
 
 void define_function(SourceWriter& out, const std::string& macro, const std::string& function) {
@@ -71,6 +71,11 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
     define_function(out, "RT_TRAVERSE_STREAM", instance.name + "_stream");
     if (traversal.requeues) define_function(out, "RT_TRAVERSE_REQUEUED", instance.name + "_long");
     if (traversal.by_warps) define_function(out, "RT_TRAVERSE_WARP", instance.name + "_warp");
+    if (instance.instances) {
+        define_function(out, "RT_ENTER_INSTANCE", "rt_enter_instance");
+        define_function(out, "RT_LEAVE_INSTANCE", "rt_leave_instance");
+        define_function(out, "RT_WORLD_LEAF", "rt_leaf_world");
+    }
     out.define_int("RT_TRIANGLES_ONLY", !instance.mixed);
     each_step([&](const std::string& macro, const std::string& function) { define_function(out, macro, function); });
     if (traversal.cpu) {
@@ -80,8 +85,9 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
     out.line(kPrototypes);
     out.part(traversal.file, traversal.text);
     each_step([&](const std::string& macro, const std::string&) { out.undef(macro); });
-    for (const char* macro : {"RT_TRAVERSE", "RT_TRAVERSE_STREAM", "RT_TRAVERSE_REQUEUED", "RT_TRAVERSE_WARP", "RT_LOADED_PRIM",
-                              "RT_TRIANGLES_ONLY", "RT_SINGLE_RAY_MIXED"})
+    for (const char* macro :
+         {"RT_TRAVERSE", "RT_TRAVERSE_STREAM", "RT_TRAVERSE_REQUEUED", "RT_TRAVERSE_WARP", "RT_LOADED_PRIM",
+          "RT_ENTER_INSTANCE", "RT_LEAVE_INSTANCE", "RT_WORLD_LEAF", "RT_TRIANGLES_ONLY", "RT_SINGLE_RAY_MIXED"})
         out.undef(macro);
 }
 
@@ -133,11 +139,11 @@ void write_query(SourceWriter& out, const TraversalTemplate& traversal, const Sc
     if (features.shapes) out.include("primitives/leaf_shape.h");
     if (features.instances) {
         out.include("primitives/leaf_mesh.h");
-        write_traversal(out, traversal, {"rt_mesh", "rt_leaf_mesh", false});
+        write_traversal(out, traversal, {"rt_mesh", "rt_leaf_mesh", false, false});
     }
     out.include("primitives/leaf_scene.h");
     const bool mixed = features.spheres || features.polygons || features.shapes || features.instances;
-    write_traversal(out, traversal, {"rt_scene", "rt_leaf_scene", mixed});
+    write_traversal(out, traversal, {"rt_scene", "rt_leaf_scene", mixed, features.instances});
     out.include("primitives/query.h");
     out.undef("RT_ANY_HIT");
     out.undef("RT_FN");

@@ -22,9 +22,11 @@
 #if RT_LANES == 1
 #if RT_ANY_HIT
 #define BVH4_STACK_ENTRY uint
+#define BVH4_UNSEEN(ref) (ref)
 #define BVH4_RETURN_POPPED() return stack[--*top]
 #else
 #define BVH4_STACK_ENTRY ulong
+#define BVH4_UNSEEN(ref) BVH4_ENTRY(-INFINITY, ref) /* within reach of any ray */
 #define BVH4_RETURN_POPPED()                                                                                                   \
     {                                                                                                                          \
         ulong popped;                                                                                                          \
@@ -33,10 +35,38 @@
         return (uint)popped;                                                                                                   \
     }
 #endif
-/* One step: visits the node or leaf `ref`. Returns the next node reference. */
-RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_rays *ray, const bvh4_ray *slab, rt_hits *hit,
+#ifdef RT_ENTER_INSTANCE
+/* The step in a leaf whose first primitive is an instance, or to what is behind an instance. Returns the next node reference. */
+RT_INLINE uint RT_CAT(RT_TRAVERSE, _move)(const rt_ctx *ctx, uint ref, const rt_rays *world, bvh4_place *place, rt_hits *hit,
                                           BVH4_STACK_ENTRY *stack, uint *top)
 {
+    if (ref == BVH4_LEAVE) {
+        RT_LEAVE_INSTANCE(&place->visit, hit);
+        place->visit.instance = -1;
+        place->ray.ox = world->ox, place->ray.oy = world->oy, place->ray.oz = world->oz;
+        place->ray.dx = world->dx, place->ray.dy = world->dy, place->ray.dz = world->dz;
+        rt_prepare(&place->ray, 1u); /* done again, which costs less than registers for all of it */
+#ifdef RT_COUNT_STEPS
+        place->ray.counts = world->counts;
+#endif
+        place->slab = bvh4_prepare(&place->ray);
+        BVH4_RETURN_POPPED();
+    }
+    const uint first = BVH4_LEAF_FIRST(ref), count = BVH4_LEAF_COUNT(ref);
+    if (count > 1u) stack[(*top)++] = BVH4_UNSEEN(BVH4_MAKE_LEAF(first + 1u, count - 1u));
+    if (!RT_ENTER_INSTANCE(ctx, first, &place->ray, hit, &place->visit, &place->ray)) BVH4_RETURN_POPPED();
+    place->slab = bvh4_prepare(&place->ray);
+    stack[(*top)++] = BVH4_UNSEEN(BVH4_LEAVE);
+    return BVH4_NODE_REF(place->visit.root);
+}
+#endif
+
+/* One step: visits the node or leaf `ref`. Returns the next node reference. */
+RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_rays *world, bvh4_place *place, rt_hits *hit,
+                                          BVH4_STACK_ENTRY *stack, uint *top)
+{
+    const rt_rays *const ray = BVH4_RAY(place, world);
+    const bvh4_ray *const slab = &place->slab;
     const uint is_leaf = ref >> 31, first = BVH4_LEAF_FIRST(ref), count = BVH4_LEAF_COUNT(ref);
     /* a, b, c: a node's rows of near planes, or the first triangle. d, e, f: its rows of far planes, or the second triangle. */
     float4 a, b, c, d, e, f;
@@ -51,17 +81,19 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_
         f = BVH4_ROW(node, slab->near_z ^ BVH4_FAR_Z);
         child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
     }
-#if RT_TRIANGLES_ONLY
+#if RT_TRIANGLES_ONLY || defined(RT_ENTER_INSTANCE)
     else {
         const global float4 *row = (const global float4 *)(ctx->leaves + first);
         a = row[0];
         b = row[1];
         c = row[2];
+#if RT_TRIANGLES_ONLY
         if (count > 1u) {
             d = row[3];
             e = row[4];
             f = row[5];
         }
+#endif
     }
 #endif
     if (bvh4_hidden(is_leaf)) {
@@ -73,6 +105,15 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_
             RT_LOADED_PRIM(ctx, &two, first + 1u, ray, hit);
         }
         const uint done = 2u;
+#elif defined(RT_ENTER_INSTANCE)
+        if (ref == BVH4_LEAVE || RT_REF_KIND(as_uint(a.w)) == RT_REF_INSTANCE)
+            return RT_CAT(RT_TRAVERSE, _move)(ctx, ref, world, place, hit, stack, top);
+        const rt_loaded_prim one = {a, b, c};
+        if (RT_REF_KIND(as_uint(a.w)) == RT_REF_TRIANGLE)
+            RT_LOADED_PRIM(ctx, &one, first, ray, hit);
+        else
+            RT_WORLD_LEAF(ctx, first, ray, hit);
+        const uint done = 1u;
 #else
         for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
         const uint done = count;
@@ -114,7 +155,7 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_
         bvh4_order(&t1, &child1, &t3, &child3);
         bvh4_order(&t1, &child1, &t2, &child2);
         const uint more = 1u + (t2 < INFINITY ? 1u : 0u) + (t3 < INFINITY ? 1u : 0u);
-        if (RT_STACK_OK(*top + more, BVH4_STACK + 1u, hit)) {
+        if (RT_STACK_OK(*top + more, BVH4_ROOM + 1u, hit)) {
             *top += more;
             stack[*top - 1u] = BVH4_ENTRY(t1, child1);
             if (t2 < INFINITY) stack[*top - 2u] = BVH4_ENTRY(t2, child2);
@@ -156,11 +197,15 @@ RT_INLINE void RT_CAT(RT_TRAVERSE, _children)(const rt_ctx *ctx, uint ref, const
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_LANES == 1
-    BVH4_STACK_ENTRY stack[BVH4_STACK + 1];
+    BVH4_STACK_ENTRY stack[BVH4_ROOM + 1];
     stack[0] = (BVH4_STACK_ENTRY)BVH4_LOWEST;
     uint top = 1u, ref = BVH4_NODE_REF(root);
-    const bvh4_ray slab = bvh4_prepare(ray);
-    while (ref != BVH4_DONE && RT_MAY_GO_ON(hit)) ref = RT_CAT(RT_TRAVERSE, _step)(ctx, ref, ray, &slab, hit, stack, &top);
+    bvh4_place place;
+    bvh4_place_in_world(ray, &place);
+    while (ref != BVH4_DONE && RT_MAY_GO_ON(hit)) ref = RT_CAT(RT_TRAVERSE, _step)(ctx, ref, ray, &place, hit, stack, &top);
+#ifdef RT_ENTER_INSTANCE
+    if (place.visit.instance >= 0) RT_LEAVE_INSTANCE(&place.visit, hit); /* stopped inside, by a shadow or by its budget */
+#endif
 #else
     /* Bits 0 and 1 of a slot tell on which side of the node the child lies in x and y. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u);
@@ -333,4 +378,5 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
 #endif
 #if RT_LANES == 1
 #undef BVH4_STACK_ENTRY
+#undef BVH4_UNSEEN
 #endif

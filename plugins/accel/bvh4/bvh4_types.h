@@ -46,6 +46,16 @@ typedef struct rt_requeue_scratch {
 
 #define BVH4_DONE 0xFFFFFFFFu /* instead of a node reference: the stack is empty */
 
+/* A ray goes into instances in the same loop, so that the rays of a warp need not all wait while some are inside. Then the stack holds the
+ * mesh's entries above the world's. BVH4_LEAVE between them ends the mesh; what is left of the leaf lies below it. It is
+ * told from leaves by having no primitives, and may be loaded like them. */
+#if RT_HAS_INSTANCES
+#define BVH4_ROOM (2u * BVH4_STACK + 2u)
+#define BVH4_LEAVE BVH4_EMPTY
+#else
+#define BVH4_ROOM BVH4_STACK
+#endif
+
 /* Maximum and minimum of floats by their bits as integers. The result is right unless both are negative. The compiler makes one
  * instruction of two of them (VIMNMX3 on Hopper), which saves an eighth of the time of all rays. Of two negative entry
  * distances the lesser is taken and of two negative exit distances the greater, so no box that is entered is missed. */
@@ -141,14 +151,37 @@ RT_INLINE void bvh4_order(float *t0, uint *child0, float *t1, uint *child1)
 #define BVH4_ENTRY(t, child) ((ulong)as_uint(t) << 32 | (child))
 #define BVH4_LOWEST BVH4_ENTRY(-INFINITY, BVH4_DONE)
 
+/* What changes for a ray while it is in an instance. */
+typedef struct bvh4_place {
+    bvh4_ray slab;
+#if RT_HAS_INSTANCES
+    rt_rays ray;
+    rt_visit visit;
+#endif
+} bvh4_place;
+#if RT_HAS_INSTANCES
+#define BVH4_RAY(place, world) (&(place)->ray)
+#else
+#define BVH4_RAY(place, world) (world)
+#endif
+
+RT_INLINE void bvh4_place_in_world(const rt_rays *world, bvh4_place *place)
+{
+    place->slab = bvh4_prepare(world);
+#if RT_HAS_INSTANCES
+    place->ray = *world;
+    place->visit.instance = -1;
+#endif
+}
+
 typedef ulong rt_step_entry;
-typedef bvh4_ray rt_step_ray;
-#define RT_STEP_STACK_SIZE (BVH4_STACK + 1u)
+typedef bvh4_place rt_step_ray;
+#define RT_STEP_STACK_SIZE (BVH4_ROOM + 1u)
 #define RT_STEP_DONE BVH4_DONE
 #define RT_STEP_IS_LEAF(at) ((at) >= BVH4_LEAF)
 RT_INLINE uint rt_begin_steps(uint root, const rt_rays *ray, rt_step_ray *step_ray, rt_step_entry *stack, uint *top)
 {
-    *step_ray = bvh4_prepare(ray);
+    bvh4_place_in_world(ray, step_ray);
     stack[0] = BVH4_LOWEST;
     *top = 1u;
     return BVH4_NODE_REF(root);

@@ -15,7 +15,7 @@ KernelRow row_of(const std::vector<std::string>& defines) {
     r.entry = "trace_path";
     r.headers = path_headers();
     r.defines = defines;
-    r.traits = kFrame | kCountsRays | kPicksLights | kSumsSamples;
+    r.traits = kLimitRegistersAlways | kFrame | kCountsRays | kPicksLights | kSumsSamples;
     return r;
 }
 
