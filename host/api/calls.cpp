@@ -194,6 +194,7 @@ CLARITY_EXPORT int32_t clarity_rows(const char* const* words, void (*row)(void*,
 CLARITY_EXPORT int32_t clarity_render(clarity_tracer* tracer, clarity_picture* picture, const clarity_watch* watch) {
     return run_call([&] {
         Watched progress = watched(watch);
-        not_null(tracer, "tracer").render(copy_of(picture, "clarity_picture"), *picture, progress);
+        const clarity_picture asked = copy_of(picture, "clarity_picture");  // checks it, before *picture
+        not_null(tracer, "tracer").render(asked, *picture, progress);
     });
 }

@@ -65,7 +65,8 @@ struct clarity_tracer {
     // The scene with these places. Throws Error(usage).
     clarity::Pose pose_of(const clarity_places& places) const;
     // take: gets the number of a first ray, and hits of it and the next ones, on any thread.
-    void trace(const clarity_rays& rays, bool any_hit, clarity::Progress& progress, const clarity::TakeHits& take);
+    enum class Wanted { hits, nearest, occlusion };  // nearest: t and prim alone
+    void trace(const clarity_rays& rays, Wanted wanted, clarity::Progress& progress, const clarity::TakeHits& take);
     // Of the rays from `begin` on.
     clarity::ReadRays reader(const clarity_rays& rays, size_t begin) const;
     // take: gets the hits of some rays, and the number of the first one.

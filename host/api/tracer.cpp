@@ -72,7 +72,7 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
     prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
 }
 
-void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& progress, const TakeHits& take) {
+void clarity_tracer::trace(const clarity_rays& rays, Wanted wanted, Progress& progress, const TakeHits& take) {
     check_rays(rays);
     if (rays.packed && rays.packed->tracer != id_)
         throw Error(Exit::usage, "the packed rays are those of another tracer: pack them with this one");
@@ -82,7 +82,8 @@ void clarity_tracer::trace(const clarity_rays& rays, bool any_hit, Progress& pro
     const std::lock_guard<std::mutex> lock(mutex_);
     progress.stage("tracing rays");
     RayQuery query;
-    query.any_hit = any_hit;
+    query.any_hit = wanted == Wanted::occlusion;
+    query.brief = wanted == Wanted::nearest;
     query.mask = mask_of(rays);
     query.progress = &progress;
     size_t first = 0;
@@ -129,12 +130,14 @@ std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, P
 }
 
 void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {
-    trace(rays, false, progress, [&](size_t first, size_t count, const rt_hit* some) { write_hits(some, count, hits, first); });
+    const Wanted wanted = hits.instance || hits.uv ? Wanted::hits : Wanted::nearest;
+    trace(rays, wanted, progress,
+          [&](size_t first, size_t count, const rt_hit* some) { write_hits(some, count, hits, first); });
 }
 
 void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& progress) {
     if (rays.count > 0) not_null(occluded, "occluded");
-    trace(rays, true, progress, [&](size_t first, size_t count, const rt_hit* some) {
+    trace(rays, Wanted::occlusion, progress, [&](size_t first, size_t count, const rt_hit* some) {
         for (size_t i = 0; i < count; ++i) occluded[first + i] = some[i].t == 0;
     });
 }

@@ -146,13 +146,15 @@ class Hit:
     prim      int32, the primitive, counted through all instances: of a mesh of arrays the face; -1 where nothing is hit
     instance  int32, -1: none
     uv        float32, two a ray: weights of a triangle's second and third corner
+
+    brief: only t and prim, which are found faster; the others are None.
     """
 
-    def __init__(self, shape):
+    def __init__(self, shape, brief=False):
         self.t = np.empty(shape, np.float32)
         self.prim = np.empty(shape, np.int32)
-        self.instance = np.empty(shape, np.int32)
-        self.uv = np.empty(tuple(shape) + (2,), np.float32)
+        self.instance = None if brief else np.empty(shape, np.int32)
+        self.uv = None if brief else np.empty(tuple(shape) + (2,), np.float32)
         self._rays = None
 
     @property
@@ -172,11 +174,13 @@ class Hit:
 
     def _check(self, shape):
         for name, dtype in _OF_HIT.items():
+            if self.uv is None and name in ("instance", "uv"):
+                continue
             check_out(getattr(self, name), shape + ((2,) if name == "uv" else ()), dtype, f"out.{name}")
 
     def _struct_for(self, rays):
         self._rays = rays
-        places = [address_of(array) for array in (self.t, self.prim, self.instance, self.uv)]
+        places = [None if array is None else address_of(array) for array in (self.t, self.prim, self.instance, self.uv)]
         return header.structs["clarity_hits"](_HITS_BYTES, 0, *places)
 
 

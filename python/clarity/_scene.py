@@ -124,13 +124,13 @@ class Tracer:
             if rays.count:
                 self._warm.add(function.__name__)
 
-    def closest(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
+    def closest(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, brief=False, out=None, progress=None):
         """The nearest hits of rays as a Hit. Rays of pack(), or arrays of float32 or float64 in any strides, broadcast against each other. mask: the
-        rays hit only instances that share a bit of it with their mask. out: a Hit of the same shape, which is filled and
-        returned."""
+        rays hit only instances that share a bit of it with their mask. brief: only t and prim, faster. out: a Hit of the same
+        shape, which is filled and returned."""
         rays = rays_of(origins, directions, t_min, t_max, mask)
         if out is None:
-            hit = Hit(rays.shape)
+            hit = Hit(rays.shape, brief)
         else:
             hit = out
             hit._check(rays.shape)

@@ -137,6 +137,14 @@ class Hits(Case):
         again = rt.closest(origins[::-1], directions[::-1], out=hit)
         self.assertTrue(again is hit and all(a is b for a, b in zip(arrays, (hit.t, hit.prim, hit.instance, hit.uv))))
         np.testing.assert_array_equal(hit.t, rt.closest(origins, directions).t[::-1])
+        brief = rt.closest(origins[::-1], directions[::-1], brief=True)
+        self.assertTrue(brief.uv is None and brief.instance is None)
+        for _ in range(2):
+            np.testing.assert_array_equal(brief.t, hit.t)
+            np.testing.assert_array_equal(brief.prim, hit.prim)
+            np.testing.assert_array_equal(brief.points(), hit.points())
+            brief.t[:] = 7
+            self.assertIs(rt.closest(origins[::-1], directions[::-1], out=brief), brief)
         occluded = np.zeros(100, bool)
         self.assertIs(rt.any(origins, directions, out=occluded), occluded)
         np.testing.assert_array_equal(occluded, rt.closest(origins, directions).mask)
@@ -275,6 +283,12 @@ class Scenes(Case):
         origins, directions = some_rays(100, 7)
         expected = clarity.load(self.mesh_file).on(accel="bvh2").closest(origins, directions)
         self.equal(rt.closest(origins, directions), expected)  # nobody but the tracer holds the arrays
+        vertices, faces = self.vertices.copy(), self.faces.astype(np.uint32)
+        scene = clarity.Scene(vertices, faces)
+        vertices += np.float32([0, 0, 1])  # not allowed, but it shows that the scene reads this memory
+        lifted = scene.on(accel="bvh2").closest(origins, directions)
+        self.equal(lifted, clarity.Scene(vertices, faces).on(accel="bvh2").closest(origins, directions))
+        self.assertTrue((lifted.t != expected.t).any())
         for _ in range(20):
             clarity.Scene(self.vertices, self.faces)
 
