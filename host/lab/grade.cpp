@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "check/check.hpp"
@@ -80,6 +81,21 @@ bool Grader::is_wanted(const std::string& name) const {
 
 ClosedBuilder Grader::closed(const std::string& library) const {
     return {library, lab_.id, lab_.layout, lab_.build_s, lab_.memory_bytes};
+}
+
+std::string Grader::digest(const std::string& submission) const {
+    Digest digest;
+    const auto add_file = [&](const std::string& path) {
+        digest.add(fs::path(path).filename().string());
+        digest.add(fs::is_regular_file(fs::symlink_status(path)) ? digest_of_file(path) : "");
+    };
+    for (const Lab::File& file : lab_.files) add_file(submission + "/" + file.name);
+    std::vector<std::string> own;
+    for (const auto& entry : fs::recursive_directory_iterator(lab_.folder)) own.push_back(entry.path().string());
+    std::sort(own.begin(), own.end());
+    for (const std::string& path : own) add_file(path);
+    digest.add_value(options_.times);
+    return digest.hex();
 }
 
 MeasureJob Grader::job_for(const std::string& library) const {
