@@ -148,7 +148,7 @@ Marks Grader::grade(const std::string& submission, Progress& progress) {
         mark_cases(library, marks, progress);
     else
         marks.lines.push_back({"counts", "counts and speed", 0, lab_.points_counts + lab_.points_speed, "all cases",
-                               "not measured, because a hit is wrong: see the checks that failed", "", false});
+                               "not measured, because a check above failed", "", false});
     return marks;
 }
 
@@ -194,6 +194,11 @@ void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_ar
             lines.push_back({"checks", name, 0, 0, "not run", "not run, because of a failure above", "", false});
             if (name.rfind("hits", 0) == 0) hits_are_right = false;
         }
+    // Builds and hits are checked side by side, but students read one order.
+    const auto place = [&](const Line& line) {
+        return std::find(lab_.checks.begin(), lab_.checks.end(), line.name) - lab_.checks.begin();
+    };
+    std::stable_sort(lines.begin(), lines.end(), [&](const Line& a, const Line& b) { return place(a) < place(b); });
     for (Line& line : lines) {
         const bool counts = std::count(options.only.begin(), options.only.end(), line.name) > 0;
         line.most = counts ? most : 0, line.points *= line.most;
