@@ -75,6 +75,11 @@ void add_rays(CLI::App& app, TraceCommand& command) {
     single(app.add_option("--mask", command.mask,
                           "The rays hit only instances that share a bit of this number with their mask, 0 to 255"))
         ->check(CLI::Range(0u, RT_SEEN_BY_ALL));
+    app.add_flag("--work", command.work,
+                 "Write what each ray's packet does, too: nodes visited, boxes tested, primitives tested; --lanes 1 makes "
+                 "packets of one ray")
+        ->excludes(all)
+        ->excludes(count);
     any->excludes(all)->excludes(count);
     all->excludes(count);
 }

@@ -94,6 +94,7 @@ struct TraceCommand {
     bool any_hit = false;   // only whether something is hit between t_min and t_max
     bool all = false;       // all hits, not only the nearest
     bool count = false;     // how many
+    bool work = false;      // what each nearest or any hit takes: nodes, boxes, tests
     unsigned mask = RT_SEEN_BY_ALL;
     bool quiet = false;
 };
