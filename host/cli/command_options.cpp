@@ -187,16 +187,19 @@ void add_lab(CLI::App& app, LabCommand& command) {
     app.add_option(
            "action", command.action,
            "new LAB DIR (a copy of a lab, to change), handout LAB DIR (what students get), check [DIR] (what students run, "
-           "in the folder that they got), grade LAB SUBMISSION...")
+           "in the folder that they got), grade LAB SUBMISSION..., night LAB SUBMISSION... (the same by several processes, "
+           "which leave "
+           "out what has a record), board LAB MARKS (a page of all records)")
         ->type_name("ACTION")
         ->required()
-        ->check(CLI::IsMember({"new", "handout", "check", "grade"}));
+        ->check(CLI::IsMember({"new", "handout", "check", "grade", "night", "board"}));
     app.add_option("words", command.words, "A lab's folder, or the name of one that is installed; then other folders")
         ->type_name("LAB|DIR");
     app.add_option("--only", command.only, "Only this line, such as hits.random or the name of a case; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
-    single(app.add_option("-o,--output", command.output, "Of grade: a folder for a record of each submission, NAME.json"))
+    single(app.add_option("-o,--output", command.output,
+                          "Of grade and night: a folder for a record of each submission, NAME.json; of board: the page"))
         ->type_name("DIR");
     single(app.add_option("--gradescope", command.gradescope, "Of grade: write Gradescope's results.json, first with 0 points"))
         ->type_name("FILE");

@@ -131,10 +131,10 @@ int run_new_plugin(const PluginRegistry& plugins, const NewPluginCommand& comman
 
 // Assignments of a course.
 struct LabCommand {
-    std::string action;              // new, handout, check or grade
+    std::string action;              // new, handout, check, grade, night or board
     std::vector<std::string> words;  // a lab, then folders
     std::vector<std::string> only;   // of check: lines
-    std::string output, gradescope;  // of grade: a folder for records, and Gradescope's file
+    std::string output, gradescope;  // a folder for records, or a page; Gradescope's file
     std::string device, sdk, work;
     bool autolab = false, counts_only = false;
 };

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "check/check.hpp"
@@ -82,6 +83,21 @@ ClosedBuilder Grader::closed(const std::string& library) const {
     return {library, lab_.id, lab_.layout, lab_.build_s, lab_.memory_bytes};
 }
 
+std::string Grader::digest(const std::string& submission) const {
+    Digest digest;
+    const auto add_file = [&](const std::string& path) {
+        digest.add(fs::path(path).filename().string());
+        digest.add(fs::is_regular_file(fs::symlink_status(path)) ? digest_of_file(path) : "");
+    };
+    for (const Lab::File& file : lab_.files) add_file(submission + "/" + file.name);
+    std::vector<std::string> own;
+    for (const auto& entry : fs::recursive_directory_iterator(lab_.folder)) own.push_back(entry.path().string());
+    std::sort(own.begin(), own.end());
+    for (const std::string& path : own) add_file(path);
+    digest.add_value(options_.times);
+    return digest.hex();
+}
+
 MeasureJob Grader::job_for(const std::string& library) const {
     MeasureJob job;
     job.library = library, job.reference = reference_, job.layout = layout_;
@@ -132,7 +148,7 @@ Marks Grader::grade(const std::string& submission, Progress& progress) {
         mark_cases(library, marks, progress);
     else
         marks.lines.push_back({"counts", "counts and speed", 0, lab_.points_counts + lab_.points_speed, "all cases",
-                               "not measured, because a hit is wrong: see the checks that failed", "", false});
+                               "not measured, because a check above failed", "", false});
     return marks;
 }
 
@@ -178,6 +194,11 @@ void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_ar
             lines.push_back({"checks", name, 0, 0, "not run", "not run, because of a failure above", "", false});
             if (name.rfind("hits", 0) == 0) hits_are_right = false;
         }
+    // Builds and hits are checked side by side, but students read one order.
+    const auto place = [&](const Line& line) {
+        return std::find(lab_.checks.begin(), lab_.checks.end(), line.name) - lab_.checks.begin();
+    };
+    std::stable_sort(lines.begin(), lines.end(), [&](const Line& a, const Line& b) { return place(a) < place(b); });
     for (Line& line : lines) {
         const bool counts = std::count(options.only.begin(), options.only.end(), line.name) > 0;
         line.most = counts ? most : 0, line.points *= line.most;

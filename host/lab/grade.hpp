@@ -46,6 +46,8 @@ class Grader {
     Marks grade(const std::string& submission, Progress& progress);
     // Work a ray of the reference on each case; the handout holds those of the public ones.
     std::vector<double> reference_work(Progress& progress);
+    // Tells what is marked, and how: the files that were handed in, and the lab. Not the machine.
+    std::string digest(const std::string& submission) const;
     const Lab& lab() const { return lab_; }
 
  private:

@@ -37,9 +37,19 @@ struct Counted {
 };
 Counted count(CheckedScene& scene, const Variant& variant, const std::vector<rt_ray>& rays) {
     Counted counted;
-    counted.hits = scene.count(variant, rays, false).hits;
-    for (size_t i = 0; i < counted.hits.size(); i += static_cast<size_t>(variant.lanes))
+    std::vector<RayWork> work;
+    RayQuery query;
+    query.count = true;
+    query.work = &work;
+    counted.hits = scene.trace(*scene.prepared(variant), rays, query).hits;
+    for (size_t i = 0; i < counted.hits.size(); i += static_cast<size_t>(variant.lanes)) {
+        // What a structure says of itself is no count.
+        if (work[i].own_steps > 0 || work[i].own_tests > 0)
+            throw Error(Exit::failed,
+                        "its nodes or tests are not counted by the host: read nodes by RT_NODE, and test primitives by "
+                        "RT_LEAF (cl/CONTRACT.md, \"Counting\")");
         counted.nodes += counted.hits[i].steps, counted.tests += counted.hits[i].leaf_tests;
+    }
     counted.nodes /= double(rays.size()), counted.tests /= double(rays.size());
     return counted;
 }

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files/read_file.hpp"
+
 namespace clarity::lab {
 namespace {
 
@@ -79,7 +81,7 @@ std::string autolab_line(const Marks* marks) {
     return dump({{"scores", scores}, {"scoreboard", board}}, -1);
 }
 
-std::string record_json(const Lab& lab, const std::string& submission, const Marks& marks) {
+std::string record_json(const Lab& lab, const std::string& submission, const std::string& digest, const Marks& marks) {
     ordered_json lines = ordered_json::array();
     for (const Line& line : marks.lines)
         lines.push_back({{"section", line.section},
@@ -91,6 +93,7 @@ std::string record_json(const Lab& lab, const std::string& submission, const Mar
                          {"found", line.found},
                          {"alone", line.alone}});
     const ordered_json json = {{"lab", lab.id},
+                               {"digest", digest},
                                {"submission", submission},
                                {"total", total_of(marks)},
                                {"checks", tenths(marks.of("checks"))},
@@ -101,6 +104,13 @@ std::string record_json(const Lab& lab, const std::string& submission, const Mar
                                {"sandbox", marks.sandbox},
                                {"lines", lines}};
     return dump(json, 2) + "\n";
+}
+
+bool record_fits(const std::string& path, const std::string& digest) {
+    std::string text;
+    if (try_read_file(path, kMaxTextFileBytes, text)) return false;
+    const ordered_json json = ordered_json::parse(text, nullptr, false);
+    return json.is_object() && json.value("digest", "") == digest;
 }
 
 }  // namespace clarity::lab

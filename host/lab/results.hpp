@@ -12,7 +12,9 @@ std::string marks_text(const Lab& lab, const Marks& marks);
 std::string gradescope_json(const Lab& lab, const Marks* marks);
 // The line that Autolab reads last. marks: as above.
 std::string autolab_line(const Marks* marks);
-// Our own record of a submission, for `board`.
-std::string record_json(const Lab& lab, const std::string& submission, const Marks& marks);
+// Our own record of a submission, for `board`. digest: Grader::digest().
+std::string record_json(const Lab& lab, const std::string& submission, const std::string& digest, const Marks& marks);
+// Whether a file is a record of that digest.
+bool record_fits(const std::string& path, const std::string& digest);
 
 }  // namespace clarity::lab

@@ -2,13 +2,16 @@
 // table.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
+#include "lab/board.hpp"
 #include "lab/build.hpp"
 #include "lab/grade.hpp"
 #include "support/scratch.hpp"
@@ -238,6 +241,60 @@ TEST(Lab, AHandoutIsCheckedByTheGradersCode) {
     const ProgramResult solved = run_program({"lab", "check", folder, "--sdk", kSdk, "--work", work, "--only", "city"});
     EXPECT_EQ(solved.exit_code, 0) << solved.out << solved.err;
     EXPECT_NE(solved.out.find("1.00 times the work of the reference"), std::string::npos) << solved.out;
+}
+
+// Two processes share a night. One is killed in it; when the other has come to its end, no record is missing and none was made
+// twice.
+TEST(Lab, ANightIsSharedAndSurvives) {
+    install_sdk();
+    const Scratch scratch;
+    std::vector<std::string> words = {"lab", "night", kLabs + "/median"};
+    for (const char* name : {"a", "b", "c"}) {
+        fs::create_directories(scratch.path(name));
+        fs::copy(kLabs + "/median/handout/median.cpp", scratch.path(std::string(name) + "/median.cpp"));
+        words.push_back(scratch.path(name));
+    }
+    words.insert(words.end(), {"-o", scratch.path("marks"), "--sdk", kSdk, "--counts-only"});
+    RunOptions killed;
+    killed.signal = SIGKILL;
+    killed.signal_when_made = scratch.path("marks/a.json");
+    ProgramResult first, second;
+    std::thread other([&] { first = run_program(words, killed); });
+    second = run_program(words);
+    other.join();
+    ProgramResult last = second;
+    for (int tries = 0; last.exit_code != 0 && tries < 100; ++tries) last = run_program(words);
+    EXPECT_EQ(last.exit_code, 0) << last.err;
+    for (const char* name : {"a", "b", "c"}) {
+        EXPECT_TRUE(json::parse(scratch.read(std::string("marks/") + name + ".json"), nullptr, false).is_object()) << name;
+        const std::string line = std::string(name) + "  0.0\n";
+        const size_t at = second.out.find(line);
+        EXPECT_TRUE(at == std::string::npos || first.out.find(line) == std::string::npos) << name << " was graded twice";
+    }
+    const ProgramResult again = run_program(words);
+    EXPECT_EQ(again.out, "") << "what has a record is graded again";
+    scratch.write("a/median.cpp", "another one\n");
+    EXPECT_EQ(run_program(words).out, "a  0.0\n") << "what was handed in again is not graded again";
+}
+
+TEST(Lab, TheBoardRanksByWork) {
+    const Scratch scratch;
+    const auto record = [&](const std::string& name, double work, double total) {
+        scratch.write(name + ".json", json{{"submission", name}, {"work", work}, {"total", total}}.dump());
+    };
+    record("slow", 2, 70), record("best", 1, 100), record("alike", 1.015, 99), record("third", 1.03, 98),
+        record("<wrong>", 0, 20);
+    const auto rows = clarity::lab::read_board(scratch.path(""));
+    const std::pair<const char*, unsigned> expected[] = {{"best", 1}, {"alike", 1}, {"third", 3}, {"slow", 4}, {"<wrong>", 0}};
+    ASSERT_EQ(rows.size(), 5u);
+    for (size_t i = 0; i < rows.size(); ++i) {
+        EXPECT_EQ(rows[i].name, expected[i].first);
+        EXPECT_EQ(rows[i].rank, expected[i].second) << rows[i].name;
+    }
+    const std::string page = clarity::lab::board_html("A lab", rows);
+    EXPECT_EQ(page.find("<wrong>"), std::string::npos);
+    EXPECT_NE(page.find("&lt;wrong&gt;"), std::string::npos);
+    EXPECT_THROW(clarity::lab::read_board(scratch.path("none")), clarity::Error);
 }
 
 // Before grading has come to its end there is a score of 0; a lab that cannot be graded keeps it.

@@ -37,8 +37,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
             at = ORDERED_NONE;
         } else {
-            RT_COUNT_VISIT(hit, 1u);
-            const global ordered_node *node = ctx->ordered_nodes + at;
+            const global ordered_node *node = RT_NODE(ray, ctx->ordered_nodes + at);
             float left_entry, right_entry;
             const int left = rt_enter_box(node->left_box, ray, hit, &left_entry) != 0;
             const int right = rt_enter_box(node->right_box, ray, hit, &right_entry) != 0;
