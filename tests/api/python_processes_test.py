@@ -89,7 +89,7 @@ if __name__ == "__main__":
         caches = {name: os.path.join(self.folder, "cold") for name in ("XDG_CACHE_HOME", "POCL_CACHE_DIR")}
         big = os.path.join(self.folder, "big.obj")
         with open(big, "w") as file:
-            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 500000)
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 3000000)
         setup = """
 random = numpy.random.default_rng(1)
 corners = random.random((10000, 1, 3)) + 0.1 * random.standard_normal((10000, 3, 3))
