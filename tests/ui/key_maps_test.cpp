@@ -307,6 +307,13 @@ void KeyMaps::check_common(const KeyBinding& binding) {
         EXPECT_EQ(window->query("layout")["handles"].size(), 2u);
         press(binding);
         EXPECT_TRUE(reaches("show_lights", false));
+    } else if (key == "V") {
+        const auto traced = [this] { return std::string(window->query("command_line a.png")["command"]); };
+        ASSERT_EQ(window->command("part .25,.25,.5,.5"), "");
+        EXPECT_NE(traced().find("--crop"), std::string::npos);
+        press(binding);
+        EXPECT_EQ(traced().find("--crop"), std::string::npos);
+        window->settle();
     } else if (key == "B" || key == "N") {
         check_views(binding);
     } else if (key == "Space" || key == "," || key == ".") {
