@@ -119,16 +119,16 @@ typedef struct rt_emitter {
 } rt_emitter;
 #define RT_PICK_BITS 24u
 #define RT_PICKS 16777216
-#define RT_EMITTER_SURFACE 7u
-#define RT_EMITTER_SKY 8u
+#define RT_EMITTER_SURFACE RT_LIGHT_KINDS
+#define RT_EMITTER_SKY (RT_LIGHT_KINDS + 1u)
 /* Numbers of what shines and is no light of the frame. */
 #define RT_LIGHT_OF_SURFACES 0x40000000
 #define RT_LIGHT_OF_SKY 0x40000001
 
 /* What kernels are compiled for besides shapes and attributes, as bits of RT_LIGHTS and RT_LOBES. Lights: 1 << RT_LIGHT_* or
  * 1 << RT_EMITTER_*, and whether some light has RT_LIGHT_FALLOFF. Lobes: how surfaces scatter in `path`, besides diffusely. */
-#define RT_LIGHTS_FADE (1u << 9)
-#define RT_LIGHTS_ALL 1023u
+#define RT_LIGHTS_FADE (1u << (RT_LIGHT_KINDS + 2u))
+#define RT_LIGHTS_ALL (2u * RT_LIGHTS_FADE - 1u)
 #define RT_LOBE_MIRROR 1u
 #define RT_LOBE_METAL 2u
 #define RT_LOBE_GLASS 4u
@@ -154,7 +154,7 @@ typedef struct rt_emitter {
 #define RT_MAY_SCATTER(lobes) ((RT_LOBES & (lobes)) != 0u)
 #endif
 #define RT_LIGHTS_PLAIN (1u << RT_LIGHT_POINT | 1u << RT_LIGHT_DIRECTIONAL) /* without RT_LIGHTS_FADE: as Whitted has them */
-#define RT_LIGHTS_POINTS (1u << RT_LIGHT_POINT | 1u << RT_LIGHT_SPOT)
+#define RT_LIGHTS_POINTS (1u << RT_LIGHT_POINT | 1u << RT_LIGHT_SPOT) /* rt_intensity_share() tells them apart */
 #define RT_LIGHTS_FLAT (1u << RT_LIGHT_RECT | 1u << RT_LIGHT_DISC)
 #define RT_LIGHTS_SOLID (RT_LIGHTS_FLAT | 1u << RT_LIGHT_SPHERE) /* they are somewhere, with a size */
 #define RT_LIGHTS_BEYOND (1u << RT_LIGHT_SUN | 1u << RT_EMITTER_SKY)

@@ -10,9 +10,10 @@ build_packages="g++ cmake ninja-build make pkg-config libdraco-dev libmeshoptimi
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
     libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libxxhash-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core libjs-chart.js"
-# The tests compare with Embree, use numpy, run kernels on PoCL and oclgrind, open the window on a virtual display, and pages in Chromium.
-test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format python3-numpy
-    xvfb xauth xdotool imagemagick chromium"
+# The tests compare with Embree, use numpy and draw with matplotlib, build strangers' sources by bubblewrap, run kernels on PoCL and oclgrind,
+# open the window on a virtual display, and pages in Chromium.
+test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format python3-numpy python3-matplotlib
+    bubblewrap xvfb xauth xdotool imagemagick chromium"
 
 # Additional packages for scripts/full_test.
 check_packages="clang-tidy"

@@ -10,7 +10,7 @@
  *     rt_cells cells;
  *     for (bool more = rt_first_cell(&cells, box, size, counts, ray, hit); more; more = rt_next_cell(&cells, hit->t)) ...
  *
- * visits all cells (cells.x.at, cells.y.at, cells.z.at) that the ray enters before hit->t, in the order of their distances but
+ * visits, and counts as nodes, all cells (cells.x.at, cells.y.at, cells.z.at) that the ray enters before hit->t, in the order of their distances but
  * for those of one step. Planes are computed as box + i * size, so see "Slack" in CONTRACT.md for the builder's part. */
 #ifndef RT_CELLS_H
 #define RT_CELLS_H
@@ -25,6 +25,9 @@ typedef struct rt_cell_axis {
 typedef struct rt_cells {
     rt_cell_axis x, y, z;
     float leave; /* when the ray has left the grid */
+#ifdef RT_COUNT_STEPS
+    rt_counts *counts;
+#endif
 } rt_cells;
 
 /* The plane through which the ray leaves a cell. */
@@ -88,11 +91,14 @@ RT_INLINE bool rt_first_cell(rt_cells *c, const global float *box, const global 
     rt_begin_axis(&c->x, box[0], size[0], counts[0], ray->ox, ray->dx, ray->ix, ray->near_x, ray->far_x, t);
     rt_begin_axis(&c->y, box[1], size[1], counts[1], ray->oy, ray->dy, ray->iy, ray->near_y, ray->far_y, t);
     rt_begin_axis(&c->z, box[2], size[2], counts[2], ray->oz, ray->dz, ray->iz, ray->near_z, ray->far_z, t);
+#ifdef RT_COUNT_STEPS
+    c->counts = ray->counts;
+#endif
+    RT_HOST_COUNT(c, nodes, 1u);
     return true;
 }
 
-/* Goes to the next cell. t: the ray's nearest hit so far. Returns false if there is none before it. */
-RT_INLINE bool rt_next_cell(rt_cells *c, float t)
+RT_INLINE bool rt_go_to_next_cell(rt_cells *c, float t)
 {
     rt_cell_axis *const x = &c->x, *const y = &c->y, *const z = &c->z;
     if (x->at != x->to) return x->at += x->step, true;
@@ -112,6 +118,14 @@ RT_INLINE bool rt_next_cell(rt_cells *c, float t)
         rt_enter_cell(y);
     else
         rt_enter_cell(z);
+    return true;
+}
+
+/* Goes to the next cell. t: the ray's nearest hit so far. Returns false if there is none before it. */
+RT_INLINE bool rt_next_cell(rt_cells *c, float t)
+{
+    if (!rt_go_to_next_cell(c, t)) return false;
+    RT_HOST_COUNT(c, nodes, 1u);
     return true;
 }
 

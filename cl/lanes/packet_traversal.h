@@ -58,6 +58,7 @@ RT_INLINE void RT_CAT(RT_TRAVERSE, _packet)(const rt_ctx *ctx, uint root, const 
             if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return;
 #endif
         } else {
+            RT_HOST_COUNT(ray, nodes, 1u);
             RT_COUNT_VISIT(hit, inside);
             RT_CAT(RT_TRAVERSE, _children)(ctx, ref, ray, prepared, hit, &stack);
         }

@@ -9,6 +9,13 @@
 #define RT_OVERLOADED
 #endif
 
+#ifdef RT_COUNT_STEPS
+/* What the host's helpers count for a ray, or for a packet. Queries keep it out of the reach of traversals (cl/primitives/query.h). */
+typedef struct rt_counts {
+    uint nodes, boxes, tests;
+} rt_counts;
+#endif
+
 typedef struct rt_rays {
     vfloat ox, oy, oz;             /* origin */
     vfloat dx, dy, dz;             /* direction; unit in world space, not inside instances, so t stays comparable */
@@ -30,6 +37,9 @@ typedef struct rt_rays {
 #endif
     vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
+#ifdef RT_COUNT_STEPS
+    rt_counts *counts;             /* 0: outside of a query */
+#endif
 } rt_rays;
 
 /* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for
@@ -45,7 +55,9 @@ typedef struct rt_hits {
     rt_hit_list *list; /* takes all hits; u to instance have no value */
 #endif
 #ifdef RT_COUNT_STEPS
-    uint steps, leaf_tests, lane_steps; /* sums over all lanes, see rt_hit */
+    uint steps, leaf_tests, boxes;               /* by the host's helpers; see rt_hit and RayWork */
+    uint lane_steps, visits, own_boxes, own_tests; /* as the traversal reports them */
+    uint own_steps;                              /* of `steps` */
 #endif
 #ifdef RT_DEBUG
     uint overflow;
@@ -67,10 +79,16 @@ typedef struct rt_hits {
 
 /* For programs that count; see CONTRACT.md. Other programs do not pay: code that only feeds these macros is dead there. */
 #ifdef RT_COUNT_STEPS
-#define RT_COUNT_VISIT(hit, inside) ((hit)->steps++, (hit)->lane_steps += popcount(inside))
-#define RT_COUNT_LEAVES(hit, n) ((hit)->leaf_tests += (n))
+#define RT_HOST_COUNT(ray, what, n) ((ray)->counts ? (void)((ray)->counts->what += (n)) : (void)0)
+#define RT_NODE(ray, node) (RT_HOST_COUNT(ray, nodes, 1u), (node))
+#define RT_COUNT_VISIT(hit, inside) ((hit)->visits++, (hit)->lane_steps += popcount(inside))
+#define RT_COUNT_BOXES(hit, n) ((hit)->own_boxes += (n))
+#define RT_COUNT_LEAVES(hit, n) ((hit)->own_tests += (n))
 #else
+#define RT_HOST_COUNT(ray, what, n) ((void)0)
+#define RT_NODE(ray, node) (node)
 #define RT_COUNT_VISIT(hit, inside) ((void)(inside))
+#define RT_COUNT_BOXES(hit, n) ((void)(n))
 #define RT_COUNT_LEAVES(hit, n) ((void)(n))
 #endif
 #define RT_COUNT_LEAF(hit) RT_COUNT_LEAVES(hit, 1u)
@@ -148,6 +166,9 @@ RT_INLINE void rt_prepare_for_boxes(rt_rays *r)
     r->far_x = fma(fabs(r->ix), out, fma(fabs(nx), slack, nx));
     r->far_y = fma(fabs(r->iy), out, fma(fabs(ny), slack, ny));
     r->far_z = fma(fabs(r->iz), out, fma(fabs(nz), slack, nz));
+#ifdef RT_COUNT_STEPS
+    r->counts = 0;
+#endif
 }
 
 /* The rest. bits: the active lanes; their signs and axes decide whether the packet is coherent. */
@@ -242,6 +263,7 @@ RT_INLINE void rt_intersect_slabs(vfloat ax, vfloat ay, vfloat az, vfloat bx, vf
 RT_INLINE vmask rt_enter_planes(vfloat near_x, vfloat near_y, vfloat near_z, vfloat far_x, vfloat far_y, vfloat far_z, const rt_rays *r,
                                 const rt_hits *h, vfloat *entry)
 {
+    RT_HOST_COUNT(r, boxes, 1u);
     const vfloat ax = fma(r->ix, near_x, r->near_x), bx = fma(r->ix, far_x, r->far_x);
     const vfloat ay = fma(r->iy, near_y, r->near_y), by = fma(r->iy, far_y, r->far_y);
     const vfloat az = fma(r->iz, near_z, r->near_z), bz = fma(r->iz, far_z, r->far_z);
@@ -274,6 +296,7 @@ RT_INLINE RT_OVERLOADED vmask rt_enter_box(const global float *box, const rt_ray
 /* The same, and where the ray leaves the box again: `exit` is widened by rounding, and no later than hit->t. */
 RT_INLINE RT_OVERLOADED vmask rt_enter_exit(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry, vfloat *exit)
 {
+    RT_HOST_COUNT(r, boxes, 1u);
     const vmask neg_x = rt_negative(r->ix), neg_y = rt_negative(r->iy), neg_z = rt_negative(r->iz);
     const vfloat ax = fma(r->ix, rt_select(neg_x, rt_vfloat(box[3]), rt_vfloat(box[0])), r->near_x);
     const vfloat bx = fma(r->ix, rt_select(neg_x, rt_vfloat(box[0]), rt_vfloat(box[3])), r->far_x);

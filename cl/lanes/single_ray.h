@@ -25,6 +25,9 @@ typedef struct rt_single_rays {
     float near_x[RT_LANES], near_y[RT_LANES], near_z[RT_LANES], far_x[RT_LANES], far_y[RT_LANES], far_z[RT_LANES];
     float px[RT_LANES], py[RT_LANES], pz[RT_LANES], sx[RT_LANES], sy[RT_LANES], sz[RT_LANES];
     int kx[RT_LANES], ky[RT_LANES], kz[RT_LANES]; /* for each ray, since a packet may have several dominant axes */
+#ifdef RT_COUNT_STEPS
+    rt_counts *counts; /* of the packet */
+#endif
 } __attribute__((aligned(64))) rt_single_rays;
 
 /* The members of rt_hits. */
@@ -49,6 +52,9 @@ RT_INLINE void rt_spread_rays(const rt_rays *from, rt_single_rays *to)
     rt_store(from->same_axis ? rt_vint((int)from->kx) : from->axis_x, to->kx);
     rt_store(from->same_axis ? rt_vint((int)from->ky) : from->axis_y, to->ky);
     rt_store(from->same_axis ? rt_vint((int)from->kz) : from->axis_z, to->kz);
+#ifdef RT_COUNT_STEPS
+    to->counts = from->counts;
+#endif
 }
 
 RT_INLINE void rt_spread_hits(const rt_hits *from, rt_single_hits *to)

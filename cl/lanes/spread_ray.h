@@ -19,6 +19,9 @@ typedef struct rt_single_ray {
     const rt_rays *packet;
     const rt_single_rays *lanes;
     uint lane;
+#ifdef RT_COUNT_STEPS
+    rt_counts *counts;
+#endif
 } rt_single_ray;
 
 typedef struct rt_single_hit {
@@ -27,7 +30,7 @@ typedef struct rt_single_hit {
     rt_hits *packet;
     rt_single_hits *lanes;
 #ifdef RT_COUNT_STEPS
-    uint steps, leaf_tests, lane_steps;
+    uint lane_steps, visits, own_boxes, own_tests;
 #endif
 #ifdef RT_DEBUG
     uint overflow;
@@ -37,6 +40,7 @@ typedef struct rt_single_hit {
 RT_INLINE RT_OVERLOADED int rt_enter_exit(const global float *box, const rt_single_ray *r, const rt_single_hit *h, float *entry,
                                           float *exit)
 {
+    RT_HOST_COUNT(r, boxes, 1u);
     const uint x = r->ix < 0.0f ? 3u : 0u, y = r->iy < 0.0f ? 4u : 1u, z = r->iz < 0.0f ? 5u : 2u; /* near planes */
     const float ax = fma(r->ix, box[x], r->near_x), bx = fma(r->ix, box[3u - x], r->far_x);
     const float ay = fma(r->iy, box[y], r->near_y), by = fma(r->iy, box[5u - y], r->far_y);

@@ -37,6 +37,9 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
     inner.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
     inner.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
     rt_prepare(&inner, active);
+#ifdef RT_COUNT_STEPS
+    inner.counts = r->counts;
+#endif
     /* The leaves of a mesh number its primitives from 0, so the number of the hit is converted for the traversal, and back. */
     const vfloat t = h->t;
     const vint before = h->prim, first = rt_vint((int)instance->first_prim);
@@ -88,24 +91,24 @@ RT_INLINE void RT_FN(rt_leaf_scene_test)(const rt_ctx *ctx, uint at, const rt_ra
 }
 
 /* An instance is no primitive; the primitives in it count. */
-RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, rt_hits *hit)
+RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray)
 {
 #if RT_HAS_INSTANCES
     if (RT_REF_KIND(ctx->leaves[at].ref) == RT_REF_INSTANCE) return;
 #endif
-    RT_COUNT_LEAF(hit);
+    RT_HOST_COUNT(ray, tests, 1u);
 }
 
 RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
-    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+    RT_FN(rt_count_leaf_scene)(ctx, at, ray);
     RT_FN(rt_leaf_scene_test)(ctx, at, ray, hit);
 }
 
 #if RT_CPU
 RT_INLINE uint RT_FN(rt_leaf_scene_candidate)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
-    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+    RT_FN(rt_count_leaf_scene)(ctx, at, ray);
 #if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_SHAPES || RT_HAS_INSTANCES
     if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) return 1u;
 #endif

@@ -7,6 +7,7 @@
 RT_INLINE uint RT_SINGLE_RAY_CANDIDATES(const rt_ctx *ctx, uint first, uint count, const rt_single_rays *single, uint l)
 {
     const global rt_packed_prim *leaf = ctx->leaves + first;
+    RT_HOST_COUNT(single, tests, count);
     uint bits = rt_row_candidates(single, l, leaf);
     if (count > RT_ROW) bits |= rt_row_candidates(single, l, leaf + RT_ROW) << RT_ROW;
 #if RT_SINGLE_RAY_MIXED
@@ -24,6 +25,7 @@ RT_INLINE void RT_SINGLE_RAY_TEST(const rt_ctx *ctx, uint first, uint bits, cons
         const uint at = first + rt_lowest(bits);
 #if RT_SINGLE_RAY_MIXED
         if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) {
+            RT_HOST_COUNT(single, tests, -1u); /* RT_LEAF counts it, unless it is an instance */
 #if RT_LANES == 1
             RT_LEAF(ctx, at, ray, hit);
 #else

@@ -17,7 +17,7 @@ RT_INLINE void RT_LEAF(const rt_ctx *ctx, uint at, const rt_single_ray *ray, rt_
     } else
 #endif
     {
-        RT_COUNT_LEAF(hit);
+        RT_HOST_COUNT(ray, tests, 1u);
         RT_FN(rt_hit_triangle_single_ray)(ctx->leaves + at, at, ray->lanes, ray->lane, lanes);
     }
     hit->t = lanes->t[ray->lane];

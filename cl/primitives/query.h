@@ -1,4 +1,18 @@
 /* query.h -- a query of the whole scene: planes first, then the tree of group 0. A template, see CONTRACT.md. */
+/* Programs that count: the host's counts of a query are in a variable of the query's own, and go to the hit in the end. So they do not
+ * depend on what a traversal writes to the hit. Where none of the host's helpers counted a node, the traversal's own count is taken. */
+#if defined(RT_COUNT_STEPS) && !defined(RT_FINISH_COUNTS)
+#define RT_FINISH_COUNTS(ray, hit, before, counted)                                                                            \
+    {                                                                                                                          \
+        const uint visits = (hit)->visits - (before).visits;                                                                   \
+        (hit)->steps = (before).steps + ((counted).nodes != 0u ? (counted).nodes : visits);                                    \
+        (hit)->own_steps = (before).own_steps + ((counted).nodes != 0u ? 0u : visits);                                         \
+        (hit)->leaf_tests = (before).leaf_tests + (counted).tests;                                                             \
+        (hit)->boxes = (before).boxes + (counted).boxes;                                                                       \
+        ((rt_rays *)(ray))->counts = 0;                                                                                        \
+    }
+#endif
+
 RT_INLINE void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_HAS_PLANES
@@ -7,7 +21,15 @@ RT_INLINE void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame
     if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return;
 #endif
 #endif
+#ifdef RT_COUNT_STEPS
+    const rt_hits before = *hit;
+    rt_counts counted = {0u, 0u, 0u};
+    ((rt_rays *)ray)->counts = &counted;
+#endif
     RT_FN(rt_scene)(ctx, frame->root, ray, hit);
+#ifdef RT_COUNT_STEPS
+    RT_FINISH_COUNTS(ray, hit, before, counted)
+#endif
 }
 
 /* The same for `count` packets. A packet without active lanes, which has hit.t = -1 in all, need not be prepared. */
@@ -20,6 +42,19 @@ RT_INLINE void RT_FN(rt_trace_stream)(const rt_ctx *ctx, const constant rt_frame
     for (uint b = 0; b < count; ++b)
         if (rt_any(RT_MASK(hits[b].t >= rt_vfloat(0.0f)))) RT_FN(rt_hit_planes)(ctx, frame->plane_count, rays + b, hits + b);
 #endif
+#ifdef RT_COUNT_STEPS
+    rt_counts counted[RT_STREAM];
+    rt_hits before[RT_STREAM];
+    for (uint b = 0; b < count; ++b) {
+        const rt_counts none = {0u, 0u, 0u};
+        before[b] = hits[b];
+        counted[b] = none;
+        ((rt_rays *)rays)[b].counts = counted + b;
+    }
+#endif
     RT_FN(rt_scene_stream)(ctx, frame->root, rays, hits, count);
+#ifdef RT_COUNT_STEPS
+    for (uint b = 0; b < count; ++b) RT_FINISH_COUNTS(rays + b, hits + b, before[b], counted[b])
+#endif
 #endif
 }

@@ -102,7 +102,7 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_packed_prim *leaf, uint at
 #if RT_LANES == 1
 RT_INLINE void RT_FN(rt_loaded_prim)(const rt_ctx *ctx, const rt_loaded_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
-    RT_COUNT_LEAF(h);
+    RT_HOST_COUNT(r, tests, 1u);
 #if RT_CPU
     RT_FN(rt_hit_triangle)(ctx->leaves + at, at, r, h);
 #else

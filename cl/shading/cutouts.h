@@ -69,6 +69,8 @@ RT_CALLED void rt_pass_cutouts(const rt_ctx *ctx, const constant rt_frame *frame
         hit->steps += found.steps;
         hit->leaf_tests += found.leaf_tests;
         hit->lane_steps += found.lane_steps;
+        hit->boxes += found.boxes;
+        hit->own_boxes += found.own_boxes;
 #endif
 #ifdef RT_DEBUG
         hit->overflow += found.overflow;

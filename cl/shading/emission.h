@@ -12,7 +12,7 @@ RT_INLINE void rt_hit_lights(const rt_ctx *ctx, const constant rt_frame *frame, 
     *light = rt_vint(-1);
     for (uint i = 0; RT_MAY_SHINE(RT_LIGHTS_SOLID) && i < frame->light_count; ++i) {
         const global rt_light *l = ctx->lights + i;
-        if (l->kind < RT_LIGHT_RECT) continue;
+        if ((1u << l->kind & RT_LIGHTS_SOLID) == 0u) continue;
         const rt_vec to = rt_sub(rt_spread(l->position), origin);
         vfloat distance;
         vmask meets;
@@ -26,15 +26,7 @@ RT_INLINE void rt_hit_lights(const rt_ctx *ctx, const constant rt_frame *frame, 
             const vfloat facing = rt_dot(n, direction);
             distance = rt_dot(n, to) / facing;
             meets = l->flags & RT_LIGHT_TWO_SIDED ? RT_MASK(facing != zero) : RT_MASK(facing < zero);
-            const rt_vec within = rt_sub(rt_scale(distance, direction), to);
-            if (l->kind == RT_LIGHT_DISC) {
-                meets &= RT_MASK(rt_dot(within, within) <= rt_vfloat(l->radius * l->radius));
-            } else {
-                /* Coordinates along u and v, which need not be perpendicular: by the vectors across v and across u. */
-                const rt_vec u = rt_spread(l->u), v = rt_spread(l->v), across_u = rt_cross(n, u), across_v = rt_cross(v, n);
-                meets &= RT_MASK(fabs(rt_dot(within, across_v)) <= fabs(rt_dot(u, across_v)));
-                meets &= RT_MASK(fabs(rt_dot(within, across_u)) <= fabs(rt_dot(v, across_u)));
-            }
+            meets &= rt_on_flat(l, rt_sub(rt_scale(distance, direction), to));
         }
         meets &= RT_MASK(distance > zero) & RT_MASK(distance >= ray->t_min) & RT_MASK(distance <= *t);
         *t = rt_select(meets, distance, *t);
@@ -57,12 +49,8 @@ RT_INLINE rt_vec rt_emission_of_light(const rt_ctx *ctx, const rt_rays *ray, vfl
         if (RT_MAY_SHINE(1u << RT_LIGHT_SPHERE) && l->kind == RT_LIGHT_SPHERE) {
             density = rt_sphere_density(rt_sub(rt_spread(l->position), rt_vec_of(ray->ox, ray->oy, ray->oz)), rt_vfloat(l->radius));
         } else {
-            float u[3], v[3], n[3];
-            for (int k = 0; k < 3; ++k) u[k] = l->u[k], v[k] = l->v[k];
-            rt_cross_numbers(u, v, n);
-            const float area = l->kind == RT_LIGHT_DISC ? RT_PI * l->radius * l->radius : 4.0f * sqrt(fma(n[0], n[0], fma(n[1], n[1], n[2] * n[2])));
             const vfloat cosine = fabs(rt_dot(rt_spread(l->normal), rt_vec_of(ray->dx, ray->dy, ray->dz)));
-            density = rt_flat_density(t * t, rt_vfloat(area), rt_max(cosine, rt_vfloat(1e-20f)));
+            density = rt_flat_density(t * t, rt_vfloat(rt_flat_side(l)), rt_max(cosine, rt_vfloat(1e-20f)));
         }
         *pdf = rt_select(mine, rt_vfloat(ctx->emitters[i].pick) * density, *pdf);
         sum = rt_choose(mine, rt_spread(l->color), sum);

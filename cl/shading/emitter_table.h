@@ -8,7 +8,7 @@
 #define RT_EMITTER_TABLE_H
 
 /* The emitters of all lanes. kind: RT_LIGHT_*, RT_EMITTER_SKY, or RT_EMITTER_SURFACE for a triangle.
- *   point, spot        p = position, radius = range; a spot's axis is u
+ *   point, spot        p = position, radius = range, u = axis
  *   directional, sun   p = unit vector towards it
  *   rect               p = middle, u and v lead to the middles of its edges
  *   disc               p = middle, u and v are perpendicular radii
@@ -164,7 +164,7 @@ RT_INLINE uint rt_load_emitter(const rt_ctx *ctx, const global rt_emitter *e, fl
         RT_LIT(RT_LIT_OUTER) = light->cos_outer;
         for (int k = 0; k < 3; ++k) {
             p[k] = light->position[k];
-            u[k] = kind == RT_LIGHT_SPOT ? light->normal[k] : light->u[k];
+            u[k] = (1u << kind & RT_LIGHTS_POINTS) != 0u ? light->normal[k] : light->u[k];
             v[k] = light->v[k];
         }
         if (RT_MAY_SHINE(1u << RT_LIGHT_DISC) && kind == RT_LIGHT_DISC) rt_disc_axes(light->normal, light->radius, u, v);

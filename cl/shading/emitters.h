@@ -97,6 +97,24 @@ RT_INLINE vfloat rt_flat_factor(vint kind)
                      rt_select(RT_MASK(kind == rt_vint((int)RT_LIGHT_DISC)), rt_vfloat(RT_PI), rt_vfloat(0.5f)));
 }
 
+/* The area of one side of a flat light, from its edges: `area` of rt_light may be that of both. */
+RT_INLINE float rt_flat_side(const global rt_light *l)
+{
+    float u[3], v[3], n[3];
+    for (int k = 0; k < 3; ++k) u[k] = l->u[k], v[k] = l->v[k];
+    rt_cross_numbers(u, v, n);
+    return l->kind == RT_LIGHT_DISC ? RT_PI * l->radius * l->radius : 4.0f * sqrt(fma(n[0], n[0], fma(n[1], n[1], n[2] * n[2])));
+}
+
+/* Whether points of its plane are on a flat light, by the vectors to them from its middle. */
+RT_INLINE vmask rt_on_flat(const global rt_light *l, rt_vec within)
+{
+    if (l->kind == RT_LIGHT_DISC) return RT_MASK(rt_dot(within, within) <= rt_vfloat(l->radius * l->radius));
+    /* Coordinates along u and v, which need not be perpendicular: by the vectors across v and across u. */
+    const rt_vec n = rt_spread(l->normal), u = rt_spread(l->u), v = rt_spread(l->v), across_u = rt_cross(n, u), across_v = rt_cross(v, n);
+    return RT_MASK(fabs(rt_dot(within, across_v)) <= fabs(rt_dot(u, across_v))) & RT_MASK(fabs(rt_dot(within, across_u)) <= fabs(rt_dot(v, across_u)));
+}
+
 /* Draws a point of a rect, a disc or a triangle. *to: from the point `at` to it. *density: without the pick. Returns the lanes that it
  * shines to. */
 RT_INLINE vmask rt_draw_flat(const rt_lit *lit, rt_vec at, vfloat u1, vfloat u2, rt_vec *to, vfloat *density)
@@ -198,8 +216,8 @@ RT_PART rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame
     out.light = lit.light;
     const vfloat legacy = rt_select(lit.falloff, one, rt_vfloat(RT_PI)); /* irradiance of lights without falloff: pi times color */
 #define RT_KIND(k) (RT_MAY_SHINE(1u << (k)) ? lanes & RT_MASK(lit.kind == rt_vint((int)(k))) : rt_vint(0))
-    const vmask spot = RT_KIND(RT_LIGHT_SPOT), point = spot | RT_KIND(RT_LIGHT_POINT);
-    const vmask flat = RT_KIND(RT_LIGHT_RECT) | RT_KIND(RT_LIGHT_DISC) | RT_KIND(RT_EMITTER_SURFACE);
+#define RT_KINDS(kinds) (RT_MAY_SHINE(kinds) ? lanes & RT_MASK(((rt_vint(1) << lit.kind) & rt_vint((int)(kinds))) != rt_vint(0)) : rt_vint(0))
+    const vmask point = RT_KINDS(RT_LIGHTS_POINTS), flat = RT_KINDS(RT_LIGHTS_FLAT | 1u << RT_EMITTER_SURFACE);
     const vmask sphere = RT_MAY_SHINE(RT_LIGHTS_SPHERES) ? lanes & RT_MASK(lit.kind == rt_vint((int)RT_LIGHT_SPHERE)) : rt_vint(0);
     vmask sun = RT_KIND(RT_LIGHT_SUN), directional = RT_KIND(RT_LIGHT_DIRECTIONAL);
     const vfloat sun_sin2 = rt_sun_sin2(lit.radius, lit.cos_outer);
@@ -214,9 +232,8 @@ RT_PART rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame
         const rt_vec to = rt_sub(lit.p, at);
         const vfloat d2 = rt_dot(to, to), scale = rt_inverse_length(to);
         const rt_vec towards = rt_scale(scale, to);
-        /* KHR_lights_punctual: the square of a linear ramp between the cosines of both angles. */
-        const vfloat ramp = clamp((-rt_dot(lit.u, towards) - lit.cos_outer) / rt_max(lit.cos_inner - lit.cos_outer, rt_vfloat(1e-3f)), zero, one);
-        const vfloat strength = rt_select(spot, ramp * ramp, one) * rt_select(lit.falloff, rt_fall_off(d2, lit.radius), rt_vfloat(RT_PI));
+        const vfloat share = rt_intensity_share(lit.kind, -rt_dot(lit.u, towards), lit.cos_inner, lit.cos_outer);
+        const vfloat strength = share * rt_select(lit.falloff, rt_fall_off(d2, lit.radius), rt_vfloat(RT_PI));
         out.towards = rt_choose(point, towards, out.towards);
         out.distance = rt_select(point, sqrt(d2), out.distance);
         light = rt_choose(point, rt_scale(strength, lit.color), light);
@@ -276,6 +293,7 @@ RT_PART rt_light_sample rt_light_draw(const rt_ctx *ctx, const constant rt_frame
     } else {
         density *= lit.pick;
     }
+#undef RT_KINDS
 #undef RT_KIND
     out.pdf = rt_select(out.valid, density, zero);
     out.radiance_over_pdf = rt_choose(out.valid, rt_scale(one / rt_select(out.valid, density, one), light), out.radiance_over_pdf);

@@ -57,6 +57,19 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     return p;
 }
 
+/* The share of its intensity that a light of RT_LIGHTS_POINTS has in a direction. cosine: to its axis; the others as in rt_light. */
+RT_INLINE vfloat rt_intensity_share(vint kind, vfloat cosine, vfloat cos_inner, vfloat cos_outer)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    vfloat share = one;
+    if (RT_MAY_SHINE(1u << RT_LIGHT_SPOT)) {
+        /* KHR_lights_punctual: the square of a linear ramp between the cosines of both angles. */
+        const vfloat ramp = clamp((cosine - cos_outer) / rt_max(cos_inner - cos_outer, rt_vfloat(1e-3f)), zero, one);
+        share = rt_select(RT_MASK(kind == rt_vint((int)RT_LIGHT_SPOT)), ramp * ramp, share);
+    }
+    return share;
+}
+
 /* How the light of a point falls off: by the inverse square of the distance, and to nothing at its range, 0 if it has none
  * (KHR_lights_punctual). */
 RT_INLINE vfloat rt_fall_off(vfloat squared, vfloat range)

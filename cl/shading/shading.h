@@ -16,19 +16,16 @@ typedef struct rt_tally {
  * disc and outside of a sphere. */
 RT_INLINE vfloat rt_light_strength(const global rt_light *light, rt_vec at, rt_vec towards)
 {
-    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f), least = rt_vfloat(1e-30f);
+    const vfloat zero = rt_vfloat(0.0f), least = rt_vfloat(1e-30f);
     const float by_pi = 0.31830989f;
     const uint kind = light->kind;
     const bool fades = (light->flags & RT_LIGHT_FALLOFF) != 0u, two_sided = (light->flags & RT_LIGHT_TWO_SIDED) != 0u;
     if (kind == RT_LIGHT_DIRECTIONAL || kind == RT_LIGHT_SUN) return rt_vfloat(kind == RT_LIGHT_SUN || fades ? by_pi : 1.0f);
     const rt_vec to = rt_sub(rt_spread(light->position), at);
     const vfloat squared = rt_dot(to, to), cosine = -rt_dot(rt_spread(light->normal), towards);
-    if (kind == RT_LIGHT_POINT || kind == RT_LIGHT_SPOT) {
-        /* KHR_lights_punctual: the square of a linear ramp between the cosines of both angles. */
-        const float width = max(light->cos_inner - light->cos_outer, 1e-3f);
-        const vfloat ramp = clamp((cosine - rt_vfloat(light->cos_outer)) / rt_vfloat(width), zero, one);
-        const vfloat cone = kind == RT_LIGHT_SPOT ? ramp * ramp : one;
-        return fades ? cone * rt_vfloat(by_pi) * rt_fall_off(squared, rt_vfloat(light->range)) : cone;
+    if ((1u << kind & RT_LIGHTS_POINTS) != 0u) {
+        const vfloat share = rt_intensity_share(rt_vint((int)kind), cosine, rt_vfloat(light->cos_inner), rt_vfloat(light->cos_outer));
+        return fades ? share * rt_vfloat(by_pi) * rt_fall_off(squared, rt_vfloat(light->range)) : share;
     }
     const float radius2 = light->radius * light->radius;
     if (kind == RT_LIGHT_SPHERE) return rt_vfloat(radius2) / rt_max(squared, rt_vfloat(radius2));

@@ -11,6 +11,7 @@
 
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
+#include "plugin/trust.hpp"
 
 namespace clarity::api {
 namespace {
@@ -115,6 +116,7 @@ const PluginRegistry& plugins() {
     const std::lock_guard<std::mutex> lock(s.mutex);
     if (!s.plugins) {
         set_program_file(find_program(s.program));
+        trust_own_libraries_only();  // the process is not ours to lose
         s.plugins = std::make_unique<const PluginRegistry>(PluginRegistry::discover());
     }
     return *s.plugins;

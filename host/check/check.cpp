@@ -201,7 +201,7 @@ class Run {
         job.library = record_.path, job.phase = name, job.device = options_.device, job.report = options_.report_folder;
         job.truth = options_.truth_folder, job.beside = beside_, job.samples = options_.samples, job.only = options_.only;
         job.lanes = options_.lanes, job.quick = options_.quick, job.large = options_.large, job.list = options_.list;
-        job.stop_at_first = options_.stop_at_first, job.seed = options_.seed;
+        job.stop_at_first = options_.stop_at_first, job.seed = options_.seed, job.closed = options_.closed;
         if (name == "imports" || name == "keys") job.scratch = folder();
         if (options_.scene && name == "hits") {
             job.rays = options_.rays_file;

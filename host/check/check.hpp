@@ -30,6 +30,9 @@ struct CheckOptions {
     // Of structures: the user's own scene, without shapes, and rays through it. Null: none.
     std::shared_ptr<const Scene> scene;
     std::string rays_file;
+    // Of builders of topologies: the library is opened by no process but a worker for each build. The record is
+    // take_closed_builder()'s.
+    std::vector<ClosedBuilder> closed;  // none or one
 };
 
 // Whether the names, or beginnings of names, in `only` name a check; all do if there is none.

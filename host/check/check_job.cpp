@@ -98,7 +98,11 @@ std::string own_folder() {  // tells how large this process is
 
 std::vector<Check> builder_checks(const PluginRecord& record, const CheckJob& job) {
     use_one_arena();
-    worker::enter_sandbox(WorkerKind::builder, {own_folder()}, {}, limits_of(job.large ? kLargeBuilderBytes : kBuilderBytes));
+    if (job.closed.empty())
+        worker::enter_sandbox(WorkerKind::builder, {own_folder()}, {},
+                              limits_of(job.large ? kLargeBuilderBytes : kBuilderBytes));
+    else
+        worker::enter_sandbox(WorkerKind::driver);  // the builder has a worker of its own
     return build_checks(*record.plugin, job.quick, job.seed, job.large);
 }
 
@@ -228,7 +232,11 @@ std::vector<Check> importer_checks(const CheckJob& job) {
 
 void run_all(const CheckJob& job) {
     // The library was loaded by the program before, to read its description; its constructors have run there.
-    const PluginRecord record = load_plugin(job.library);
+    PluginRecord record;
+    if (job.closed.empty())
+        record = load_plugin(job.library);
+    else
+        record.path = job.library, record.plugin = take_closed_builder(job.closed.front());
     if (!record.plugin) throw Error(Exit::failed, record.why);
     const std::vector<Check> checks = job.phase == "builds"    ? builder_checks(record, job)
                                       : job.phase == "imports" ? importer_checks(job)

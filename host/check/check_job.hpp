@@ -9,6 +9,7 @@
 #include "base/files/parcel.hpp"
 #include "check/steps.hpp"
 #include "import/wire.hpp"
+#include "render/accel/build_in_worker.hpp"
 #include "worker/job.hpp"
 
 namespace clarity::check {
@@ -22,11 +23,12 @@ struct CheckJob {
     bool quick = false, large = false, list = false, stop_at_first = false;
     uint64_t seed = 0;
     std::vector<import::SentScene> scene;  // to `rays`; none or one
+    std::vector<ClosedBuilder> closed;     // instead of `library`: one that only workers of its own open; none or one
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
         parcel(self.library, self.phase, self.device, self.report, self.truth, self.scratch, self.rays, self.beside,
                self.samples, self.only, self.done, self.lanes, self.quick, self.large, self.list, self.stop_at_first, self.seed,
-               self.scene);
+               self.scene, self.closed);
     }
 };
 

@@ -29,6 +29,7 @@ struct Parsed {
     WhyCommand why;
     CheckCommand check;
     NewPluginCommand fresh;
+    LabCommand lab;
     std::string key_map;
     bool json = false;
 };
@@ -76,6 +77,7 @@ CommandLine parse_command_line(int argc, char** argv) {
     CLI::App* compare = app.add_subcommand("compare", "Say how much a picture differs from a reference");
     CLI::App* check = app.add_subcommand("check", "Say whether a plugin is right, in a process that it may crash");
     CLI::App* fresh = app.add_subcommand("new-plugin", "Make a folder with a plugin that builds and works, to begin with");
+    CLI::App* lab = app.add_subcommand("lab", "Give, check and grade an assignment of a course");
     CLI::App* bench = app.add_subcommand("bench", "Measure: structures, settings, devices and peers on suites or scenes");
     CLI::App* info = app.add_subcommand("info", "Show what the importer read from a file");
     CLI::App* devices = app.add_subcommand("devices", "List OpenCL devices, best first");
@@ -153,6 +155,9 @@ CommandLine parse_command_line(int argc, char** argv) {
         line.command = [parsed](const PluginRegistry& registry) { return run_new_plugin(registry, parsed->fresh); };
     });
 
+    add_lab(*lab, p.lab);
+    lab->callback([&] { line.command = [parsed](const PluginRegistry& registry) { return run_lab(registry, parsed->lab); }; });
+
     add_bench(*bench, p.bench);
     bench->callback([&] {
         for (int i = 0; i < argc; ++i) parsed->bench.text += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "clarity");
@@ -184,7 +189,7 @@ CommandLine parse_command_line(int argc, char** argv) {
         line.lists_plugins = true;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
-    for (CLI::App* sub : {view, render, trace, why, compare, check, fresh, bench, info, devices, plugins}) {
+    for (CLI::App* sub : {view, render, trace, why, compare, check, fresh, lab, bench, info, devices, plugins}) {
         add_common(*sub, p.common);
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);

@@ -75,6 +75,11 @@ void add_rays(CLI::App& app, TraceCommand& command) {
     single(app.add_option("--mask", command.mask,
                           "The rays hit only instances that share a bit of this number with their mask, 0 to 255"))
         ->check(CLI::Range(0u, RT_SEEN_BY_ALL));
+    app.add_flag("--work", command.work,
+                 "Write what each ray's packet does, too: nodes visited, boxes tested, primitives tested; --lanes 1 makes "
+                 "packets of one ray")
+        ->excludes(all)
+        ->excludes(count);
     any->excludes(all)->excludes(count);
     all->excludes(count);
 }
@@ -171,6 +176,35 @@ void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
         ->required();
     app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")->type_name("ID")->required();
     app.add_option("folder", command.folder, "The new folder; default: ID in the working folder")->type_name("DIR");
+}
+
+void add_lab(CLI::App& app, LabCommand& command) {
+    app.add_option(
+           "action", command.action,
+           "new LAB DIR (a copy of a lab, to change), handout LAB DIR (what students get), check [DIR] (what students run, "
+           "in the folder that they got), grade LAB SUBMISSION...")
+        ->type_name("ACTION")
+        ->required()
+        ->check(CLI::IsMember({"new", "handout", "check", "grade"}));
+    app.add_option("words", command.words, "A lab's folder, or the name of one that is installed; then other folders")
+        ->type_name("LAB|DIR");
+    app.add_option("--only", command.only, "Only this line, such as hits.random or the name of a case; may be repeated")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    single(app.add_option("-o,--output", command.output, "Of grade: a folder for a record of each submission, NAME.json"))
+        ->type_name("DIR");
+    single(app.add_option("--gradescope", command.gradescope, "Of grade: write Gradescope's results.json, first with 0 points"))
+        ->type_name("FILE");
+    app.add_flag("--autolab", command.autolab, "Of grade: the last line printed is Autolab's, and one with 0 points the first");
+    app.add_flag("--counts-only", command.counts_only,
+                 "Take no times, on a machine that is not worth it: their points belong to the counts");
+    single(app.add_option("--sdk", command.sdk, "The folder that Clarity is installed in; default: that of this program"))
+        ->type_name("DIR");
+    single(app.add_option("--work", command.work,
+                          "A folder in which plugins are built, and which later runs use again; default: a temporary one"))
+        ->type_name("DIR");
+    single(app.add_option("--device", command.device, "The device that traces, as `clarity devices` lists them"))
+        ->type_name("D");
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {

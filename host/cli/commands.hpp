@@ -94,6 +94,7 @@ struct TraceCommand {
     bool any_hit = false;   // only whether something is hit between t_min and t_max
     bool all = false;       // all hits, not only the nearest
     bool count = false;     // how many
+    bool work = false;      // what each nearest or any hit takes: nodes, boxes, tests
     unsigned mask = RT_SEEN_BY_ALL;
     bool quiet = false;
 };
@@ -125,6 +126,17 @@ struct NewPluginCommand {
     std::string kind, id, folder;  // folder "": the id, in the working folder
 };
 int run_new_plugin(const PluginRegistry& plugins, const NewPluginCommand& command);
+
+// Assignments of a course.
+struct LabCommand {
+    std::string action;              // new, handout, check or grade
+    std::vector<std::string> words;  // a lab, then folders
+    std::vector<std::string> only;   // of check: lines
+    std::string output, gradescope;  // of grade: a folder for records, and Gradescope's file
+    std::string device, sdk, work;
+    bool autolab = false, counts_only = false;
+};
+int run_lab(const PluginRegistry& plugins, const LabCommand& command);
 
 struct BenchCommand {
     std::vector<std::string> what;    // suites and scene files

@@ -16,6 +16,8 @@
 #include "compile/compile_in_worker.hpp"
 #include "device/device_loss.hpp"
 #include "import/import_in_worker.hpp"
+#include "lab/build.hpp"
+#include "lab/measure.hpp"
 #include "plugin/load_trial.hpp"
 #include "render/accel/build_in_worker.hpp"
 #include "render/trial/trial.hpp"
@@ -73,8 +75,8 @@ int run_and_report(int argc, char** argv) {
 }
 
 // All that this program does in workers.
-const std::vector<const worker::JobKind*> kJobs = {&import::kImportJob, &check::kCheckJob, &kBuildJob,
-                                                   &kCompileJob,        &kTrialJob,        &kLoadJob};
+const std::vector<const worker::JobKind*> kJobs = {&import::kImportJob, &check::kCheckJob, &kBuildJob,      &kCompileJob,
+                                                   &kTrialJob,          &kLoadJob,         &lab::kToolsJob, &lab::kMeasureJob};
 
 }  // namespace
 }  // namespace clarity

@@ -1,6 +1,7 @@
 // clarity trace: traces rays that are given by their numbers, and writes what they hit.
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
@@ -25,6 +26,20 @@ Settings settings_of(const PluginRegistry& plugins, const TraceOptions& options,
                                      "=...: `clarity trace` has no camera, lights or materials; give settings only");
     device = words.device;
     return words.settings;
+}
+
+// A structure's own counts are marked, because they may be wrong.
+void report_own_counts(const std::vector<RayWork>& work, const std::string& accel) {
+    uint64_t steps = 0, boxes = 0, tests = 0;
+    for (const RayWork& ray : work) steps += ray.own_steps, boxes += ray.own_boxes, tests += ray.own_tests;
+    std::string which;
+    for (const auto& [count, name] : {std::pair(steps, "nodes"), {boxes, "boxes"}})
+        if (count > 0) which += (which.empty() ? "" : " and ") + std::string(name);
+    if (!which.empty())
+        log(LogLevel::info, "--work: " + which + " are as `" + accel + "` reports them: it does not use the host's tests");
+    if (tests > 0)
+        log(LogLevel::info, "--work: `" + accel + "` tests primitives by itself, too, and reports " + std::to_string(tests) +
+                                " tests; they are left out");
 }
 
 }  // namespace
@@ -63,11 +78,15 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
         text = command.count ? counts_text(hits) : all_hits_text(hits);
     } else {
         std::vector<rt_hit> hits;
+        std::vector<RayWork> work;
         RayQuery query;
         query.any_hit = command.any_hit;
+        query.count = command.work;
+        query.work = &work;
         query.mask = command.mask;
         queries.trace(*prepared, RayBlocks(rays, prepared->layout.lanes), query, &hits);
-        text = hits_text(hits, command.any_hit);
+        text = hits_text(hits, command.any_hit, work);
+        report_own_counts(work, settings.accel);
     }
     progress.clear();
     if (progress.cancelled()) throw Cancelled();

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -37,6 +38,8 @@ std::string stamp_of(const std::string& path) {
            std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec);
 }
 
+std::atomic<bool> own_only{false};
+
 // Versions of files that were found proven, so that they are read once.
 std::mutex mutex;
 std::set<std::string>& known() {
@@ -50,6 +53,7 @@ Trust trust_of(const std::string& path) {
     const char* const wanted = std::getenv("CLARITY_PLUGINS");
     if (wanted && std::strcmp(wanted, "worker") == 0) return Trust::none;
     if (is_own_library(path)) return Trust::own;
+    if (own_only) return Trust::none;
     const std::lock_guard<std::mutex> lock(mutex);
     const std::string stamp = stamp_of(path);
     if (known().count(stamp)) return Trust::proven;
@@ -57,6 +61,10 @@ Trust trust_of(const std::string& path) {
     if (name.empty() || !proven_libraries().has(name)) return Trust::none;
     known().insert(stamp);
     return Trust::proven;
+}
+
+void trust_own_libraries_only() {
+    own_only = true;
 }
 
 void remember_library(const std::string& path) {

@@ -15,6 +15,9 @@ enum class Trust {
 // a worker every time. Thread-safe; may read the file.
 Trust trust_of(const std::string& path);
 
+// From now on no library is proven in this process, only own ones are trusted: for processes that a crash must not end.
+void trust_own_libraries_only();
+
 // Makes a library proven, in this process and later ones ($XDG_CACHE_HOME/clarity/known_plugins).
 void remember_library(const std::string& path);
 

@@ -97,7 +97,9 @@ WorkerProcess::~WorkerProcess() {
 }
 
 void WorkerProcess::kill_now() {
-    if (pid_ > 0) ::kill(pid_, SIGKILL);
+    if (pid_ <= 0) return;
+    ::kill(-pid_, SIGKILL);  // its group: what it has started, such as compilers
+    ::kill(pid_, SIGKILL);
 }
 
 int WorkerProcess::wait() {

@@ -98,8 +98,25 @@ void allow_writing_result() {
     syscall(SYS_setrlimit, RLIMIT_FSIZE, &now);
 }
 
+void enter_tool_sandbox(const std::vector<std::string>& folders, const std::string& work, const WorkerLimits& limits,
+                        uint64_t file_bytes) {
+    enter_sandbox(WorkerKind::driver, {}, {}, limits);
+    if (kLimitAddressSpace) limit(RLIMIT_AS, limits.memory_bytes, limits.memory_bytes, "memory");
+    limit(RLIMIT_FSIZE, file_bytes, file_bytes, "writing");
+    if (const Problem why = detail::restrict_files(folders, {}, work)) note("files are not restricted: " + why.text());
+}
+
+bool restricts_files() {
 #ifdef CLARITY_LANDLOCK
-Problem detail::restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files) {
+    return syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) >= 1;
+#else
+    return false;
+#endif
+}
+
+#ifdef CLARITY_LANDLOCK
+Problem detail::restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files,
+                               const std::string& work) {
     const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (version < 1) return std::string("Landlock is not available: ") + std::strerror(errno);
     landlock_ruleset_attr ruleset{};
@@ -118,15 +135,20 @@ Problem detail::restrict_files(const std::vector<std::string>& folders, const st
         syscall(SYS_landlock_add_rule, fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
         close(rule.parent_fd);
     };
-    for (const std::string& folder : folders) allow(folder, LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR);
+    const uint64_t reads = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+    for (const std::string& folder : folders) allow(folder, work.empty() ? reads : reads | LANDLOCK_ACCESS_FS_EXECUTE);
     for (const std::string& file : files) allow(file, LANDLOCK_ACCESS_FS_READ_FILE);
+    if (!work.empty()) {
+        allow(work, ruleset.handled_access_fs);
+        allow("/dev/null", LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE);
+    }
     const bool entered = syscall(SYS_landlock_restrict_self, fd, 0) == 0;
     const std::string why = entered ? "" : std::string("Landlock: ") + std::strerror(errno);
     close(fd);
     return why;
 }
 #else
-Problem detail::restrict_files(const std::vector<std::string>&, const std::vector<std::string>&) {
+Problem detail::restrict_files(const std::vector<std::string>&, const std::vector<std::string>&, const std::string&) {
     return "built without Landlock's header";
 }
 #endif

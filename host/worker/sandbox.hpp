@@ -12,6 +12,7 @@ namespace clarity::worker {
 enum class WorkerKind {
     parser,   // importers: reads the named files, no more; little of the system is needed
     builder,  // builders of structures: reads no files at all
+    loader,   // opens a library that nobody trusts: as a parser, and maps code. To be followed by `builder`
     driver    // kernels: OpenCL drivers start compilers, write caches, talk to devices and reserve terabytes of addresses
 };
 
@@ -30,13 +31,23 @@ struct WorkerLimits {
 void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders = {}, const std::vector<std::string>& files = {},
                    const WorkerLimits& limits = {});
 
+// Restricts this process to compilers and what they start, each of them to these limits: no network; what is in `folders` is
+// read and run; only in the folder `work` anything is written, in files of at most file_bytes.
+void enter_tool_sandbox(const std::vector<std::string>& folders, const std::string& work, const WorkerLimits& limits,
+                        uint64_t file_bytes);
+
+// Whether this kernel keeps a worker from files, so that a stranger's build cannot read the teacher's. Changes nothing.
+bool restricts_files();
+
 // Lifts the limit on file sizes, which would also hold for the file in memory that takes the result.
 void allow_writing_result();
 
 namespace detail {
 // Both return nothing on success, otherwise why the kernel refused.
 Problem restrict_system_calls(WorkerKind kind);
-Problem restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files);
+// work: a folder in which all is allowed, or "". With one, what is in `folders` may be run.
+Problem restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files,
+                       const std::string& work = {});
 }  // namespace detail
 
 }  // namespace clarity::worker

@@ -115,8 +115,13 @@ Problem detail::restrict_system_calls(WorkerKind kind) {
     for (const int call : kAllowed) filter.allow(call);
     filter.allow_if(SCMP_SYS(openat), 2, kWriting, 0);
     filter.allow_if(SCMP_SYS(open), 1, kWriting, 0);
-    filter.allow_if(SCMP_SYS(mmap), 2, PROT_EXEC, 0);
-    filter.allow_if(SCMP_SYS(mprotect), 2, PROT_EXEC, 0);
+    if (kind == WorkerKind::loader) {
+        for (const int call : {SCMP_SYS(mmap), SCMP_SYS(mprotect), SCMP_SYS(seccomp)}) filter.allow(call);
+        filter.allow_if(SCMP_SYS(prctl), 0, kAll, PR_SET_NO_NEW_PRIVS);
+    } else {
+        filter.allow_if(SCMP_SYS(mmap), 2, PROT_EXEC, 0);
+        filter.allow_if(SCMP_SYS(mprotect), 2, PROT_EXEC, 0);
+    }
     filter.allow_if(SCMP_SYS(clone), 0, CLONE_THREAD, CLONE_THREAD);
     filter.allow_if(SCMP_SYS(kill), 0, kAll, self);
     filter.allow_if(SCMP_SYS(tgkill), 0, kAll, self);

@@ -85,12 +85,13 @@ def call(function, *arguments, progress=None):
             finally:
                 done.set()
 
-        threading.Thread(target=work, name="clarity", daemon=True).start()
+        thread = threading.Thread(target=work, name="clarity", daemon=True)
         try:
+            thread.start()
             done.wait()
         except BaseException:
             watch.cancel()
-            done.wait()  # arrays must not go while the library writes to them
+            _wait_for(done, thread)
             watch.end()
             raise
         error = results[0]
@@ -99,6 +100,16 @@ def call(function, *arguments, progress=None):
         raise watch.failure
     if error:
         raise error
+
+
+def _wait_for(done, thread):
+    """Arrays must not go while the library writes to them, however often Ctrl-C is pressed. Not by Thread.join(), which takes a thread
+    for ended once it was interrupted (Python 3.11)."""
+    while not done.is_set() and thread in threading.enumerate():  # there is none if it could not be started
+        try:
+            done.wait(0.1)
+        except KeyboardInterrupt:
+            pass
 
 
 def _on_log(_user, level, text):

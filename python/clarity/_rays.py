@@ -13,9 +13,19 @@ from ._errors import UsageError
 _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float64): constants["CLARITY_FLOAT64"]}
 
 
+def array_of(values, name):
+    """Of anything that numpy can read without a copy, and of lists. What has no protocol of numpy's is asked for DLPack."""
+    try:
+        if hasattr(values, "__dlpack__") and not hasattr(values, "__array__") and not hasattr(values, "__array_interface__"):
+            return np.from_dlpack(values)
+        return np.asarray(values)
+    except (BufferError, RuntimeError, TypeError, ValueError) as error:
+        raise UsageError(f"{name}: numpy cannot read it: {error}; an array on a GPU has to be copied to the CPU first") from None
+
+
 def as_array(values, name):
     """float32 stays, everything else becomes float64."""
-    array = np.asarray(values)
+    array = values if type(values) is np.ndarray else array_of(values, name)
     if array.dtype in _TYPES:
         return array
     if array.dtype.kind not in "fiub":

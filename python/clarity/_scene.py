@@ -10,7 +10,7 @@ import numpy as np
 from ._binding import constants, library, struct, texts
 from ._calls import call, check, end_log, start_log
 from ._errors import UsageError
-from ._rays import AllHits, Hit, Packed, Rays, address_of, as_array, check_out, rays_of
+from ._rays import AllHits, Hit, Packed, Rays, address_of, array_of, as_array, check_out, rays_of
 
 # Rays that are traced before a person waits: no thread is started for them.
 _FEW = 4096
@@ -34,7 +34,7 @@ class Scene:
 
     def __init__(self, vertices, faces, *, progress=None):
         vertices = np.ascontiguousarray(as_array(vertices, "vertices"))
-        faces = np.asarray(faces)
+        faces = array_of(faces, "faces")
         for name, array in (("vertices", vertices), ("faces", faces)):
             if array.ndim != 2 or array.shape[1] != 3:
                 raise UsageError(f"{name}: expected an array of shape (n, 3), found {array.shape}")

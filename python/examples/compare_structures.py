@@ -1,6 +1,6 @@
 """How fast structures are built and traced, on a mesh of your own.
 
-    python3 compare_structures.py [mesh.obj ...] [--accel bvh2 --accel bvh8,max_leaf=2] [--rays 1000000] [--plot rates.png]
+    python3 compare_structures.py [mesh.obj ...] [--accel bvh2 --accel bvh8,max_leaf=2] [--rays 1000000] [--plot FILE]
 
 Without files the mesh is a knot. All structures must give the same hits. Times are the best of --repeat runs; for figures to
 publish take clarity.bench(), which refuses what was disturbed."""
@@ -64,6 +64,21 @@ def compare(scene, structures, count, repeat=5, device=""):
     return rows
 
 
+def plot(rows, file):
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        return print("no plot: matplotlib is not installed (package python3-matplotlib)")
+    names = [row["accel"] for row in rows]
+    figure, axes = pyplot.subplots(1, 2, figsize=(9, 4), layout="constrained")
+    for axis, key, title in ((axes[0], "mrays_per_s", "Mrays/s (more is better)"), (axes[1], "made_s", "seconds until rays can be traced")):
+        axis.bar(names, [row[key] for row in rows])
+        axis.set_title(title)
+        axis.set_ylim(0)
+    figure.savefig(file)
+    print(f"{file} shows it")
+
+
 def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("files", nargs="*")
@@ -72,7 +87,7 @@ def main():
     words.add_argument("--repeat", type=int, default=5)
     words.add_argument("--triangles", type=int, default=500000, help="of the knot, about")
     words.add_argument("--device", default="", help="as of clarity --device")
-    words.add_argument("--plot", help="a file for the chart; needs matplotlib")
+    words.add_argument("--plot", default="structures.png", help="the file for the chart")
     asked = words.parse_args()
     across = max(3, int(np.sqrt(asked.triangles / 32)))
     scene = clarity.load(*asked.files) if asked.files else clarity.Scene(*knot(16 * across, across))
@@ -80,13 +95,7 @@ def main():
     print(f"{scene.info['triangles']} triangles, {asked.rays} rays, {rows[0]['hits']} hits")
     for row in rows:
         print(f"{row['accel']:24} ready after {row['made_s']:.2f} s  {row['mrays_per_s']:8.1f} Mrays/s")
-    if asked.plot:
-        from matplotlib import pyplot
-
-        figure, axis = pyplot.subplots()
-        axis.bar([row["accel"] for row in rows], [row["mrays_per_s"] for row in rows])
-        axis.set_ylabel("Mrays/s")
-        figure.savefig(asked.plot)
+    plot(rows, asked.plot)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """What a filter gains over more samples: the path tracer's picture with few samples, filtered with the help of normals and distances,
 against one with many.
 
-    python3 denoising_study.py scenes/cornell.scene [--size 256x256] [--spp 1 4 16 64] [--reference 1024] [--plot error.png]
+    python3 denoising_study.py scenes/cornell.scene [--size 256x256] [--spp 1 4 16 64] [--reference 1024] [--plot FILE]
 
 The filter is a cross-bilateral one (Eisemann, Durand 2004, Flash Photography Enhancement via Intrinsic Relighting): a pixel becomes the
 mean of its neighbourhood, in which neighbours count less that lie on another surface."""
@@ -43,15 +43,38 @@ def error_of(image, reference):
 
 
 def study(rt, width, height, samples, reference_samples, **view):
-    """Errors for each number of samples: (samples, plain, filtered)."""
+    """Errors for each number of samples: (samples, plain, filtered); and pictures by their names."""
     path = dict(tracer="path", **view)
     reference = rt.render(width, height, spp=reference_samples, seed=7, **path)
     normals, distance = (rt.render(width, height, aov=aov, **view) for aov in ("normal", "t"))
-    rows = []
+    rows, pictures = [], {}
     for spp in samples:
         image = rt.render(width, height, spp=spp, **path)
-        rows.append((spp, error_of(image, reference), error_of(bilateral(image, normals, distance), reference)))
-    return rows
+        filtered = bilateral(image, normals, distance)
+        rows.append((spp, error_of(image, reference), error_of(filtered, reference)))
+        if spp == samples[0]:
+            pictures.update({f"{spp} samples": image, f"{spp} samples, filtered": filtered})
+    return rows, {**pictures, f"{reference_samples} samples": reference}
+
+
+def plot(rows, pictures, file):
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        return print("no plot: matplotlib is not installed (package python3-matplotlib)")
+    figure, axes = pyplot.subplots(1, 4, figsize=(14, 3.8), layout="constrained")
+    for axis, (name, picture) in zip(axes, pictures.items()):
+        axis.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
+        axis.set_title(name)
+        axis.set_axis_off()
+    samples, plain, filtered = zip(*rows)
+    axes[3].loglog(samples, plain, "o-", label="path tracer")
+    axes[3].loglog(samples, filtered, "o-", label="filtered")
+    axes[3].set_xlabel("samples a pixel")
+    axes[3].set_ylabel("relative error")
+    axes[3].legend()
+    figure.savefig(file)
+    print(f"{file} shows it")
 
 
 def main():
@@ -61,24 +84,14 @@ def main():
     words.add_argument("--spp", type=int, nargs="+", default=[1, 4, 16, 64])
     words.add_argument("--reference", type=int, default=1024, help="its samples a pixel")
     words.add_argument("--device", default="", help="as of clarity --device")
-    words.add_argument("--plot", help="a file for the chart; needs matplotlib")
+    words.add_argument("--plot", default="denoising.png", help="the file for pictures and chart")
     asked = words.parse_args()
     width, height = map(int, asked.size.split("x"))
-    rows = study(clarity.load(*asked.files).on(asked.device), width, height, asked.spp, asked.reference)
+    rows, pictures = study(clarity.load(*asked.files).on(asked.device), width, height, asked.spp, asked.reference)
     print("samples  error  filtered")
     for spp, plain, filtered in rows:
         print(f"{spp:7}  {plain:.3f}  {filtered:.3f}")
-    if asked.plot:
-        from matplotlib import pyplot
-
-        figure, axis = pyplot.subplots()
-        samples, plain, filtered = zip(*rows)
-        axis.loglog(samples, plain, "o-", label="path tracer")
-        axis.loglog(samples, filtered, "o-", label="filtered")
-        axis.set_xlabel("samples a pixel")
-        axis.set_ylabel("error")
-        axis.legend()
-        figure.savefig(asked.plot)
+    plot(rows, pictures, asked.plot)
 
 
 if __name__ == "__main__":

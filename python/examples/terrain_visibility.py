@@ -1,6 +1,6 @@
 """Which parts of a terrain an observer sees, and how much of the sky each part sees.
 
-    python3 terrain_visibility.py [--size 400] [--directions 64] [--device gpu] [--plot terrain.png]
+    python3 terrain_visibility.py [--size 400] [--directions 64] [--device gpu] [--plot FILE]
 
 The terrain is a grid of heights; put your own in place of hills()."""
 import argparse
@@ -49,12 +49,26 @@ def sky_share(rt, points, directions, above=1e-3, seed=1):
     return free / directions
 
 
+def plot(seen, sky, eye, file):
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        return print("no plot: matplotlib is not installed (package python3-matplotlib)")
+    figure, axes = pyplot.subplots(1, 2, figsize=(10, 4.5), layout="constrained")
+    for axis, values, title in ((axes[0], seen, "seen by the observer (cross)"), (axes[1], sky, "share of the sky")):
+        figure.colorbar(axis.imshow(values, origin="lower", extent=(0, 1, 0, 1), vmin=0, vmax=1), ax=axis)
+        axis.set_title(title)
+    axes[0].plot(eye[0], eye[1], "rx", markersize=10)
+    figure.savefig(file)
+    print(f"{file} shows both")
+
+
 def main():
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("--size", type=int, default=400, help="points along a side")
     words.add_argument("--directions", type=int, default=64, help="of the sky, from each point")
     words.add_argument("--device", default="", help="as of clarity --device")
-    words.add_argument("--plot", help="a file for the two maps; needs matplotlib")
+    words.add_argument("--plot", default="terrain.png", help="the file for the two maps")
     asked = words.parse_args()
     points = points_of(hills(asked.size))
     rt = mesh_of(points).on(asked.device)
@@ -63,14 +77,7 @@ def main():
     sky = sky_share(rt, points, asked.directions)
     print(f"seen from the middle: {100 * seen.mean():.1f} % of the points")
     print(f"share of the sky: {sky.min():.2f} to {sky.max():.2f}, {sky.mean():.2f} on average")
-    if asked.plot:
-        from matplotlib import pyplot
-
-        figure, axes = pyplot.subplots(1, 2, figsize=(10, 4.5))
-        for axis, values, title in ((axes[0], seen, "seen from the middle"), (axes[1], sky, "share of the sky")):
-            figure.colorbar(axis.imshow(values, origin="lower", extent=(0, 1, 0, 1)), ax=axis)
-            axis.set_title(title)
-        figure.savefig(asked.plot)
+    plot(seen, sky, eye, asked.plot)
 
 
 if __name__ == "__main__":

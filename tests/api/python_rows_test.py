@@ -46,6 +46,29 @@ class Rows(Case):
             clarity.check(library, quick=True)
         self.assertFalse(clarity.Scene(self.vertices, self.faces).on(accel="bvh2").any([0.5, 0.5, 9], [0, 0, 1]))
 
+    def test_of_a_builder_that_crashes_are_an_exception(self):
+        # Also after a build of the same library that came to its end, in this process and in an earlier one.
+        lines = """
+import clarity, numpy
+scene = clarity.Scene(numpy.eye(3), [[0, 1, 2]])
+for defect in ("crashes", "none", "crashes", "throws"):
+    try:
+        scene.on(accel="bad_builder,defect=" + defect)
+        print("built")
+    except clarity.Error as error:
+        print(error)
+print(scene.on(accel="bvh2").any([0, 0, 0], [1, 1, 1]))
+"""
+        folder = os.path.join(self.folder, "plugins")
+        os.mkdir(folder)
+        os.symlink(os.environ["CLARITY_BAD_BUILDER"], os.path.join(folder, "bad_builder.so"))
+        environment = {**os.environ, "CLARITY_PLUGIN_PATH": folder}
+        for _ in range(2):
+            result = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True, timeout=300, env=environment)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            crash = "accel bad_builder: the builder crashed .segmentation fault.*\n"
+            self.assertRegex(result.stdout, f"^{crash}built\n{crash}accel bad_builder: .*thrown by the builder.*\nTrue\n$")
+
     def test_end_by_ctrl_c_with_their_process(self):
         lines = f"""
 import clarity

@@ -2,6 +2,7 @@
 import os
 import sys
 import tracemalloc
+import types
 import unittest
 
 import numpy as np
@@ -74,6 +75,59 @@ class Hits(Case):
         one = rt.closest(origins[5], directions[5], t_max=1.25)
         self.assertEqual((one.t.shape, one.t), ((), plain.t[5]))
         self.assertEqual(rt.closest(np.empty((0, 3)), [0, 0, 1]).t.shape, (0,))
+
+    def test_of_arrays_of_other_libraries(self):
+        origins, directions = some_rays(90, 18)
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        expected = rt.closest(origins, directions)
+
+        class Dlpack:  # as of other libraries: this protocol alone
+            def __init__(self, array):
+                self.array = array
+
+            def __dlpack_device__(self):
+                return self.array.__dlpack_device__()
+
+            def __dlpack__(self, **options):
+                return self.array.__dlpack__(**options)
+
+        class OnGpu:
+            def __dlpack_device__(self):
+                return 2, 0
+
+            def __dlpack__(self, **_):
+                raise BufferError("it lies on a GPU")
+
+        def interface(array):
+            return types.SimpleNamespace(__array_interface__=array.__array_interface__, owner=array)
+
+        wide = np.zeros((180, 7), np.float32)
+        wide[::-2, 1:7:2] = origins
+        for lent in (interface, Dlpack):
+            self.equal(rt.closest(lent(origins), lent(directions)), expected)
+            self.equal(rt.closest(lent(wide[::-2, 1:7:2]), lent(directions.astype(float))), expected)
+            self.equal(rt.closest(lent(np.asfortranarray(origins)), directions), expected)
+            self.assertEqual(rt.closest(lent(origins[:0]), lent(directions[:0])).t.shape, (0,))
+            scene = clarity.Scene(lent(self.vertices), lent(self.faces.astype(np.uint32)))
+            self.equal(scene.on(accel="bvh2").closest(origins, directions), expected)
+        frozen = origins.copy()
+        frozen.flags.writeable = False
+        self.equal(rt.closest(frozen, np.broadcast_to(directions, (90, 3))), expected)
+        for kind in (np.float16, np.longdouble, ">f8", np.int8):
+            some = (8 * origins).astype(kind)
+            self.equal(rt.closest(some, directions), rt.closest(some.astype(float), directions))
+        for order in "<>":
+            scene = clarity.Scene(self.vertices.astype(order + "f4"), self.faces.astype(order + "i8"))
+            self.equal(scene.on(accel="bvh2").closest(origins, directions), expected)
+        for words, wrong in (
+            ("origins: numpy cannot read it: .*(GPU|device)", lambda: rt.any(OnGpu(), directions)),
+            ("origins: numpy cannot read it: .*inhomogeneous", lambda: rt.any([[0, 0, 0], [1]], directions)),
+            ("directions: expected numbers", lambda: rt.any(origins, [[None] * 3] * 90)),
+            ("t_max: expected numbers", lambda: rt.any(origins, directions, t_max="far")),
+            ("out: expected a writeable", lambda: rt.any(origins, directions, out=np.broadcast_to(np.zeros(1, bool), 90))),
+        ):
+            with self.subTest(words=words), self.assertRaisesRegex(clarity.UsageError, words):
+                wrong()
 
     def test_fill_arrays_that_are_there(self):
         rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")

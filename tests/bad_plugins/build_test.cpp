@@ -51,7 +51,9 @@ const rt_plugin& builder() {
 clarity::AccelData build(const std::string& defect, clarity::Progress& progress) {
     clarity::ParameterValues params = clarity::default_parameters(builder());
     clarity::set_parameter(builder(), params, "defect", defect);
-    return clarity::build_accel(sample_scene(), builder(), params, progress);
+    clarity::BuildTarget target;
+    if (defect == "crashes") target.place = clarity::BuildPlace::worker;
+    return clarity::build_accel(sample_scene(), builder(), params, progress, target);
 }
 
 struct Breach {
@@ -87,6 +89,7 @@ const Breach kBreaches[] = {
     {"ok_after_fail", "this builder failed and goes on (and then it reported success"},
     {"odd_status", "returned 77"},
     {"cancelled_by_nobody", "had not asked it to stop"},
+    {"crashes", "the builder crashed (segmentation fault"},
     {"throws", "thrown by the builder"},
     {"throws_no_exception_class", "unknown type"},
     {"throws_in_loop", "thrown in iteration 7"},

@@ -231,7 +231,11 @@ TEST(Analysis, TwoPacketsMatchFiguresComputedByHand) {
         hits[i].leaf_tests = i < 4 ? 5 : 2;
         hits[i].lane_steps = i < 4 ? 30 : 4;
     }
-    const Analysis a = analyze(rays, hits, 4, 64);
+    std::vector<RayWork> work(8);
+    for (size_t i = 0; i < 8; ++i) work[i] = {i < 4 ? 20u : 6u, 0, i < 4 ? 0u : 4u, 0};
+    const Analysis a = analyze(rays, hits, work, 4, 64);
+    EXPECT_DOUBLE_EQ(a.boxes_per_ray, (4 * 20 + 10) / 5.0);
+    EXPECT_EQ(a.reported, "boxes");
     EXPECT_TRUE(a.present);
     EXPECT_DOUBLE_EQ(a.nodes_per_ray, (4 * 10 + 4) / 5.0);
     EXPECT_DOUBLE_EQ(a.own_nodes_per_ray, 34 / 5.0);
@@ -249,7 +253,8 @@ TEST(Analysis, OneLaneHasWarpFiguresAndNoSharedBytes) {
         rays[i].t_max = 1;
         hits[i].steps = hits[i].lane_steps = i < 32 ? 10 : (i == 32 ? 20 : 5);
     }
-    const Analysis a = analyze(rays, hits, 1, 64);
+    const Analysis a = analyze(rays, hits, std::vector<RayWork>(64), 1, 64);
+    EXPECT_EQ(a.reported, "");
     EXPECT_DOUBLE_EQ(a.warp_alive, (320.0 + 20 + 31 * 5) / (32 * 10 + 32 * 20));
     EXPECT_DOUBLE_EQ(a.lanes_alive, 1);
     EXPECT_DOUBLE_EQ(a.bytes_shared, 0);

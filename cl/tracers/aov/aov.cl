@@ -4,7 +4,7 @@
  * With RT_COUNT_STEPS the program has those that are counted, else the others. out: 1 or 3 floats a pixel as the table says, top row
  * first. prim and instance are ints in the bits of floats. Steps, leaf tests and lanes are counted for the packet that the pixel's
  * ray belongs to. */
-#if RT_AOV_COUNT != 8 /* those that this tracer makes */
+#if RT_AOV_COUNT != 9 /* those that this tracer makes */
 #error "rt_store_aov() has no branch for the new AOV: add one, and count it here"
 #endif
 
@@ -14,9 +14,12 @@ RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, v
     const vint at = y * rt_vint((int)frame->width) + x;
 #ifdef RT_COUNT_STEPS
     /* A packet that visits no node has no idle lane. */
-    const float visited = (float)(hit->steps * popcount(bits));
-    const float lanes = hit->steps != 0u ? (float)hit->lane_steps / visited : 1.0f;
-    const float value = frame->aov == RT_AOV_STEPS ? (float)hit->steps : frame->aov == RT_AOV_LEAF_TESTS ? (float)hit->leaf_tests : lanes;
+    const float visited = (float)(hit->visits * popcount(bits));
+    const float lanes = hit->visits != 0u ? (float)hit->lane_steps / visited : 1.0f;
+    const float value = frame->aov == RT_AOV_STEPS        ? (float)hit->steps
+                        : frame->aov == RT_AOV_BOXES      ? (float)(hit->boxes + hit->own_boxes)
+                        : frame->aov == RT_AOV_LEAF_TESTS ? (float)hit->leaf_tests
+                                                          : lanes;
     RT_FOR_LANES_STORE(out, at, rt_vfloat(value), bits)
 #else
     if (frame->aov == RT_AOV_T) {

@@ -5,7 +5,8 @@
  * an rt_ray.
  *
  * Answers have the same form, with as many fields as the host asks for:
- *   RT_ANSWER_ALL        t, u, v, prim, instance, and three that only programs that count write; with one lane an rt_hit
+ *   RT_ANSWER_ALL        t, u, v, prim, instance, and three of no value; with one lane an rt_hit
+ *   RT_ANSWER_COUNTED    programs that count: t, u, v, prim, instance, steps, leaf_tests, lane_steps, and the members of a RayWork
  *   RT_ANSWER_HIT        t, u, v, prim: half the bytes, for one lane and scenes without instances
  *   RT_ANSWER_NEAREST    t, prim
  *   RT_ANSWER_OCCLUSION  t
@@ -75,6 +76,15 @@ RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields,
     }
 #endif
     global vfloat *block_fields = (global vfloat *)blocks + fields * (size_t)block;
+#ifdef RT_COUNT_STEPS
+    const uint counts[7] = {hit->steps, hit->leaf_tests, hit->lane_steps, hit->boxes, hit->own_steps, hit->own_boxes, hit->own_tests};
+    block_fields[0] = hit->t;
+    block_fields[1] = hit->u;
+    block_fields[2] = hit->v;
+    block_fields[3] = rt_as_vfloat(hit->prim);
+    block_fields[4] = rt_as_vfloat(hit->instance);
+    for (uint i = 0; i < 7u; ++i) block_fields[5u + i] = rt_as_vfloat(rt_vint((int)counts[i]));
+#else
     if (fields != RT_ANSWER_ALL) {
         RT_STORE_NONTEMPORAL(block_fields, hit->t);
         if (fields == RT_ANSWER_NEAREST) RT_STORE_NONTEMPORAL(block_fields + 1, rt_as_vfloat(hit->prim));
@@ -83,11 +93,7 @@ RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields,
 #if RT_LANES == 1
     global float4 *out = (global float4 *)blocks + 2u * (size_t)block;
     out[0] = (float4)(hit->t, hit->u, hit->v, as_float(hit->prim));
-#ifdef RT_COUNT_STEPS
-    out[1] = (float4)(as_float(hit->instance), as_float(hit->steps), as_float(hit->leaf_tests), as_float(hit->lane_steps));
-#else
     out[1] = (float4)(as_float(hit->instance), 0.0f, 0.0f, 0.0f);
-#endif
 #else
     global vfloat *out = block_fields;
     out[0] = hit->t;
@@ -95,10 +101,6 @@ RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields,
     out[2] = hit->v;
     out[3] = rt_as_vfloat(hit->prim);
     out[4] = rt_as_vfloat(hit->instance);
-#ifdef RT_COUNT_STEPS
-    out[5] = rt_as_vfloat(rt_vint((int)hit->steps));
-    out[6] = rt_as_vfloat(rt_vint((int)hit->leaf_tests));
-    out[7] = rt_as_vfloat(rt_vint((int)hit->lane_steps));
 #endif
 #endif
 }

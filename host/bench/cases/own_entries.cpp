@@ -146,10 +146,13 @@ void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
     state.rays = &set;
     time_rays(state, entry, held, set);
     entry.finish = [=, &set, &state](BenchRecord& row) {
-        const auto hits = held.queries->trace(*held.prepared, set.rays, RayQuery{set.any_hit, true});
+        std::vector<RayWork> work;
+        RayQuery query{set.any_hit, true};
+        query.work = &work;
+        const auto hits = held.queries->trace(*held.prepared, set.rays, query);
         const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
         const rt_accel& accel = *held.prepared->accel->layout->accel;
-        row.analysis = analyze(set.rays, hits, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
+        row.analysis = analyze(set.rays, hits, work, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
         std::vector<float> distances;
         for (const rt_hit& hit : hits) distances.push_back(hit.t);
         state.agreement.check_hits(row, set, distances);

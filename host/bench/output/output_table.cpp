@@ -189,17 +189,19 @@ std::string analysis_table(const BenchReport& report) {
     for (const Field<Analysis>& field : analysis_fields())
         if (field.look.column) head.push_back(field.look.column);
     TextTable table(head, 3);
+    bool marked = false;
     for (const BenchRecord& r : report.records) {
         // Counts hold in spite of unsteady times.
         if (!r.analysis.present || (r.status != RowStatus::ok && !unsteady(report, r))) continue;
-        std::vector<std::string> cells = {r.scene, r.measure, r.name()};
+        std::vector<std::string> cells = {r.scene, r.measure, r.name() + (r.analysis.reported.empty() ? "" : " *")};
+        marked |= !r.analysis.reported.empty();
         for (const Field<Analysis>& field : analysis_fields())
             if (field.look.column) cells.push_back(shown_text(field, r.analysis));
         table.add(cells);
     }
-    return table.empty()
-               ? std::string()
-               : "what the packets did (counted, not timed; docs/bench.md defines each figure)\n" + table.text(26) + "\n";
+    return table.empty() ? std::string()
+                         : "what the packets did (counted, not timed; docs/bench.md defines each figure)\n" + table.text(26) +
+                               (marked ? "*: the structure tests boxes by itself, and reports how many\n" : "") + "\n";
 }
 
 std::string dropped_table(const BenchReport& report) {

@@ -27,8 +27,10 @@ struct Analysis {
     double lanes_alive = 0;         // 0..1: share of lanes with a ray that intersects the node, over all node visits
     double warp_alive = 0;          // 0..1, with one lane only: of 32 neighbours, mean of visited nodes divided by the largest
     double bytes_per_ray = 0;       // bytes of nodes and leaves fetched per ray; each packet fetches a node once
-    double bytes_shared = 0;  // 0..1: share of node fetches which a packet saves, compared with tracing its rays one by one
-    unsigned node_bytes = 0;  // size of a node in bytes
+    double bytes_shared = 0;   // 0..1: share of node fetches which a packet saves, compared with tracing its rays one by one
+    unsigned node_bytes = 0;   // size of a node in bytes
+    double boxes_per_ray = 0;  // boxes which the ray's packet tests, mean over rays
+    std::string reported;      // "boxes": those of these counts which the structure reports; the host makes the others
 };
 
 // Names and milliseconds, in a meaningful order.

@@ -192,6 +192,11 @@ const Fields<Analysis>& analysis_fields() {
                "which any of its rays needs: a coherent packet visits few more than each ray alone, an incoherent one many "
                "more."}),
         plain("own_nodes_per_ray", &Analysis::own_nodes_per_ray, {"own"}),
+        plain("boxes_per_ray", &Analysis::boxes_per_ray,
+              {"boxes", "Boxes tested", "a ray, mean",
+               "Tests of bounding boxes, or of other volumes. A node of a wide tree costs one fetch and a box for each child. "
+               "Structures that part space test a plane a node instead, and no box but their own."}),
+        unless_empty("reported", &Analysis::reported),
         plain("leaf_tests_per_ray", &Analysis::leaf_tests_per_ray,
               {"leaf tests", "Primitives tested", "a ray, mean",
                "Tests of triangles, spheres and polygons in the leaves. Tight volumes keep them near one. Bounding spheres are "

@@ -399,6 +399,8 @@ class RenderJob {
             pixels.display = frames.read_display(settings_);
         else
             pixels.values = frames.read_values();
+        if (!options_.stats_file.empty() && find_aov(settings_.aov).about == Aov::About::cost)
+            stats_.cost = cost_of(writes_display(path) ? frames.read_values() : pixels.values);
         if (options_.all_aovs)
             pixels.layers = trace_aov_layers(frames, *preparer_, scene_.scene(), scene_.view(), settings_, progress);
         stats_.collect_ms = ms_since(all_done);

@@ -117,6 +117,13 @@ Json reference_json(const ReferenceRun& run) {
 
 }  // namespace
 
+PictureCost cost_of(const FloatImage& values) {
+    PictureCost cost;
+    for (const float value : values.pixels) cost.mean += value, cost.greatest = std::max<double>(cost.greatest, value);
+    if (!values.pixels.empty()) cost.mean /= double(values.pixels.size());
+    return cost;
+}
+
 std::string stats_json(const RenderStats& stats) {
     const Prepared& prepared = *stats.prepared;
     const AccelData& accel = *prepared.accel;
@@ -143,6 +150,7 @@ std::string stats_json(const RenderStats& stats) {
     if (const double bound = adaptive_bound(stats.settings); bound > 0) json["adaptive"] = bound;
     json["shutter"] = stats.settings.shutter;
     json["aov"] = used.aov;
+    if (stats.cost) json["aov_mean"] = stats.cost->mean, json["aov_greatest"] = stats.cost->greatest;
     json["shadows"] = stats.settings.shadows;
     json["frames_timed"] = stats.frame_ms.size();
     json["frame_ms"] = times_json(stats.frame_ms);

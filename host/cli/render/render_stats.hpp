@@ -18,6 +18,11 @@ struct RankTimes {
     double frame_ms = 0, wall_ms = 0;  // of its part of a frame, medians: by the clock of its devices, of its host
 };
 
+// Of the pixels of an AOV that tells what they cost.
+struct PictureCost {
+    double mean = 0, greatest = 0;
+};
+
 struct RenderStats {
     std::vector<std::string> files;
     std::vector<DeviceInfo> devices;
@@ -36,6 +41,7 @@ struct RenderStats {
     std::shared_ptr<ReferenceRun> reference;  // null: there is none to compare with
     unsigned samples = 0;                     // of a pixel of the last picture
     std::optional<FilmNoise> noise;           // of the last picture, if `path` has traced it
+    std::optional<PictureCost> cost;          // of the last picture, if it shows that
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, not_finite = 0, overflowed = 0;  // of one frame
 };
 
@@ -43,6 +49,7 @@ struct RenderStats {
 void gather_prepare_times(RenderStats& stats, Ranks& ranks);
 // Waits until all ranks have traced their parts, and fills in their times; rays become those of all.
 void gather_frame_times(RenderStats& stats, Ranks& ranks);
+PictureCost cost_of(const FloatImage& values);
 // The statistics as JSON, which ends in a newline. Its keys never change; new ones may come.
 std::string stats_json(const RenderStats& stats);
 // Median of frame_ms; 0 if nothing was timed.

@@ -1,15 +1,20 @@
 #include "render/accel/build_in_worker.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/parcel.hpp"
 #include "base/physical_memory.hpp"
 #include "base/scoped_fp_mode.hpp"
+#include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
 #include "plugin/trust.hpp"
 #include "render/accel/guarded_build.hpp"
@@ -25,6 +30,7 @@ namespace {
 struct BuildJob {
     std::string library;
     uint64_t memory_bytes = 0;  // that the builder may map
+    uint64_t cpu_s = 0;  // processor time of the whole job; not 0: the library is opened behind closed doors, and built twice
     rt_device device{};
     std::vector<double> params;
     SharedArray<rt_prim> prims;
@@ -35,12 +41,12 @@ struct BuildJob {
     SharedArray<rt_u32> refs, roots;
 
     BuildJob() = default;
-    BuildJob(std::string library_file, uint64_t memory, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
+    BuildJob(std::string library_file, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
              const rt_topology* tree);
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.library, self.memory_bytes, self.device, self.params, self.prims, self.groups, self.triangles, self.nodes,
-               self.refs, self.roots);
+        parcel(self.library, self.memory_bytes, self.cpu_s, self.device, self.params, self.prims, self.groups, self.triangles,
+               self.nodes, self.refs, self.roots);
     }
 };
 
@@ -73,10 +79,9 @@ void read_array(ParcelReader& parcel, bool wanted, uint64_t count, uint64_t elem
     parcel.take(memory, bytes);
 }
 
-BuildJob::BuildJob(std::string library_file, uint64_t memory, const rt_build_input& input, uint64_t prim_count,
-                   rt_u32 param_count, const rt_topology* tree)
+BuildJob::BuildJob(std::string library_file, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
+                   const rt_topology* tree)
     : library(std::move(library_file)),
-      memory_bytes(memory),
       device(*input.device),
       params(input.params, input.params + param_count),
       prims(borrowed(input.prims, prim_count)),
@@ -123,49 +128,82 @@ void BuildReplay::visit(ParcelReader& parcel, BuildReplay& replay) {
                [&] { return static_cast<void*>(out.leaves(out.ctx, count)); });
 }
 
+bool is_same(const BuilderResult& a, const BuilderResult& b) {
+    const auto same = [](const GuardedBytes& x, const GuardedBytes& y) {
+        return x.bytes() == y.bytes() && (x.bytes() == 0 || std::memcmp(x.data(), y.data(), x.bytes()) == 0);
+    };
+    bool all = a.roots == b.roots && same(a.refs, b.refs) && a.slots.size() == b.slots.size();
+    for (size_t s = 0; all && s < a.slots.size(); ++s) all = same(a.slots[s].memory, b.slots[s].memory);
+    return all;
+}
+
 // The work of kBuildJob.
 void build_job(ParcelReader& arguments) {
-    const auto job = worker::arguments_in<BuildJob>(arguments);
+    auto job = worker::arguments_in<BuildJob>(arguments);
+    worker::WorkerLimits limits;
+    limits.memory_bytes = limits.most_memory_bytes = job.memory_bytes;
+    limits.cpu_s = job.cpu_s;
+    const bool closed = job.cpu_s > 0;
+    if (closed)
+        worker::enter_sandbox(worker::WorkerKind::loader, {"/lib", "/lib64", "/usr/lib", "/usr/local/lib"},
+                              {"/etc/ld.so.cache", program_file().string(), job.library}, limits);
     const PluginRecord record = load_plugin(job.library);
     if (!record.plugin || !record.plugin->accel)
         throw Error(Exit::failed, "the library is no structure any more: " + record.why);
     const rt_plugin& plugin = *record.plugin;
     const auto groups = static_cast<rt_u32>(job.groups.size());
+    if (closed) job.params = default_parameters(plugin);  // the program does not know them
     BuilderInput input(job.prims.data(), job.prims.size(), job.groups.data(), groups, job.triangles.data(),
                        job.triangles.size(), job.params, job.device);
     if (!job.nodes.empty())
         input.set_tree({sizeof(rt_topology), groups, job.nodes.data(), job.nodes.size(), job.refs.data(), job.refs.size(),
                         job.roots.data()});
-    worker::WorkerLimits limits;
-    limits.memory_bytes = limits.most_memory_bytes = job.memory_bytes;
     worker::enter_sandbox(worker::WorkerKind::builder, {}, {}, limits);
 
     worker::ChannelProgress progress;
     HostServices services({}, progress);  // without a name: the program says which builder it is
-    GuardedOutput output(plugin, groups, services);
     const rt_build_input& table = input.table();
-    services.check(static_cast<int>(Exit::failed), [&] {
-        const ScopedFpMode floats;
-        return run_builder(plugin, services.host(), &table, input.tree(), output.table());
-    });
-    const std::string overrun = overrun_of(output.result());
-    if (!overrun.empty())
-        throw Error(Exit::failed, "the builder wrote beyond the end of " + overrun + "; this is a fault of the plugin");
+    const auto build = [&](GuardedOutput& output) {
+        services.check(static_cast<int>(Exit::failed), [&] {
+            const ScopedFpMode floats;
+            return run_builder(plugin, services.host(), &table, input.tree(), output.table());
+        });
+        const std::string overrun = overrun_of(output.result());
+        if (!overrun.empty())
+            throw Error(Exit::failed, "the builder wrote beyond the end of " + overrun + "; this is a fault of the plugin");
+    };
+    GuardedOutput output(plugin, groups, services);
+    build(output);
+    if (closed) {
+        // Each build has a process of its own, so that a state that it keeps would not be seen there.
+        GuardedOutput again(plugin, groups, services);
+        build(again);
+        if (!is_same(output.result(), again.result()))
+            throw Error(Exit::failed,
+                        "the builder gives another result for the same scene when it is called again: it keeps state");
+    }
     worker::answer(BuildAnswer{output.result()});
+}
+
+uint64_t prim_count_of(const rt_build_input& input) {
+    uint64_t prims = 0;
+    for (rt_u32 g = 0; g < input.group_count; ++g)
+        prims = std::max<uint64_t>(prims, uint64_t(input.groups[g].first) + input.groups[g].count);
+    return prims;
 }
 
 int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, const rt_host* host, const rt_build_input* input,
                         const rt_topology* tree, const rt_build_output* out, Progress& progress) {
-    uint64_t prims = 0;
-    for (rt_u32 g = 0; g < input->group_count; ++g)
-        prims = std::max<uint64_t>(prims, uint64_t(input->groups[g].first) + input->groups[g].count);
+    const uint64_t prims = prim_count_of(*input);
     const uint64_t memory = physical_memory_bytes() / 4 * 3;
     worker::Job job(kBuildJob, std::string("accel ") + plugin.id, {30 + double(prims) / 20000, 0, memory});
     job.advice = "; this is a fault of the plugin: `clarity check " + original_of(library) + "` looks for it";
     job.subject = library;
     BuildReplay replay{built_slots(plugin), input->group_count, *out};
+    BuildJob work(library, *input, prims, plugin.param_count, tree);
+    work.memory_bytes = memory;
     try {
-        job.run(BuildJob(library, memory, *input, prims, plugin.param_count, tree), replay, progress);
+        job.run(work, replay, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
@@ -174,7 +212,73 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
     return RT_OK;
 }
 
+// A build behind closed doors. What the library prints reaches nobody, and neither sleep nor reports of progress make it last.
+class ClosedBuild : public worker::Job {
+ public:
+    ClosedBuild(const ClosedBuilder& builder)
+        : Job(kBuildJob, "a builder", {builder.limit_s, cpu_s_of(builder), builder.memory_bytes}),
+          most_s_(kWaits * builder.limit_s) {}
+    static uint64_t cpu_s_of(const ClosedBuilder& builder) { return static_cast<uint64_t>(std::ceil(2 * builder.limit_s)); }
+
+ private:
+    static constexpr double kWaits = 6;  // times the limit of processor time, for a busy machine
+    void on_output(const std::string&) override {}
+    void watch() override {
+        if (seconds_since(begin_) > most_s_)
+            throw Error(kind_.code, "the builder did not come to its end within " + worker::in_words(most_s_));
+    }
+    const double most_s_;
+    const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+ClosedBuilder closed_builder;
+
+int32_t build_closed(const rt_host* host, const rt_build_input* input, const rt_topology_output* to) {
+    rt_build_output out{};
+    out.struct_bytes = sizeof out;
+    out.ctx = const_cast<rt_topology_output*>(to);
+    const auto of = [](void* ctx) -> const rt_topology_output& { return *static_cast<const rt_topology_output*>(ctx); };
+    static constexpr auto output = +of;
+    out.alloc = [](void* ctx, rt_u32, uint64_t count) -> void* { return output(ctx).nodes(output(ctx).ctx, count); };
+    out.leaves = [](void* ctx, uint64_t count) { return output(ctx).refs(output(ctx).ctx, count); };
+    out.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(output(ctx).ctx, group, node); };
+    out.stat = [](void* ctx, const char* label, double value) { output(ctx).stat(output(ctx).ctx, label, value); };
+    out.define = [](void*, const char*, rt_u32) {};
+    BuildJob work(closed_builder.library, *input, prim_count_of(*input), 0, nullptr);
+    work.memory_bytes = closed_builder.memory_bytes;
+    work.cpu_s = ClosedBuild::cpu_s_of(closed_builder);
+    rt_accel slots{};
+    slots.topology = build_closed;
+    rt_plugin plugin{};
+    plugin.accel = &slots;
+    BuildReplay replay{built_slots(plugin), input->group_count, out};
+    Progress progress;
+    ClosedBuild job(closed_builder);
+    job.subject = closed_builder.library;
+    try {
+        job.run(work, replay, progress);
+    } catch (const Error& e) {
+        return host->fail(host->ctx, e.what());
+    }
+    return RT_OK;
+}
+
 }  // namespace
+
+const rt_plugin* take_closed_builder(const ClosedBuilder& builder) {
+    static rt_accel accel{};
+    static rt_plugin plugin{};
+    closed_builder = builder;
+    accel.struct_bytes = sizeof accel;
+    accel.layout = closed_builder.layout.c_str();
+    accel.topology = build_closed;
+    plugin.abi_version = RT_ABI_VERSION;
+    plugin.struct_bytes = sizeof plugin;
+    plugin.id = plugin.name = closed_builder.id.c_str();
+    plugin.version = "";
+    plugin.accel = &accel;
+    return &plugin;
+}
 
 const worker::JobKind kBuildJob = {
     "build",

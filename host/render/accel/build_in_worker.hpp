@@ -1,5 +1,8 @@
 // build_in_worker.hpp -- runs the builders of strangers' libraries in a worker process, so that a crash is one message.
 #pragma once
+#include <cstdint>
+#include <string>
+
 #include "base/progress.hpp"
 #include "rt_plugin.h"
 #include "worker/job.hpp"
@@ -17,6 +20,20 @@ enum class BuildPlace {
 // ends only the worker. Same result and same meaning. Throws Cancelled. progress: the one behind `host`.
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
                      const rt_topology* tree, const rt_build_output* out, Progress& progress);
+
+// A library that builds topologies, behind closed doors: no process but a worker for each build ever opens it, and that one has
+// no files, no network and no other programs from its first instruction on. For graders.
+struct ClosedBuilder {
+    std::string library, id, layout;  // id and layout: what the library must be; what it says of itself is not asked
+    double limit_s = 10;              // processor time of a build
+    uint64_t memory_bytes = uint64_t(1) << 30;
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.library, self.id, self.layout, self.limit_s, self.memory_bytes);
+    }
+};
+// The plugin that stands for it in this process, also if this is a worker. One a process.
+const rt_plugin* take_closed_builder(const ClosedBuilder& builder);
 
 extern const worker::JobKind kBuildJob;
 

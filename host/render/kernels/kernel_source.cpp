@@ -116,7 +116,8 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
 
     source.scene_arguments = write_preamble(out, layout, accel, scene, features, row);
     write_queries(out, row, layout, features, accel);
-    for (const char* name : {"lanes/vec.h", "shading/surface.h", "shading/point.h", "tracers/camera.h"}) out.include(name);
+    for (const char* name : {"lanes/vec.h", "shading/power.h", "shading/surface.h", "shading/point.h", "tracers/camera.h"})
+        out.include(name);
     for (const char* name : row.headers) out.include(name);
     out.include(row.file);
 

@@ -99,6 +99,7 @@ const std::vector<Aov>& aov_table() {
         first_hit("normal", "normal", Film::vectors, Paint::direction),
         first_hit("uv", "texture coordinates", Film::vectors, Paint::texture),
         cost("steps", "nodes visited", Aov::Range::counts, bar(Map::heat, "Nodes visited", "per packet of rays", true)),
+        cost("boxes", "boxes tested", Aov::Range::counts, bar(Map::heat, "Boxes tested", "per packet of rays", true)),
         cost("leaf_tests", "primitives tested", Aov::Range::counts,
              bar(Map::heat, "Primitives tested", "per packet of rays", true)),
         cost("lanes", "share of lanes alive per visit", Aov::Range::share,

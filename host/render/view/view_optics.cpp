@@ -12,8 +12,7 @@ namespace {
 
 void add(Optics& optics, const rt_light& light) {
     optics.lights |= 1u << light.kind;
-    const bool fades = light.kind <= RT_LIGHT_SPOT && (light.flags & RT_LIGHT_FALLOFF);
-    if (fades) optics.lights |= RT_LIGHTS_FADE;
+    if (light.flags & RT_LIGHT_FALLOFF) optics.lights |= RT_LIGHTS_FADE;
 }
 
 // A map may make any value smaller: a metal of 1 may have parts that are none, and let light through.

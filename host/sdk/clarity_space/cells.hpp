@@ -69,68 +69,179 @@ void cell_box(const Head& head, size_t cell, float lo[3], float hi[3]) {
 struct CellRange {
     int lo[3], hi[3];
 };
+
+// Finds the cells of primitives. What does not depend on the primitive is computed once.
 template <class Head>
-CellRange cells_of_box(const Head& head, const rt_prim& p) {
-    CellRange range;
-    for (int k = 0; k < 3; ++k) {
-        const double most = head.cells[k] - 1.0, slack = cell_slack(head, k);
-        range.lo[k] = int(std::clamp((p.lo[k] - slack - head.box[k]) / head.size[k], 0.0, most));
-        range.hi[k] = int(std::clamp((p.hi[k] + slack - head.box[k]) / head.size[k], 0.0, most));
+class CellFinder {
+ public:
+    explicit CellFinder(const Head& head) : head_(head), cells_(cell_count(head)) {
+        for (int k = 0; k < 3; ++k) {
+            const double slack = cell_slack(head, k);
+            below_[k] = double{head.box[k]} + slack, above_[k] = double{head.box[k]} - slack;
+            a_unit_[k] = 1.0 / head.size[k], last_[k] = head.cells[k] - 1.0, half_[k] = 0.5 * head.size[k] + slack;
+        }
     }
-    return range;
-}
+    size_t cells() const { return cells_; }
 
-// Calls body with the number of each cell that primitive i meets. Huge ones are in a cell of their own behind all others.
-template <class Head, class Body>
-void each_cell(const Head& head, const Prims& of, rt_u32 i, const Body& body) {
-    const rt_prim& p = of.prims[i];
-    if (is_huge(p)) return body(cell_count(head));
-    const CellRange range = cells_of_box(head, p);
-    const int *const lo = range.lo, *const hi = range.hi;
-    const auto each = [&](const auto& meets) {
-        for (int z = lo[2]; z <= hi[2]; ++z)
-            for (int y = lo[1]; y <= hi[1]; ++y)
-                for (int x = lo[0]; x <= hi[0]; ++x)
-                    if (meets(x, y, z)) body((size_t(z) * head.cells[1] + size_t(y)) * head.cells[0] + size_t(x));
+    CellRange range(const rt_prim& p) const {
+        CellRange range;
+        for (int k = 0; k < 3; ++k) {
+            range.lo[k] = int(std::clamp((p.lo[k] - below_[k]) * a_unit_[k], 0.0, last_[k]));
+            range.hi[k] = int(std::clamp((p.hi[k] - above_[k]) * a_unit_[k], 0.0, last_[k]));
+        }
+        return range;
+    }
+
+    // Calls body with the number of each cell that primitive i meets. Huge ones are in a cell of their own behind all others.
+    template <class Body>
+    void each(const Prims& of, rt_u32 i, const Body& body) const {
+        const rt_prim& p = of.prims[i];
+        if (is_huge(p)) return body(cells_);
+        const CellRange r = range(p);
+        const bool flat =
+            (r.hi[0] > r.lo[0]) + (r.hi[1] > r.lo[1]) + (r.hi[2] > r.lo[2]) < 2;  // then its plane hardly misses a cell
+        const bool all = flat || !of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE;
+        if (all)
+            return each_of(
+                r,
+                [](int, int) {
+                    return Row{0, 0, 0};
+                },
+                body);
+        const TrianglePlane plane(of.triangles[RT_REF_INDEX(p.ref)]);
+        const double reach = plane.reach(half_), step = plane.normal(0) * double{head_.size[0]};
+        each_of(
+            r,
+            [&](int y, int z) {
+                const int at[3] = {r.lo[0], y, z};
+                double center[3];
+                for (int k = 0; k < 3; ++k) center[k] = head_.box[k] + (at[k] + 0.5) * double{head_.size[k]};
+                return Row{plane.height(center), step, reach};
+            },
+            body);
+    }
+
+ private:
+    const Head& head_;
+    size_t cells_;
+    double below_[3], above_[3], a_unit_[3], last_[3], half_[3];
+
+    // Of the cells with one y and one z: how far the centre of the first is above a plane, how much each further one is above
+    // the one before, and how far a centre may be if its cell meets the plane.
+    struct Row {
+        double height, step, reach;
     };
-    const bool flat = (hi[0] > lo[0]) + (hi[1] > lo[1]) + (hi[2] > lo[2]) < 2;  // then its plane hardly misses a cell
-    if (flat || !of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE) return each([](int, int, int) { return true; });
-    const TrianglePlane plane(of.triangles[RT_REF_INDEX(p.ref)]);
-    double half[3];
-    for (int k = 0; k < 3; ++k) half[k] = 0.5 * head.size[k] + cell_slack(head, k);
-    each([&](int x, int y, int z) {
-        const int at[3] = {x, y, z};
-        double center[3];
-        for (int k = 0; k < 3; ++k) center[k] = head.box[k] + (at[k] + 0.5) * double{head.size[k]};
-        return plane.meets(center, half);
-    });
-}
-
-// The primitives of all cells, cell by cell: those of cell c are list[starts[c]] to list[starts[c + 1] - 1]. Behind the last
-// cell there is one more, of huge primitives.
-struct CellLists {
-    std::vector<rt_u32> starts, list;
-    size_t filled = 0;  // cells with primitives
+    template <class RowOf, class Body>
+    void each_of(const CellRange& r, const RowOf& row_of, const Body& body) const {
+        for (int z = r.lo[2]; z <= r.hi[2]; ++z)
+            for (int y = r.lo[1]; y <= r.hi[1]; ++y) {
+                const Row row = row_of(y, z);
+                const size_t first = (size_t(z) * head_.cells[1] + size_t(y)) * head_.cells[0];
+                for (int x = r.lo[0]; x <= r.hi[0]; ++x)
+                    if (!(std::fabs(row.height + (x - r.lo[0]) * row.step) > row.reach)) body(first + size_t(x));
+            }
+    }
 };
 
-// Counts the primitives of each cell, then places them. number(i) is the group's number of primitive i of `count`.
-template <class Head, class Number>
-CellLists fill_cells(const rt_host* host, const Head& head, const Prims& of, rt_u32 count, const Number& number) {
-    CellLists lists;
-    const size_t cells = cell_count(head);
-    std::vector<uint64_t> ends(cells + 2);
-    for (rt_u32 i = 0; i < count; ++i) {
-        if (i % 4096 == 0) rt::progress(host, float(i) / float(count));
-        each_cell(head, of, number(i), [&](size_t cell) { ++ends[cell + 1]; });
+// The primitives of all cells, in two steps: which cells each meets; then their lists, once it is known how much memory these
+// take. Both run on all cores. Lists do not depend on the number of cores: they are in the order of the primitives.
+//
+// A counting sort of (cell, primitive). Tasks of the first step have a part of the primitives, and sort their pairs by the
+// upper bits of the cells. Tasks of the second step have a part of the cells, and take the pairs of all tasks before.
+template <class Head>
+class CellSort {
+ public:
+    // number(i) is the group's number of primitive i of `count`. `head` and what `prims` names must outlive this.
+    template <class Number>
+    CellSort(const rt_host* host, const Head& head, const Prims& prims, rt_u32 count, const Number& number) : finder_(head) {
+        while ((lists() - 1) >> shift_ >= kParts) ++shift_;
+        if (count < 2 * kAtOnce) shift_ = 63;
+        parts_ = rt_u32(((lists() - 1) >> shift_) + 1);
+        chunks_.resize(std::max(count / kAtOnce, 1u));
+        for_each(host, rt_u32(chunks_.size()), [&](rt_u32 c) {
+            const auto end = [&](rt_u32 chunk) { return rt_u32(uint64_t{count} * chunk / chunks_.size()); };
+            chunks_[c].fill(*this, prims, end(c), end(c + 1), number);
+            if (chunks_.size() > 1) rt::progress(host, 0.5f);  // to notice a cancelled build
+        });
+        for (const Chunk& chunk : chunks_) references_ += chunk.pairs.size();
+        if (references_ > 0xFFFFFFF0u) throw rt::fail(host, "the cells name more than 2^32 primitives: ask for fewer cells");
     }
-    for (size_t cell = 0; cell <= cells; ++cell) lists.filled += ends[cell + 1] > 0, ends[cell + 1] += ends[cell];
-    if (ends.back() > 0xFFFFFFF0u) throw rt::fail(host, "the cells name more than 2^32 primitives: ask for fewer cells");
-    lists.starts.assign(ends.begin(), ends.end());
-    lists.list.resize(ends.back());
-    for (rt_u32 i = 0; i < count; ++i)
-        each_cell(head, of, number(i), [&](size_t cell) { lists.list[ends[cell]++] = number(i); });
-    return lists;
-}
+
+    // One for each cell, and one of the huge primitives.
+    size_t lists() const { return finder_.cells() + 1; }
+    uint64_t references() const { return references_; }
+
+    // The primitives of cell c become list[starts[c] - place] to list[starts[c + 1] - place - 1], each plus `first`. starts:
+    // lists() + 1 of them. Returns how many lists have a primitive.
+    size_t write(const rt_host* host, rt_u32* starts, rt_u32* list, rt_u32 place, rt_u32 first) const {
+        std::vector<rt_u32> before(parts_), filled(parts_);
+        rt_u32 sum = 0;
+        for (rt_u32 p = 0; p < parts_; ++p) {
+            before[p] = sum;
+            for (const Chunk& chunk : chunks_) sum += chunk.ends[p + 1] - chunk.ends[p];
+        }
+        starts[lists()] = place + sum;
+        for_each(host, parts_, [&](rt_u32 p) {
+            const size_t low = size_t{p} << shift_,
+                         cells = parts_ == 1 ? lists() : std::min(lists() - low, size_t{1} << shift_);
+            std::vector<rt_u32> at(cells);
+            for (const Chunk& chunk : chunks_)
+                for (rt_u32 i = chunk.ends[p]; i < chunk.ends[p + 1]; ++i) ++at[chunk.pairs[i].cell - low];
+            rt_u32 next = before[p];
+            for (size_t c = 0; c < cells; ++c) {
+                const rt_u32 count = at[c];
+                starts[low + c] = place + next, at[c] = next;
+                next += count, filled[p] += count > 0;
+            }
+            for (const Chunk& chunk : chunks_)
+                for (rt_u32 i = chunk.ends[p]; i < chunk.ends[p + 1]; ++i)
+                    list[at[chunk.pairs[i].cell - low]++] = first + chunk.pairs[i].prim;
+        });
+        size_t all = 0;
+        for (const rt_u32 count : filled) all += count;
+        return all;
+    }
+
+ private:
+    static constexpr rt_u32 kAtOnce = 4096;  // primitives of a task
+    static constexpr rt_u32 kParts = 64;     // of the cells, at most
+
+    struct Pair {
+        rt_u32 cell, prim;
+    };
+    struct Chunk {
+        std::vector<Pair> pairs;   // part by part
+        std::vector<rt_u32> ends;  // of each part, behind a 0
+
+        template <class Number>
+        void fill(const CellSort& sort, const Prims& prims, rt_u32 begin, rt_u32 end, const Number& number) {
+            std::vector<Pair> found;
+            found.reserve(2 * size_t{end - begin});
+            ends.assign(sort.parts_ + 1, 0);
+            for (rt_u32 i = begin; i < end; ++i)
+                sort.finder_.each(prims, number(i), [&](size_t cell) {
+                    found.push_back({rt_u32(cell), number(i)});
+                    ++ends[(cell >> sort.shift_) + 1];
+                });
+            if (sort.parts_ == 1 || found.size() > 0xFFFFFFF0u) return pairs.swap(found);  // so many are refused later
+            for (rt_u32 p = 0; p < sort.parts_; ++p) ends[p + 1] += ends[p];
+            std::vector<rt_u32> at(ends.begin(), ends.end() - 1);
+            pairs.resize(found.size());
+            for (const Pair& pair : found) pairs[at[pair.cell >> sort.shift_]++] = pair;
+        }
+    };
+
+    template <class Body>
+    static void for_each(const rt_host* host, rt_u32 count, const Body& body) {
+        if (count == 1) return body(0);
+        rt::parallel_for(host, count, body);
+    }
+
+    CellFinder<Head> finder_;
+    rt_u32 shift_ = 0, parts_ = 1;
+    std::vector<Chunk> chunks_;
+    uint64_t references_ = 0;
+};
 
 // The bounds of the primitives that are not huge.
 struct Extent {
@@ -143,5 +254,23 @@ struct Extent {
         for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], double{p.lo[k]}), hi[k] = std::max(hi[k], double{p.hi[k]});
     }
 };
+
+inline Extent extent_of(const rt_host* host, const rt_prim* prims, rt_u32 count) {
+    constexpr rt_u32 kAtOnce = 16384;
+    std::vector<Extent> parts(count / kAtOnce + 1);
+    const auto add = [&](rt_u32 part) {
+        for (rt_u32 i = part * kAtOnce, end = std::min(count, i + kAtOnce); i < end; ++i) parts[part].add(prims[i]);
+    };
+    if (parts.size() > 1)
+        rt::parallel_for(host, rt_u32(parts.size()), add);
+    else
+        add(0);
+    Extent all;
+    for (const Extent& part : parts) {
+        all.count += part.count;
+        for (int k = 0; k < 3; ++k) all.lo[k] = std::min(all.lo[k], part.lo[k]), all.hi[k] = std::max(all.hi[k], part.hi[k]);
+    }
+    return all;
+}
 
 }  // namespace clarity::space

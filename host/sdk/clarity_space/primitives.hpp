@@ -32,12 +32,17 @@ class TrianglePlane {
         }
         slack_ = 16 * kEps * longest[0] * longest[1] * std::max(longest[0], longest[1]);
     }
-    // Whether it passes a box of this centre and half of this size.
-    bool meets(const double center[3], const double half[3]) const {
-        double height = -offset_, reach = slack_;
-        for (int k = 0; k < 3; ++k) height += normal_[k] * center[k], reach += std::fabs(normal_[k]) * half[k];
-        return !(std::fabs(height) > reach);
+    double normal(int axis) const { return normal_[axis]; }
+    // How far a point is above it, times the length of the normal; and how far the centre of a box is if the plane may pass
+    // through it. half: half of the box's size.
+    double height(const double point[3]) const {
+        return normal_[0] * point[0] + normal_[1] * point[1] + normal_[2] * point[2] - offset_;
     }
+    double reach(const double half[3]) const {
+        return slack_ + std::fabs(normal_[0]) * half[0] + std::fabs(normal_[1]) * half[1] + std::fabs(normal_[2]) * half[2];
+    }
+    // Whether it passes a box of this centre and half of this size.
+    bool meets(const double center[3], const double half[3]) const { return !(std::fabs(height(center)) > reach(half)); }
 
  private:
     double normal_[3], offset_ = 0, slack_;

@@ -16,10 +16,20 @@ inline rt_u32 primitive_count(const rt_host* host, const rt_build_input& in) {
 }
 
 // Writes the leaves: the primitives group by group, each once, in their own order. Cells name them by their positions.
-inline void put_leaves(const rt_build_input& in, const rt_build_output* out, rt_u32 count) {
+inline void put_leaves(const rt_host* host, const rt_build_input& in, const rt_build_output* out, rt_u32 count) {
+    constexpr rt_u32 kAtOnce = 65536;
     rt_u32* leaf = rt::leaves(out, count);
-    for (rt_u32 g = 0; g < in.group_count; ++g)
-        for (rt_u32 i = 0; i < in.groups[g].count; ++i) *leaf++ = in.prims[in.groups[g].first + i].ref;
+    for (rt_u32 g = 0; g < in.group_count; leaf += in.groups[g].count, ++g) {
+        const rt_group& group = in.groups[g];
+        const auto put = [&](rt_u32 part) {
+            for (rt_u32 i = part * kAtOnce, end = std::min(group.count, i + kAtOnce); i < end; ++i)
+                leaf[i] = in.prims[group.first + i].ref;
+        };
+        if (group.count > kAtOnce)
+            rt::parallel_for(host, (group.count - 1) / kAtOnce + 1, put);
+        else
+            put(0);
+    }
 }
 
 // A node of a tree, and the cell that is its part of space. Cell has lo[3] and hi[3].

@@ -5,7 +5,8 @@
  * kernel takes the nearest of their hits. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
-    const uint first = ctx->brute_runs[root].first, count = ctx->brute_runs[root].count;
+    const global brute_run *run = RT_NODE(ray, ctx->brute_runs + root);
+    const uint first = run->first, count = run->count;
     RT_COUNT_STEP(hit);
     for (uint i = 0; i < count && RT_MAY_GO_ON(hit); ++i) {
         RT_LEAF(ctx, first + i, ray, hit);

@@ -11,7 +11,7 @@ namespace brute {
 namespace {
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    clarity::space::put_leaves(*in, out, clarity::space::primitive_count(host, *in));
+    clarity::space::put_leaves(host, *in, out, clarity::space::primitive_count(host, *in));
     auto* const runs = rt::alloc<brute_run>(out, 0, in->group_count);
     rt_u32 at = 0;
     for (rt_u32 g = 0; g < in->group_count; at += in->groups[g++].count) {

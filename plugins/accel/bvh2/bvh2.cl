@@ -21,7 +21,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
         } else {
             RT_COUNT_VISIT(hit, inside);
-            const global bvh2_node *node = ctx->bvh2_nodes + ref;
+            const global bvh2_node *node = RT_NODE(ray, ctx->bvh2_nodes + ref);
             vfloat t0, t1;
 #if RT_LANES == 1
             const global float4 *rows = (const global float4 *)node; /* 16-byte loads */

@@ -42,7 +42,7 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_
     float4 a, b, c, d, e, f;
     uint4 child;
     if (!is_leaf) {
-        const ulong node = BVH4_NODE(ctx, ref);
+        const ulong node = RT_NODE(ray, BVH4_NODE(ctx, ref));
         a = BVH4_ROW(node, slab->near_x);
         b = BVH4_ROW(node, slab->near_y);
         c = BVH4_ROW(node, slab->near_z);
@@ -84,6 +84,7 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_
         BVH4_RETURN_POPPED();
     }
     RT_COUNT_VISIT(hit, 1u);
+    RT_COUNT_BOXES(hit, 4u);
     const float4 entry = bvh4_enter(ray, slab, hit->t, a, b, c, d, e, f);
 #if RT_ANY_HIT
     /* Order does not matter here: the last child that is entered is visited next. */

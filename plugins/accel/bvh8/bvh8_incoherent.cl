@@ -30,6 +30,7 @@ RT_INLINE void RT_CAT(RT_TRAVERSE, _children)(const rt_ctx *ctx, uint ref, const
     const global bvh8_node *node = ctx->bvh8_nodes + ref;
     vfloat entry[BVH8_WIDTH];
     uint entered = 0;
+    RT_COUNT_BOXES(hit, BVH8_WIDTH);
     __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
     for (uint i = 0; i < BVH8_WIDTH; ++i) {
         const uint slot = i ^ r->far_first;

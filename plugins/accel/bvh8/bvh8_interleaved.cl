@@ -50,7 +50,6 @@ RT_INLINE void BVH8_INTERLEAVED(const rt_ctx *ctx, bvh8_ray_stacks *s, uint root
         node_end = nodes[~iteration & 1u], leaf_end = leaves[~iteration & 1u];
         for (; current_leaf != current_leaves_end; ++current_leaf) {
             const uint l = *current_leaf, first = BVH8_LEAF_FIRST(ref[l]), count = BVH8_LEAF_COUNT(ref[l]);
-            RT_COUNT_LEAVES(hit, count);
             const uint bits = RT_SINGLE_RAY_CANDIDATES(ctx, first, count, rays, l);
             *pop_end++ = l;
             tests[test_count] = l;
@@ -59,8 +58,9 @@ RT_INLINE void BVH8_INTERLEAVED(const rt_ctx *ctx, bvh8_ray_stacks *s, uint root
         }
         for (; current_node != current_nodes_end; ++current_node) {
             RT_COUNT_VISIT(hit, 1u);
+            RT_COUNT_BOXES(hit, BVH8_WIDTH);
             const uint l = *current_node;
-            const global char *const node = address[l];
+            const global char *const node = RT_NODE(ray, address[l]);
             const bvh8_rows rows = {(long)s->near_x[l], (long)s->near_y[l], (long)s->near_z[l],
                                     (long)s->far_x[l],  (long)s->far_y[l],  (long)s->far_z[l]};
             const bvh8_slab_ray slab = {rays->ix[l],     rays->iy[l],     rays->iz[l], rays->near_x[l], rays->near_y[l], rays->near_z[l],

@@ -43,8 +43,9 @@ RT_INLINE void BVH8_INTERVAL_PACKET(const rt_ctx *ctx, uint ref, uint octant, co
             }
         } else if (!wide || is_entered || bvh8_enter_child(node + 4u * slot, &rows, ray, hit) != 0u) {
             is_entered = false;
-            RT_COUNT_VISIT(hit, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))));
-            node = (const global char *)(ctx->bvh8_nodes + ref);
+            RT_COUNT_STEP(hit);
+            RT_COUNT_BOXES(hit, BVH8_WIDTH);
+            node = (const global char *)RT_NODE(ray, ctx->bvh8_nodes + ref);
             float8 in, out;
             bvh8_intersect(node, &rows, &slab, 0.0f, t_far, &in, &out);
             uint bits = BVH8_BITS(in <= out);

@@ -108,7 +108,7 @@ RT_INLINE void BVH8_INTERVAL_STREAM(const rt_ctx *ctx, uint ref, uint octant, co
                 if (bvh8_enter_child(node + 4u * slot, &rows, rays + p, hits + p) == 0u) inside &= ~(1u << p);
             }
             is_root = false;
-            BVH8_COUNT_VISITS(hits, inside)
+            BVH8_COUNT_VISITS(rays, hits, inside)
             node = (const global char *)(ctx->bvh8_nodes + ref);
             vfloat entry[BVH8_WIDTH];
             uint packets[BVH8_WIDTH], entered = 0; /* packets that enter each child; children that any packet enters */

@@ -27,7 +27,6 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         if (ref & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(ref), count = BVH8_LEAF_COUNT(ref);
 #if RT_CPU
-            RT_COUNT_LEAVES(hit, count);
             RT_SINGLE_RAY_TEST(ctx, first, RT_SINGLE_RAY_CANDIDATES(ctx, first, count, ray, 0u), ray, 0u, hit, ray, hit);
 #else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
@@ -37,7 +36,8 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
         } else {
             RT_COUNT_VISIT(hit, 1u);
-            const global char *node = (const global char *)(ctx->bvh8_nodes + ref);
+            RT_COUNT_BOXES(hit, BVH8_WIDTH);
+            const global char *node = (const global char *)RT_NODE(ray, ctx->bvh8_nodes + ref);
             float8 in, out;
             bvh8_intersect(node, &rows, &slab, ray->t_min, hit->t, &in, &out);
             uint bits = BVH8_BITS(in <= out);

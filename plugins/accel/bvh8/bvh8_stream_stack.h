@@ -57,10 +57,15 @@ RT_INLINE uint bvh8_push_deferred(bvh8_stream_stack *stack, uint top, const glob
 }
 
 #ifdef RT_COUNT_STEPS
-#define BVH8_COUNT_VISITS(hits, packets)                                                                                       \
-    for (uint count_in = packets; count_in != 0u; count_in &= count_in - 1u) RT_COUNT_STEP((hits) + rt_lowest(count_in));
+#define BVH8_COUNT_VISITS(rays, hits, packets)                                                                                 \
+    for (uint count_in = packets; count_in != 0u; count_in &= count_in - 1u) {                                                 \
+        const uint which = rt_lowest(count_in);                                                                                \
+        (void)RT_NODE((rays) + which, ref);                                                                                    \
+        RT_COUNT_STEP((hits) + which);                                                                                         \
+        RT_COUNT_BOXES((hits) + which, BVH8_WIDTH);                                                                            \
+    }
 #else
-#define BVH8_COUNT_VISITS(hits, packets)
+#define BVH8_COUNT_VISITS(rays, hits, packets)
 #endif
 
 #endif

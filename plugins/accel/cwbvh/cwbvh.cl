@@ -73,7 +73,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                 else
                     stack[top - 1u] = CWBVH_REMAINING((uint)entry, remaining);
             }
-            const global float4 *rows = (const global float4 *)(ctx->cwbvh_nodes + item);
+            const global float4 *rows = (const global float4 *)RT_NODE(ray, ctx->cwbvh_nodes + item);
             a = rows[0];
             b = rows[1];
             c = rows[2];
@@ -98,6 +98,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
             continue;
         }
         RT_COUNT_VISIT(hit, 1u);
+        RT_COUNT_BOXES(hit, 8u);
         float4 in0, in1;
         const uint entered = cwbvh_enter(ray, hit->t, a, c, d, e, &in0, &in1);
         const uint cells = as_uint(a.s3), base = as_uint(b.s0), inner = cells >> 24;
@@ -141,6 +142,7 @@ RT_INLINE void RT_CAT(RT_TRAVERSE, _children)(const rt_ctx *ctx, uint ref, const
     for (uint i = 0; i < 8u; ++i) {
         const uint slot = i ^ *far_first, primitives = row >> 4u * slot & 15u;
         if (primitives == 0u && (inner >> slot & 1u) == 0u) continue;
+        RT_COUNT_BOXES(hit, 1u);
         vfloat entry;
         const vmask in = cwbvh_enter_slot(node, &grid, slot, ray, hit, &entry);
         if (!rt_any(in)) continue;

@@ -18,7 +18,7 @@ RT_INLINE void RT_CAT(RT_TRAVERSE, _list)(const rt_ctx *ctx, const global uint *
 
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit)
 {
-    const global grid_head *grid = ctx->grid_heads + root;
+    const global grid_head *grid = RT_NODE(ray, ctx->grid_heads + root);
     const global uint *starts = ctx->grid_starts + grid->first;
     const uint nx = grid->cells[0], ny = grid->cells[1], nz = grid->cells[2];
     rt_mailbox tested;

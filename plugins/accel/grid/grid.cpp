@@ -7,6 +7,7 @@
 // through which a ray goes cell by cell.
 #include <algorithm>
 #include <cfloat>
+#include <memory>
 #include <vector>
 
 #include "clarity_space/cells.hpp"
@@ -25,42 +26,33 @@ constexpr rt_param kParams[] = {
     rt::bool_param("exact", "Exact", "a triangle is in the cells that its plane meets; else in all that its box meets", true),
 };
 
-// The grid of one group.
-struct Grid {
-    grid_head head{{0, 0, 0, 0, 0, 0}, {1, 1, 1}, {1, 1, 1}, 0, {0, 0, 0}};
-    CellLists cells;
-
-    void build(const rt_host* host, const rt_build_input& in, const rt_group& group) {
-        const bool exact = in.params[kExact] != 0;
-        const Prims prims{in.prims + group.first, exact ? in.geometry->triangles : nullptr};
-        Extent extent;
-        for (rt_u32 i = 0; i < group.count; ++i) extent.add(prims.prims[i]);
-        if (extent.count > 0) shape_cells(head, extent.lo, extent.hi, in.params[kDensity] * extent.count);
-        cells = fill_cells(host, head, prims, group.count, [](rt_u32 i) { return i; });
-    }
-};
+constexpr grid_head kOneCell{{0, 0, 0, 0, 0, 0}, {1, 1, 1}, {1, 1, 1}, 0, {0, 0, 0}};
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
     const rt_u32 count = primitive_count(host, *in);
-    std::vector<Grid> grids(in->group_count);
-    rt::parallel_for(host, in->group_count, [&](rt_u32 g) { grids[g].build(host, *in, in->groups[g]); });
+    auto* const heads = rt::alloc<grid_head>(out, 0, in->group_count);
+    std::vector<std::unique_ptr<CellSort<grid_head>>> sorts(in->group_count);
+    rt::parallel_for(host, in->group_count, [&](rt_u32 g) {
+        const rt_group& group = in->groups[g];
+        const Prims prims{in->prims + group.first, in->params[kExact] != 0 ? in->geometry->triangles : nullptr};
+        const Extent extent = extent_of(host, prims.prims, group.count);
+        heads[g] = kOneCell;
+        if (extent.count > 0) shape_cells(heads[g], extent.lo, extent.hi, in->params[kDensity] * extent.count);
+        sorts[g] = std::make_unique<CellSort<grid_head>>(host, heads[g], prims, group.count, [](rt_u32 i) { return i; });
+    });
 
     uint64_t starts = 0, references = 0, filled = 0;
-    for (Grid& grid : grids) {
-        grid.head.first = rt_u32(starts);
-        starts += grid.cells.starts.size(), references += grid.cells.list.size(), filled += grid.cells.filled;
-    }
+    for (const auto& sort : sorts) starts += sort->lists() + 1, references += sort->references();
     if (starts > 0xFFFFFFF0u || references > 0xFFFFFFF0u) throw rt::fail(host, "needs more than 2^32 cells: lower `density`");
-    auto* const heads = rt::alloc<grid_head>(out, 0, in->group_count);
-    auto* start = rt::alloc<rt_u32>(out, 1, starts);
-    auto* list = rt::alloc<rt_u32>(out, 2, references);
-    put_leaves(*in, out, count);
-    rt_u32 first = 0, before = 0;  // the group's first place in leaf order, and in the list
+    auto* const start = rt::alloc<rt_u32>(out, 1, starts);
+    auto* const list = rt::alloc<rt_u32>(out, 2, references);
+    put_leaves(host, *in, out, count);
+    rt_u32 cell = 0, place = 0, first = 0;  // the group's first cell, and its first places in the list and in leaf order
     for (rt_u32 g = 0; g < in->group_count; ++g) {
-        heads[g] = grids[g].head;
-        for (const rt_u32 s : grids[g].cells.starts) *start++ = before + s;
-        for (const rt_u32 prim : grids[g].cells.list) *list++ = first + prim;
-        before += rt_u32(grids[g].cells.list.size()), first += in->groups[g].count;
+        heads[g].first = cell;
+        filled += sorts[g]->write(host, start + cell, list + place, place, first);
+        cell += rt_u32(sorts[g]->lists() + 1), place += rt_u32(sorts[g]->references()), first += in->groups[g].count;
+        sorts[g].reset();
         rt::root(out, g, g);
     }
     rt::stat(out, "nodes", double(starts - 2 * in->group_count));

@@ -21,7 +21,7 @@ RT_INLINE void RT_CAT(RT_TRAVERSE, _list)(const rt_ctx *ctx, uint cell, rt_mailb
 
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit)
 {
-    const global grid2_grid *coarse = ctx->grid2_grids + root;
+    const global grid2_grid *coarse = RT_NODE(ray, ctx->grid2_grids + root);
     const uint huge = ctx->grid2_cells[coarse->first + coarse->cells[0] * coarse->cells[1] * coarse->cells[2]];
     rt_mailbox tested;
     rt_clear_mailbox(&tested);

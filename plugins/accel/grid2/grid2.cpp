@@ -39,12 +39,14 @@ struct Grids {
 
     // Appends a fine grid of the primitives that `some` names.
     void add(const rt_host* host, grid2_grid grid, const Prims& prims, const rt_u32* some, rt_u32 count) {
-        CellLists lists = fill_cells(host, grid, prims, count, [&](rt_u32 i) { return some[i]; });
-        grid.first = rt_u32(cells.size());
+        const CellSort<grid2_grid> sort(host, grid, prims, count, [&](rt_u32 i) { return some[i]; });
+        const size_t cell = cells.size(), place = list.size();
+        cells.resize(cell + sort.lists() + 1);
+        list.resize(place + sort.references());
+        filled += sort.write(host, &cells[cell], list.data() + place, rt_u32(place), 0);
+        places += cell_count(grid);
+        grid.first = rt_u32(cell);
         grids.push_back(grid);
-        for (const rt_u32 start : lists.starts) cells.push_back(rt_u32(list.size()) + start);
-        list.insert(list.end(), lists.list.begin(), lists.list.end());
-        filled += lists.filled, places += cell_count(grid);
     }
 };
 
@@ -54,11 +56,12 @@ constexpr grid2_grid kOneCell{{0, 0, 0, 0, 0, 0}, {1, 1, 1}, {1, 1, 1}, 0, {0, 0
 template <class Number>
 double cells_of_each(const grid2_grid& grid, const Prims& prims, rt_u32 count, const Number& number) {
     const rt_u32 step = std::max(count / 256, 1u);
+    const CellFinder<grid2_grid> finder(grid);
     double sum = 0, seen = 0;
     for (rt_u32 i = 0; i < count; i += step) {
         const rt_prim& p = prims.prims[number(i)];
         if (is_huge(p)) continue;
-        const CellRange range = cells_of_box(grid, p);
+        const CellRange range = finder.range(p);
         double across[3];
         for (int k = 0; k < 3; ++k) across[k] = range.hi[k] - range.lo[k] + 1;
         sum += across[0] * across[1] * across[2] / *std::min_element(across, across + 3);
@@ -85,26 +88,26 @@ class Builder {
 
     void build(const rt_host* host, const rt_build_input& in, const rt_group& group) {
         const Prims prims{in.prims + group.first, in.params[kExact] != 0 ? in.geometry->triangles : nullptr};
-        Extent extent;
-        for (rt_u32 i = 0; i < group.count; ++i) extent.add(prims.prims[i]);
+        const Extent extent = extent_of(host, prims.prims, group.count);
         const auto all = [](rt_u32 i) { return i; };
         if (extent.count > 0) shape(coarse, extent, in.params[kCoarse] * extent.count, prims, group.count, all);
-        const CellLists lists = fill_cells(host, coarse, prims, group.count, all);
-
-        const size_t cells = cell_count(coarse) + 1;  // with that of huge primitives, the last
+        const CellSort<grid2_grid> sort(host, coarse, prims, group.count, all);
+        const size_t cells = sort.lists();  // with that of huge primitives, the last
+        std::vector<rt_u32> starts(cells + 1), list(sort.references());
+        sort.write(host, starts.data(), list.data(), 0, 0);
         parts.resize((cells + kChunk - 1) / kChunk);
         rt::parallel_for(host, rt_u32(parts.size()), [&](rt_u32 p) {
             for (size_t cell = p * kChunk; cell < std::min(cells, (p + 1) * kChunk); ++cell) {
-                const rt_u32 first = lists.starts[cell], count = lists.starts[cell + 1] - first;
+                const rt_u32 first = starts[cell], count = starts[cell + 1] - first;
                 if (count == 0) continue;
                 const grid2_grid grid =
-                    cell + 1 == cells ? kOneCell : fine_grid(prims, cell, &lists.list[first], count, in.params[kFine]);
-                parts[p].add(host, grid, prims, &lists.list[first], count);
+                    cell + 1 == cells ? kOneCell : fine_grid(prims, cell, &list[first], count, in.params[kFine]);
+                parts[p].add(host, grid, prims, &list[first], count);
             }
         });
         numbers.resize(cells);
         for (size_t cell = 0, number = 0; cell < cells; ++cell)
-            numbers[cell] = lists.starts[cell + 1] > lists.starts[cell] ? rt_u32(number++) : RT_NONE;
+            numbers[cell] = starts[cell + 1] > starts[cell] ? rt_u32(number++) : RT_NONE;
     }
 
  private:
@@ -143,7 +146,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     auto* const grid = rt::alloc<grid2_grid>(out, 0, grids);
     auto* const cell = rt::alloc<rt_u32>(out, 1, cells);
     auto* const list = rt::alloc<rt_u32>(out, 2, references);
-    put_leaves(*in, out, count);
+    put_leaves(host, *in, out, count);
     rt_u32 at = 0, place = 0, name = 0, first = 0;  // in these three arrays, and in leaf order
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         const Builder& group = groups[g];

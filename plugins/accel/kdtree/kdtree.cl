@@ -7,14 +7,15 @@
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit)
 {
     kdtree_entry stack[KDTREE_STACK];
-    uint top = 0u, at = ctx->kdtree_heads[root].node;
+    const global kdtree_head *head = RT_NODE(ray, ctx->kdtree_heads + root);
+    uint top = 0u, at = head->node;
     float from, to;
     RT_COUNT_VISIT(hit, 1u); /* the tree's box */
-    if (!rt_enter_exit(ctx->kdtree_heads[root].box, ray, hit, &from, &to)) return;
+    if (!rt_enter_exit(head->box, ray, hit, &from, &to)) return;
     rt_mailbox tested;
     rt_clear_mailbox(&tested);
     for (;;) {
-        const kdtree_node node = ctx->kdtree_nodes[at];
+        const kdtree_node node = *RT_NODE(ray, ctx->kdtree_nodes + at);
         const uint axis = node.code & 3u;
         RT_COUNT_VISIT(hit, 1u);
         if (axis != KDTREE_LEAF) {

@@ -37,7 +37,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     });
 
     auto* const heads = rt::alloc<kdtree_head>(out, 0, in->group_count);
-    clarity::space::put_leaves(*in, out, count);
+    clarity::space::put_leaves(host, *in, out, count);
     Tree all;
     rt_u32 before = 0;  // positions in leaf order before the group's
     for (rt_u32 g = 0; g < in->group_count; ++g) {

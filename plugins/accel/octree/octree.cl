@@ -11,13 +11,14 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
     octree_entry stack[OCTREE_STACK];
     float from, to;
     RT_COUNT_VISIT(hit, 1u); /* the tree's box */
-    if (!rt_enter_exit(ctx->octree_heads[root].box, ray, hit, &from, &to)) return;
-    uint top = 0u, at = ctx->octree_heads[root].node;
+    const global octree_head *head = RT_NODE(ray, ctx->octree_heads + root);
+    if (!rt_enter_exit(head->box, ray, hit, &from, &to)) return;
+    uint top = 0u, at = head->node;
     const uint nearest = (ray->ix < 0.0f ? 1u : 0u) | (ray->iy < 0.0f ? 2u : 0u) | (ray->iz < 0.0f ? 4u : 0u);
     rt_mailbox tested;
     rt_clear_mailbox(&tested);
     for (;;) {
-        const octree_node node = ctx->octree_nodes[at];
+        const octree_node node = *RT_NODE(ray, ctx->octree_nodes + at);
         RT_COUNT_VISIT(hit, 1u);
         if (node.code & OCTREE_LEAF) {
             for (uint i = node.at.first, end = i + (node.code & ~OCTREE_LEAF); i < end; ++i) {

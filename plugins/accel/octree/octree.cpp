@@ -147,7 +147,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     auto* const heads = rt::alloc<octree_head>(out, 0, in->group_count);
     auto* const nodes = rt::alloc<octree_node>(out, 1, node_count);
     rt_u32* list = rt::alloc<rt_u32>(out, 2, references);
-    clarity::space::put_leaves(*in, out, count);
+    clarity::space::put_leaves(host, *in, out, count);
     rt_u32 node = 0, name = 0, before = 0, depth = 0, leaves = 0;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         const Tree& tree = trees[g];

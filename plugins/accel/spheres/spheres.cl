@@ -4,13 +4,14 @@
  * visited first, which makes the traversal simple and slow. */
 
 /* The lanes that enter the volume of a node before their nearest hit. inv_dd: 1 by the square of the direction's length. */
-RT_INLINE vmask RT_CAT(RT_TRAVERSE, _enter)(const rt_ctx *ctx, uint at, const rt_rays *ray, const rt_hits *hit, vfloat inv_dd)
+RT_INLINE vmask RT_CAT(RT_TRAVERSE, _enter)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit, vfloat inv_dd)
 {
-    const global float *volume = ctx->spheres_nodes[at].volume;
+    const global float *volume = RT_NODE(ray, ctx->spheres_nodes + at)->volume;
 #if SPHERES_VOLUME == SPHERES_BOX
     vfloat entry;
     return rt_enter_box(volume, ray, hit, &entry);
 #else
+    RT_COUNT_BOXES(hit, 1u);
     const vfloat slack = rt_vfloat(1.9073486e-6f);
     const vfloat lx = rt_vfloat(volume[0]) - ray->ox, ly = rt_vfloat(volume[1]) - ray->oy, lz = rt_vfloat(volume[2]) - ray->oz;
 #if SPHERES_VOLUME == SPHERES_ORIENTED

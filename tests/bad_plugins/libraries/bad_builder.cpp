@@ -12,6 +12,7 @@ const char* const kDefects[] = {"none",
                                 "ok_after_fail",
                                 "odd_status",
                                 "cancelled_by_nobody",
+                                "crashes",
                                 "throws",
                                 "throws_no_exception_class",
                                 "throws_in_loop",
@@ -45,6 +46,10 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     if (is("ok_after_fail")) host->fail(host->ctx, "this builder failed and goes on");
     if (is("odd_status")) return 77;
     if (is("cancelled_by_nobody")) return RT_CANCELLED;
+    if (is("crashes")) {
+        volatile int* volatile nowhere = nullptr;
+        *nowhere = 1;
+    }
     if (is("throws")) throw std::runtime_error("thrown by the builder");
     if (is("throws_no_exception_class")) throw 42;
     if (is("throws_in_loop"))

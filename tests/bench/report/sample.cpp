@@ -83,7 +83,9 @@ void add_thesis(BenchReport& report) {
                                   where.units > 2 ? .9 / more : 0,
                                   45 * more,
                                   where.units > 2 ? 0 : .93,
-                                  64};
+                                  64,
+                                  18.5,
+                                  "boxes"};
                     report.records.push_back(r);
                 }
             for (const int slots : {1, 2, 4, 8}) {

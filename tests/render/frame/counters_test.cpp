@@ -1,6 +1,7 @@
 // counters_test.cpp -- the counts of counting programs, against trees with known visits. Counting must not change hits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -17,6 +18,12 @@ namespace {
 
 Workbench& bench() {
     return Workbench::get();
+}
+
+std::vector<std::string> structures() {
+    std::vector<std::string> ids = bench().accels();
+    ids.erase(std::remove(ids.begin(), ids.end(), "false_counts"), ids.end());  // a plugin of this test
+    return ids;
 }
 
 std::vector<rt_hit> traced(const ScenePtr& scene, const std::string& accel, int lanes, const std::vector<rt_ray>& rays,
@@ -108,7 +115,7 @@ TEST(Counters, EveryKindOfPrimitive) {
 }
 
 TEST(Counters, CountActiveLanesPerNode) {
-    for (const std::string& accel : bench().accels()) {
+    for (const std::string& accel : structures()) {
         const rt_ray straight = ray_of({0.1f, 0.2f, 5}, {0, 0, -1});
         const rt_hit alone = counted(ball(), accel, 16, {straight})[0];  // a packet of one ray, visited in a packet's order
         EXPECT_GT(alone.steps, 0u) << accel;
@@ -156,7 +163,7 @@ TEST(Counters, PacketsAndSingleRaysHaveSimilarCounts) {
 
 TEST(Counters, CountingChangesNoHit) {
     const std::vector<rt_ray> rays = rays_at(1.5, 1000);
-    for (const std::string& accel : bench().accels())
+    for (const std::string& accel : structures())
         for (const bool any : {false, true}) {
             const auto plain = traced(ball(), accel, 16, rays, {any, false}), with = counted(ball(), accel, 16, rays, any);
             for (size_t i = 0; i < rays.size(); ++i) {
@@ -165,6 +172,45 @@ TEST(Counters, CountingChangesNoHit) {
                 EXPECT_GT(with[i].steps, 0u);
             }
         }
+}
+
+RayWork work_of(const std::string& accel, int lanes, const std::vector<rt_ray>& rays, rt_hit& hit) {
+    RayQuery query{false, true};
+    std::vector<RayWork> work;
+    query.work = &work;
+    hit = traced(ball(), accel, lanes, rays, query)[0];
+    return work.at(0);
+}
+
+// The host's helpers count, whatever a traversal reports or writes to the hit.
+TEST(Counters, FalseReportsChangeNoCountOfTheHost) {
+    const unsigned triangles = static_cast<unsigned>(ball()->triangle_count());
+    for (const int lanes : {1, 16}) {
+        rt_hit hit;
+        const RayWork work = work_of("false_counts", lanes, rays_at(0.5, 16), hit);
+        EXPECT_EQ(hit.steps, 1u);
+        EXPECT_EQ(hit.leaf_tests, triangles);
+        EXPECT_EQ(work.boxes, 1u);
+        EXPECT_EQ(work.own_steps, 0u);
+        EXPECT_EQ(work.own_boxes, 0u);
+        EXPECT_EQ(work.own_tests, 1000u) << "what it says of itself is kept apart";
+    }
+}
+
+// A tree of two boxes a node; four that are tested by the plugin itself; planes below one box.
+TEST(Counters, BoxesAreTheHostsOrSaidToBeThePlugins) {
+    rt_hit hit;
+    for (const int lanes : {1, 16}) {
+        const RayWork two = work_of("bvh2", lanes, rays_at(0.5, 16), hit);
+        EXPECT_EQ(two.boxes, 2 * hit.steps);
+        EXPECT_EQ(two.own_boxes + two.own_steps + two.own_tests, 0u);
+        const RayWork planes = work_of("kdtree", lanes, rays_at(0.5, 16), hit);
+        EXPECT_EQ(planes.boxes, 1u);
+        EXPECT_GT(hit.steps, 3u);
+    }
+    const RayWork four = work_of("bvh4", 1, rays_at(0.5, 16), hit);
+    EXPECT_EQ(four.boxes, 0u);
+    EXPECT_EQ(four.own_boxes, 4 * hit.steps);
 }
 
 TEST(Counters, AovsShowTheCounts) {
@@ -185,7 +231,8 @@ TEST(Counters, AovsShowTheCounts) {
         split += value < 0.9f;
     }
     EXPECT_GT(split, 100u);
-    const FloatImage steps = picture("steps", "bvh2", 16);
+    const FloatImage steps = picture("steps", "bvh2", 16), boxes = picture("boxes", "bvh2", 16);
+    for (size_t i = 0; i < boxes.pixels.size(); ++i) EXPECT_EQ(boxes.pixels[i], 2 * steps.pixels[i]);
     EXPECT_GT(steps.pixels[25 * 66 + 33], steps.pixels[0]);
 }
 

@@ -24,8 +24,8 @@ KernelRow row_of(const std::vector<const char*>& headers, unsigned traits, const
 // One pixel a work-item, as only GPUs have it: there rays that do not split need no array.
 std::vector<const char*> headers_of_one_pixel() {
     std::vector<const char*> headers = material_headers();
-    headers.insert(headers.end(), {"tracers/iterative/ray_queue.h", "shading/power.h", "shading/shading.h",
-                                   "tracers/ray_step.h", "tracers/iterative/iterative_single.h"});
+    headers.insert(headers.end(), {"tracers/iterative/ray_queue.h", "shading/shading.h", "tracers/ray_step.h",
+                                   "tracers/iterative/iterative_single.h"});
     return headers;
 }
 
@@ -43,7 +43,7 @@ std::vector<const char*> headers_by_generations(bool recorded) {
     std::vector<const char*> headers = material_headers();
     headers.emplace_back("tracers/iterative/ray_queue.h");
     if (recorded) headers.insert(headers.end(), {"tracers/inspect/one_lane.h", "tracers/inspect/recorder.h"});
-    headers.insert(headers.end(), {"shading/power.h", "shading/shading.h"});
+    headers.emplace_back("shading/shading.h");
     if (recorded) headers.emplace_back("tracers/inspect/record_hits.h");
     headers.emplace_back("tracers/iterative/generations.h");
     return headers;

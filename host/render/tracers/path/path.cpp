@@ -27,8 +27,8 @@ const KernelRow& kernel(const Settings& settings, const Layout&) {
 }  // namespace
 
 std::vector<const char*> path_headers(const std::vector<const char*>& recorder) {
-    std::vector<const char*> headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h",
-                                        "sampling/math.h", "sampling/warps.h", "shading/power.h"};
+    std::vector<const char*> headers = {"sampling/hash.h", "sampling/sobol.h", "sampling/dimensions.h", "sampling/math.h",
+                                        "sampling/warps.h"};
     const auto add = [&](const std::vector<const char*>& more) { headers.insert(headers.end(), more.begin(), more.end()); };
     add(material_headers());
     add(surface_headers());

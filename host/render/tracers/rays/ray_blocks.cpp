@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <iterator>
 
 #include "base/parallel_for.hpp"
 
@@ -22,18 +23,18 @@ void for_chunks(size_t count, const Work& work) {
     });
 }
 
-rt_hit answer_at(const float* block, unsigned lanes, rt_u32 fields, bool counted) {
+rt_hit answer_at(const float* block, unsigned lanes, rt_u32 fields) {
     rt_hit hit{*block, 0, 0, -1, -1, 0, 0, 0};
     if (fields == RT_ANSWER_HIT) {
         hit.u = block[1], hit.v = block[2];
         std::memcpy(&hit.prim, block + 3, sizeof hit.prim);
     } else if (fields == RT_ANSWER_NEAREST) {
         std::memcpy(&hit.prim, block + lanes, sizeof hit.prim);
-    } else if (fields == RT_ANSWER_ALL) {
+    } else if (fields >= RT_ANSWER_ALL) {
         float all[RT_ANSWER_ALL];
         for (size_t k = 0; k < RT_ANSWER_ALL; ++k) all[k] = block[k * lanes];
         std::memcpy(&hit, all, sizeof hit);
-        if (!counted) hit.steps = hit.leaf_tests = hit.lane_steps = 0;
+        if (fields != kAnswerCounted) hit.steps = hit.leaf_tests = hit.lane_steps = 0;
     }
     return hit;
 }
@@ -70,13 +71,25 @@ RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes)
         [&](size_t first, size_t count, rt_ray* to) { std::memcpy(to, &rays[first], count * sizeof(rt_ray)); }, floats_.data());
 }
 
-void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, bool counted, const TakeHits& take) {
+void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, const TakeHits& take) {
     for_chunks(ray_count, [&](size_t first, size_t end) {
         rt_hit hits[kAtOnce];
         for (size_t i = first; i < end; ++i)
-            hits[i - first] = answer_at(&answers[i / lanes * lanes * fields] + i % lanes, lanes, fields, counted);
+            hits[i - first] = answer_at(&answers[i / lanes * lanes * fields] + i % lanes, lanes, fields);
         take(first, end - first, hits);
     });
+}
+
+std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, unsigned lanes) {
+    std::vector<RayWork> work(ray_count);
+    for (size_t i = 0; i < ray_count; ++i) {
+        const float* const more = &answers[i / lanes * lanes * kAnswerCounted] + RT_ANSWER_ALL * lanes + i % lanes;
+        float numbers[kAnswerCounted - RT_ANSWER_ALL];
+        for (size_t k = 0; k < std::size(numbers); ++k) numbers[k] = more[k * lanes];
+        static_assert(sizeof numbers == sizeof(RayWork), "the counters of an answer");
+        std::memcpy(&work[i], numbers, sizeof numbers);
+    }
+    return work;
 }
 
 }  // namespace clarity

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "render/tracers/rays/ray_query.hpp"
 #include "rt_types.h"
 
 namespace clarity {
@@ -44,9 +45,13 @@ class RayBlocks {
     std::vector<float> floats_;
 };
 
+// Numbers of an answer that contains counters: those of an rt_hit, and a RayWork.
+constexpr rt_u32 kAnswerCounted = 12;
 // Reads answers on all threads.
-// answers: of all blocks, `fields` numbers a ray (RT_ANSWER_*). Members of rt_hit that they do not contain become 0, and -1 for
-// numbers. counted: whether the answers contain counters.
-void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, bool counted, const TakeHits& take);
+// answers: of all blocks, `fields` numbers a ray (RT_ANSWER_*, kAnswerCounted). Members of rt_hit that they do not contain
+// become 0, and -1 for numbers.
+void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, const TakeHits& take);
+// The rest of answers of kAnswerCounted numbers.
+std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, unsigned lanes);
 
 }  // namespace clarity

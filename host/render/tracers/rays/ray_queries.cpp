@@ -40,7 +40,7 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
         throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes) + " lanes and the program has " +
                                       std::to_string(layout.lanes) + ": pack them again");
     const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
-    const cl_uint fields = query.count     ? RT_ANSWER_ALL
+    const cl_uint fields = query.count     ? kAnswerCounted
                            : query.any_hit ? RT_ANSWER_OCCLUSION
                            : query.brief   ? RT_ANSWER_NEAREST
                            : unplaced      ? RT_ANSWER_HIT
@@ -94,7 +94,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         };
         return trace(prepared, {rays.ray_count(), rays.lanes(), rays.packing(), upload}, query,
                      [&](const cl::Buffer& out, cl_uint fields) {
-                         if (hits) read_answers(out, rays.ray_count(), rays.lanes(), fields, query.count, take);
+                         if (hits) read_answers(out, rays.ray_count(), rays.lanes(), fields, take, query.work);
                      });
     });
 }
@@ -109,7 +109,7 @@ double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQue
             return in;
         };
         return trace(prepared, {rays.count, lanes, rays.packing, upload}, query, [&](const cl::Buffer& out, cl_uint fields) {
-            read_answers(out, rays.count, lanes, fields, query.count, rays.take);
+            read_answers(out, rays.count, lanes, fields, rays.take, query.work);
         });
     });
 }
@@ -131,12 +131,13 @@ void RayQueries::write_rays(const cl::Buffer& in, size_t count, unsigned lanes, 
     queue.enqueueUnmapMemObject(in, mapped);
 }
 
-void RayQueries::read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, bool counted,
-                              const TakeHits& take) {
+void RayQueries::read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, const TakeHits& take,
+                              std::vector<RayWork>* work) {
     const Queue& queue = device_->queue();
     void* const mapped =
         queue.enqueueMapBuffer(out, CL_TRUE, CL_MAP_READ, 0, (count + lanes - 1) / lanes * lanes * fields * sizeof(float));
-    unpack_hits(static_cast<const float*>(mapped), count, lanes, fields, counted, take);
+    unpack_hits(static_cast<const float*>(mapped), count, lanes, fields, take);
+    if (work && fields == kAnswerCounted) *work = unpack_work(static_cast<const float*>(mapped), count, lanes);
     queue.enqueueUnmapMemObject(out, mapped);
 }
 

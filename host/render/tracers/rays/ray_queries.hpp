@@ -64,7 +64,8 @@ class RayQueries {
     double trace(const Prepared& prepared, const Given& rays, const RayQuery& query,
                  const std::function<void(const cl::Buffer&, cl_uint fields)>& answered);
     void write_rays(const cl::Buffer& in, size_t count, unsigned lanes, const ReadRays& read);
-    void read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, bool counted, const TakeHits& take);
+    void read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, const TakeHits& take,
+                      std::vector<RayWork>* work);
     // One launch of a query. The answers have `fields` numbers a ray (RT_ANSWER_*).
     struct Launch {
         const Prepared& prepared;

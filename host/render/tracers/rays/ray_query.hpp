@@ -9,6 +9,15 @@
 
 namespace clarity {
 
+// More counts of a ray, beside rt_hit::steps, leaf_tests and lane_steps; each ray has those of its packet. What begins with
+// `own` is what the structure's traversal reports, and not what the host's helpers counted (cl/CONTRACT.md).
+struct RayWork {
+    rt_u32 boxes = 0;      // boxes tested by the host's helpers
+    rt_u32 own_steps = 0;  // of rt_hit::steps
+    rt_u32 own_boxes = 0;  // tested by the traversal itself, beside `boxes`
+    rt_u32 own_tests = 0;  // primitives, beside rt_hit::leaf_tests
+};
+
 // What RayQueries::trace() computes.
 struct RayQuery {
     bool any_hit = false;  // only whether anything is hit between t_min and t_max
@@ -20,7 +29,8 @@ struct RayQuery {
     bool quiet = false;
     // Of the rays: they hit only instances that share a bit of it with their mask. RT_SEEN_BY_*, and bits of the caller's own.
     rt_u32 mask = RT_SEEN_BY_ALL;
-    Progress* progress = nullptr;  // a cancel ends the query; null: nobody cancels
+    std::vector<RayWork>* work = nullptr;  // with `count`: takes one a ray
+    Progress* progress = nullptr;          // a cancel ends the query; null: nobody cancels
 };
 
 // What RayQueries::trace_all() computes.

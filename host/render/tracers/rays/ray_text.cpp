@@ -68,7 +68,7 @@ class Line {
 
 std::string hit_text(const rt_hit& hit) {
     return exact_text(hit.t) + ' ' + std::to_string(hit.prim) + ' ' + std::to_string(hit.instance) + ' ' + exact_text(hit.u) +
-           ' ' + exact_text(hit.v) + '\n';
+           ' ' + exact_text(hit.v);
 }
 
 }  // namespace
@@ -105,14 +105,15 @@ std::string ray_text(const rt_ray& ray) {
     return text;
 }
 
-std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit) {
-    std::string text = any_hit ? "# occluded\n" : "# t prim instance u v\n";
-    for (const rt_hit& hit : hits) {
-        if (any_hit) {
-            text += hit.t == 0 ? "1\n" : "0\n";
-            continue;
-        }
-        text += hit_text(hit);
+std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit, const std::vector<RayWork>& work) {
+    std::string text = any_hit ? "# occluded" : "# t prim instance u v";
+    text += work.empty() ? "\n" : " nodes boxes tests\n";
+    for (size_t i = 0; i < hits.size(); ++i) {
+        text += any_hit ? hits[i].t == 0 ? "1" : "0" : hit_text(hits[i]);
+        if (!work.empty())
+            text += ' ' + std::to_string(hits[i].steps) + ' ' + std::to_string(work[i].boxes + work[i].own_boxes) + ' ' +
+                    std::to_string(hits[i].leaf_tests);
+        text += '\n';
     }
     return text;
 }
@@ -121,7 +122,7 @@ std::string all_hits_text(const AllHits& all) {
     std::string text = "# ray t prim instance u v\n";
     for (size_t ray = 0; ray + 1 < all.first.size(); ++ray)
         for (uint64_t i = all.first[ray]; i < all.first[ray + 1]; ++i)
-            text += std::to_string(ray) + ' ' + hit_text(all.hits[i]);
+            text += std::to_string(ray) + ' ' + hit_text(all.hits[i]) + '\n';
     return text;
 }
 

@@ -22,7 +22,8 @@ std::vector<rt_ray> read_rays(const std::string& path, RayOrigins* origins = nul
 std::string ray_text(const rt_ray& ray);
 
 // A line a hit, after a line with the names of the columns: t, prim, instance, u, v; for any-hit queries: occluded, 1 or 0.
-std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit);
+// work: of each ray, if it was counted; then nodes, boxes and tests follow.
+std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit, const std::vector<RayWork>& work);
 // The same for all hits, with the number of the ray in front, from 0 on; and a number a ray: how many hits it has.
 std::string all_hits_text(const AllHits& all);
 std::string counts_text(const AllHits& all);

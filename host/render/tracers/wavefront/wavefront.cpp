@@ -133,8 +133,8 @@ const KernelRow& kernel(const Settings&, const Layout&) {
         r.file = "tracers/wavefront/wavefront.cl";
         r.entry = "trace_wavefront";
         r.headers = material_headers();
-        r.headers.insert(r.headers.end(), {"shading/power.h", "shading/shading.h", "tracers/ray_step.h",
-                                           "lanes/work_distribution.h", "tracers/wavefront/wavefront_rays.h"});
+        r.headers.insert(r.headers.end(), {"shading/shading.h", "tracers/ray_step.h", "lanes/work_distribution.h",
+                                           "tracers/wavefront/wavefront_rays.h"});
         r.traits = kLimitRegisters | kFrame | kCountsRays | kWhitted;
         return r;
     }();

@@ -4,7 +4,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     const uint first = ctx->my_accel_runs[root].first, end = first + ctx->my_accel_runs[root].count;
     for (uint at = first; at < end; ++at) {
-        const global my_accel_block *block = ctx->my_accel_blocks + at;
+        const global my_accel_block *block = RT_NODE(ray, ctx->my_accel_blocks + at);
         vfloat entry;
         const uint inside = rt_bits(rt_enter_box(block->box, ray, hit, &entry));
         RT_COUNT_VISIT(hit, inside);

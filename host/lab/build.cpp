@@ -1,0 +1,231 @@
+#include "lab/build.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/files/output_file.hpp"
+#include "base/files/read_file.hpp"
+#include "base/printable.hpp"
+#include "worker/child.hpp"
+
+namespace clarity::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint64_t kToolBytes = uint64_t(2) << 30, kFileBytes = uint64_t(64) << 20;  // of each compiler
+constexpr size_t kMostOutput = 6000;  // bytes of a compiler's messages that are kept
+
+// Commands that run one after the other in a worker, and the folders that they may read and run.
+struct Tools {
+    std::vector<std::vector<std::string>> commands;
+    std::vector<std::string> folders;
+    std::string work;
+    uint64_t cpu_s = 0;
+    bool bubblewrap = false;
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.commands, self.folders, self.work, self.cpu_s, self.bubblewrap);
+    }
+};
+
+std::vector<std::string> in_bubblewrap(const Tools& tools) {
+    std::vector<std::string> words = {"bwrap", "--unshare-all", "--die-with-parent", "--proc", "/proc",
+                                      "--dev", "/dev",          "--tmpfs",           "/tmp"};
+    for (const std::string& folder : tools.folders) words.insert(words.end(), {"--ro-bind-try", folder, folder});
+    words.insert(words.end(), {"--bind", tools.work, tools.work, "--chdir", tools.work});
+    return words;
+}
+
+// Returns the status of waitpid().
+int run(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    pid_t pid = -1;
+    if (const int error = posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ))
+        throw Error(Exit::failed, "`" + words.front() + "` cannot be run: " + std::strerror(error));
+    int status = 0;
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    }
+    return status;
+}
+
+void run_tools(ParcelReader& arguments) {
+    const auto tools = worker::arguments_in<Tools>(arguments);
+    // Nothing of the grader's environment reaches the compilers.
+    const char* const path = std::getenv("PATH");
+    const std::string kept = path ? path : "/usr/bin:/bin";
+    clearenv();
+    setenv("PATH", kept.c_str(), 1);
+    setenv("HOME", tools.work.c_str(), 1);
+    setenv("TMPDIR", tools.work.c_str(), 1);
+    setenv("LC_ALL", "C", 1);
+    if (chdir(tools.work.c_str()) != 0) throw Error(Exit::failed, tools.work + ": " + std::strerror(errno));
+    worker::WorkerLimits limits;
+    limits.cpu_s = tools.cpu_s;
+    limits.memory_bytes = kToolBytes;
+    if (tools.bubblewrap) {
+        const rlimit memory{kToolBytes, kToolBytes}, file{kFileBytes, kFileBytes}, cpu{tools.cpu_s, tools.cpu_s};
+        setrlimit(RLIMIT_AS, &memory);
+        setrlimit(RLIMIT_FSIZE, &file);
+        setrlimit(RLIMIT_CPU, &cpu);
+    } else {
+        worker::enter_tool_sandbox(tools.folders, tools.work, limits, kFileBytes);
+    }
+    for (const auto& command : tools.commands) {
+        std::vector<std::string> words = tools.bubblewrap ? in_bubblewrap(tools) : std::vector<std::string>();
+        words.insert(words.end(), command.begin(), command.end());
+        const int status = run(words);
+        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+            throw Error(Exit::failed, "`" + command[0] + " " + command[1] + "` failed");
+    }
+}
+
+class ToolsJob : public worker::Job {
+ public:
+    explicit ToolsJob(double limit_s) : Job(kToolsJob, "the compiler", {limit_s, 0, 2 * kToolBytes}) {}
+    std::string output;
+
+ private:
+    void on_output(const std::string& line) override {
+        // Of the tools, what says that all is well is no news.
+        if (line.rfind("-- ", 0) == 0 || line.rfind("[", 0) == 0 || line.find("gmake") == 0) return;
+        if (output.size() < kMostOutput) output += printable_line(line) + "\n";
+    }
+};
+
+// The regular file `path`, without following a link. Throws Refused.
+std::string submitted(const std::string& path, const Lab::File& file) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0) throw Refused(file.name + " is not there; hand it in under this name");
+    if (!S_ISREG(status.st_mode)) throw Refused(file.name + " is no regular file: hand in the file itself, no link");
+    if (static_cast<uint64_t>(status.st_size) > file.most_bytes)
+        throw Refused(file.name + " has " + std::to_string(status.st_size) + " bytes; at most " +
+                      std::to_string(file.most_bytes) + " are allowed");
+    const int fd = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0) throw Refused(file.name + " cannot be read: " + std::strerror(errno));
+    close(fd);
+    return read_file(path, file.most_bytes, Exit::failed);
+}
+
+bool is_part_of_name(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+// Puts blanks in the place of comments. It does not know strings: labs that forbid words forbid quotes, too.
+void blank_comments(std::string& text) {
+    const auto blank = [&](size_t from, size_t to) {
+        for (size_t i = from; i < std::min(to, text.size()); ++i)
+            if (text[i] != '\n') text[i] = ' ';
+    };
+    for (size_t at = text.find('/'); at != std::string::npos && at + 1 < text.size(); at = text.find('/', at + 1)) {
+        if (text[at + 1] != '/' && text[at + 1] != '*') continue;
+        const bool is_line = text[at + 1] == '/';
+        const size_t end = text.find(is_line ? "\n" : "*/", at + 2);
+        blank(at, end == std::string::npos ? text.size() : end + (is_line ? 0 : 2));
+    }
+}
+
+}  // namespace
+
+Sandbox find_sandbox() {
+    static const Sandbox found = [] {
+        const int status = std::system("bwrap --unshare-all --ro-bind / / true >/dev/null 2>&1");
+        return status == 0 ? Sandbox::bubblewrap : worker::restricts_files() ? Sandbox::worker : Sandbox::limits;
+    }();
+    return found;
+}
+const char* sandbox_text(Sandbox sandbox) {
+    switch (sandbox) {
+        case Sandbox::bubblewrap:
+            return "bubblewrap: compilers see only the system, the SDK and this submission";
+        case Sandbox::worker:
+            return "a worker's limits (Landlock, seccomp): compilers read only the system, the SDK and this submission";
+        default:
+            return "resource limits alone: neither bubblewrap nor Landlock works here, so a submission may name files of the "
+                   "teacher's in #include, and what the compiler says of them is left out";
+    }
+}
+
+std::string forbidden_word(std::string text, const std::vector<std::string>& words) {
+    blank_comments(text);
+    const auto is_part = [&](size_t at) { return at < text.size() && is_part_of_name(text[at]); };
+    for (const std::string& word : words) {
+        // A word that ends in _ is the beginning of names.
+        const bool is_name = is_part_of_name(word.front()), is_whole = is_name && word.back() != '_';
+        for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+            if ((is_name && at > 0 && is_part(at - 1)) || (is_whole && is_part(at + word.size()))) continue;
+            const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+            return "line " + std::to_string(line) + " has `" + word + "`";
+        }
+    }
+    return {};
+}
+
+void collect(const Lab& lab, const std::string& from, const std::string& to) {
+    fs::create_directories(to);
+    fs::copy_options how = fs::copy_options::overwrite_existing;
+    for (const auto& entry : fs::directory_iterator(lab.handout()))
+        if (entry.is_regular_file() && entry.path().filename() != "lab.json")
+            fs::copy_file(entry, to / entry.path().filename(), how);
+    for (const Lab::File& file : lab.files) {
+        const std::string text = submitted(from + "/" + file.name, file);
+        if (const std::string why = forbidden_word(text, lab.forbidden); !why.empty())
+            throw Refused(file.name + ": " + why + ", which this lab does not allow; page.md says why");
+        write_text_file(to + "/" + file.name, text);
+    }
+}
+
+std::string compile(const Lab& lab, const std::string& sources, const std::string& build, const std::string& sdk,
+                    Sandbox sandbox, Progress& progress) {
+    const std::string library = build + "/" + lab.id + ".so";
+    std::error_code ignored;
+    fs::remove(library, ignored);
+    fs::create_directories(build);
+    Tools tools;
+    if (!fs::exists(build + "/CMakeCache.txt"))
+        tools.commands.push_back(
+            {"cmake", "-S", sources, "-B", build, "-DCMAKE_PREFIX_PATH=" + sdk, "-DCMAKE_BUILD_TYPE=Release"});
+    tools.commands.push_back({"cmake", "--build", build, "--clean-first"});
+    tools.folders = {"/usr", "/bin", "/lib", "/lib64", "/etc", fs::canonical(sdk).string()};
+    tools.work = fs::canonical(fs::path(build).parent_path()).string();
+    tools.cpu_s = static_cast<uint64_t>(lab.compile_s);
+    tools.bubblewrap = sandbox == Sandbox::bubblewrap;
+    ToolsJob job(lab.compile_s);
+    try {
+        job.run(tools, progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& e) {
+        // Without a sandbox for files a message may quote what the submission has included.
+        throw Refused(std::string("it does not compile: ") + e.what(), sandbox == Sandbox::limits ? "" : job.output);
+    }
+    if (!fs::is_regular_file(fs::symlink_status(library))) throw Refused("the build makes no " + lab.id + ".so");
+    return library;
+}
+
+const worker::JobKind kToolsJob = {
+    "tools",
+    "to build a plugin, run cmake",
+    Exit::failed,
+    false,
+    LogLevel::debug,
+    {"the compiler crashed ({how})", "the compiler ended ({how})", "the compiler did not come to its end within {how}",
+     "the compiler used more than {how} of processor time", "the compiler needs more than {how} of memory",
+     "the compiler was killed"},
+    run_tools};
+
+}  // namespace clarity::lab

@@ -1,0 +1,244 @@
+#include "lab/grade.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/printable.hpp"
+#include "check/check.hpp"
+
+namespace clarity::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(double value, const char* format = "%.3g") {
+    char text[40];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+std::string library_of_accel(const PluginRegistry& plugins, const std::string& id) {
+    for (const PluginRecord& record : plugins.records())
+        if (record.plugin && record.plugin->accel && !record.shadowed && id == record.plugin->id) return record.path;
+    throw Error(Exit::usage, "lab.json: `layout` is '" + id + "', and no such structure is installed (`clarity plugins`)");
+}
+
+// Of a hidden case students learn which kind of thing went wrong, and nothing of the scene or of what their own code says about
+// it.
+std::string without_secrets(const std::string& found) {
+    constexpr const char* kKinds[][2] = {{"any-hit queries", "any-hit queries are wrong"},
+                                         {"nearest hits", "nearest hits are wrong"},
+                                         {"crashed", "it crashes"},
+                                         {"did not come to", "it does not come to its end"},
+                                         {"keeps state", "it keeps state"},
+                                         {"memory", "it needs too much memory"}};
+    for (const auto& [words, kind] : kKinds)
+        if (found.find(words) != std::string::npos) return std::string("in this hidden case ") + kind;
+    return "in this hidden case the build fails";
+}
+
+}  // namespace
+
+double Marks::of(const std::string& section) const {
+    double sum = 0;
+    for (const Line& line : lines) sum += line.section == section ? line.points : 0;
+    return sum;
+}
+double Marks::total() const {
+    double sum = 0;
+    for (const Line& line : lines) sum += line.points;
+    return sum;
+}
+
+double counts_points(const Lab& lab, double ratio) {
+    if (!(ratio > 0)) return 0;
+    return std::clamp(std::log(lab.none / ratio) / std::log(lab.none / lab.full), 0.0, 1.0);
+}
+
+Grader::Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Progress& progress)
+    : lab_(std::move(lab)), options_(std::move(options)), sandbox_(find_sandbox()) {
+    if (!lab_.layout.empty()) layout_ = library_of_accel(plugins, lab_.layout);
+    for (const Case& one : lab_.cases) cases_.push_back(make_case(one));
+    if (lab_.reference().empty()) return;
+    const std::string sources = options_.work + "/reference/sources";
+    try {
+        Lab own = lab_;
+        own.forbidden.clear();
+        collect(own, lab_.reference(), sources);
+        reference_ = compile(lab_, sources, options_.work + "/reference/build", options_.sdk, sandbox_, progress);
+    } catch (const Refused& e) {
+        throw Error(Exit::failed, lab_.reference() + ": the reference solution: " + e.what(), e.details());
+    }
+}
+
+bool Grader::is_wanted(const std::string& name) const {
+    return options_.only.empty() || std::count(options_.only.begin(), options_.only.end(), name);
+}
+
+ClosedBuilder Grader::closed(const std::string& library) const {
+    return {library, lab_.id, lab_.layout, lab_.build_s, lab_.memory_bytes};
+}
+
+MeasureJob Grader::job_for(const std::string& library) const {
+    MeasureJob job;
+    job.library = library, job.reference = reference_, job.layout = layout_;
+    if (!lab_.layout.empty()) job.closed.push_back(closed(library));
+    job.device = options_.device, job.lanes = lab_.lanes, job.times = options_.times;
+    for (size_t i = 0; i < cases_.size(); ++i) {
+        if (!is_wanted(lab_.cases[i].name)) continue;
+        job.scenes.push_back({cases_[i].scene});
+        job.rays.push_back(cases_[i].rays);
+    }
+    return job;
+}
+
+std::vector<double> Grader::reference_work(Progress& progress) {
+    if (reference_.empty())
+        throw Error(Exit::usage, lab_.folder + ": has no folder reference/, so nobody knows what a good solution costs");
+    MeasureJob job = job_for(reference_);
+    job.times = false;
+    if (!job.closed.empty()) job.closed.front().library = reference_;
+    std::vector<double> work;
+    for (const CaseFigures& figures : measure(job, progress)) {
+        if (!figures.wrong.empty()) throw Error(Exit::failed, "the reference solution is wrong: " + figures.wrong);
+        work.push_back(figures.work);
+    }
+    return work;
+}
+
+Marks Grader::grade(const std::string& submission, Progress& progress) {
+    Marks marks;
+    marks.sandbox = sandbox_text(sandbox_);
+    Line build{
+        "build", "build", 0, 0, "your files in the lab's folder, compiled", "", "cmake -S . -B build && cmake --build build",
+        false};
+    std::string library;
+    bool hits_are_right = false;
+    try {
+        const std::string sources = options_.work + "/submission/sources";
+        collect(lab_, submission, sources);
+        library = compile(lab_, sources, options_.work + "/submission/build", options_.sdk, sandbox_, progress);
+        build.found = "it builds";
+    } catch (const Refused& e) {
+        build.found = std::string(e.what()) + (e.details().empty() ? "" : "\n" + e.details());
+    }
+    marks.lines.push_back(build);
+    if (library.empty()) return marks;
+    mark_checks(library, marks, hits_are_right, progress);
+    if (hits_are_right)
+        mark_cases(library, marks, progress);
+    else
+        marks.lines.push_back({"counts", "counts and speed", 0, lab_.points_counts + lab_.points_speed, "all cases",
+                               "not measured, because a hit is wrong: see the checks that failed", "", false});
+    return marks;
+}
+
+void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_are_right, Progress& progress) {
+    check::CheckOptions options;
+    options.quick = true;
+    options.lanes = {lab_.lanes};
+    options.device = options_.device;
+    for (const std::string& name : lab_.checks)
+        if (is_wanted(name)) options.only.push_back(name);
+    hits_are_right = true;
+    if (options.only.empty()) return;
+    PluginRecord record;
+    std::vector<std::string> beside;
+    if (lab_.layout.empty()) {
+        record = load_plugin(library);
+        if (!record.plugin) throw Error(Exit::failed, library + ": " + record.why);
+    } else {
+        options.closed.push_back(closed(library));
+        record.plugin = take_closed_builder(options.closed.front());
+        beside.push_back(layout_);
+    }
+    record.path = library;
+    std::vector<Line> lines;
+    check::check_plugin_library(record, beside, options, progress, [&](const check::CheckResult& result) {
+        Line line{
+            "checks",
+            result.name,
+            0,
+            0,
+            result.tried,
+            result.outcome.found,
+            "clarity check ./build/" + lab_.id + ".so --quick --lanes " + std::to_string(lab_.lanes) + " --only " + result.name,
+            false};
+        if (result.outcome.kind == check::Outcome::Kind::passed) line.points = 1;
+        if (line.points == 0 && result.name.rfind("hits", 0) == 0) hits_are_right = false;
+        lines.push_back(line);
+    });
+    // Checks that never ran, because a worker died too often or the builder is not sound, count as failed.
+    const double most = lab_.points_checks / double(lab_.checks.size());
+    for (const std::string& name : options.only)
+        if (std::none_of(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; })) {
+            lines.push_back({"checks", name, 0, 0, "not run", "not run, because of a failure above", "", false});
+            if (name.rfind("hits", 0) == 0) hits_are_right = false;
+        }
+    for (Line& line : lines) {
+        const bool counts = std::count(options.only.begin(), options.only.end(), line.name) > 0;
+        line.most = counts ? most : 0, line.points *= line.most;
+        marks.lines.push_back(line);
+    }
+}
+
+void Grader::mark_cases(const std::string& library, Marks& marks, Progress& progress) {
+    std::vector<const Case*> cases;
+    for (const Case& one : lab_.cases)
+        if (is_wanted(one.name)) cases.push_back(&one);
+    if (cases.empty()) return;
+    std::vector<CaseFigures> all = measure(job_for(library), progress);
+    const bool right = std::all_of(all.begin(), all.end(), [](const CaseFigures& one) { return one.wrong.empty(); });
+    const bool with_speed = options_.times && !reference_.empty();
+    // Where no times are taken, on machines that are not worth it, their points belong to the counts.
+    const double counts = lab_.points_counts + (options_.times ? 0 : lab_.points_speed);
+    double work = 0, speed = 0;
+    bool all_known = true;
+    for (size_t i = 0; i < cases.size(); ++i) {
+        const CaseFigures& figures = all[i];
+        const double reference = figures.reference_work > 0 ? figures.reference_work : cases[i]->reference;
+        Line line{"counts", cases[i]->name, 0, counts / double(lab_.cases.size()), "", "", "", cases[i]->hidden};
+        line.tried = cases[i]->hidden ? "a hidden scene"
+                                      : cases[i]->scene + ", " + std::to_string(cases[i]->triangles) + " triangles, " +
+                                            std::to_string(cases[i]->rays) + " rays";
+        if (!cases[i]->hidden) line.alone = "clarity lab check . --only " + cases[i]->name;
+        if (!figures.wrong.empty()) {
+            line.found = cases[i]->hidden ? without_secrets(figures.wrong) : figures.wrong;
+        } else {
+            line.found = text_of(figures.nodes, "%.2f") + " nodes and " + text_of(figures.tests, "%.2f") + " tests a ray";
+            if (reference > 0) {
+                const double ratio = figures.work / reference;
+                line.found += ", " + text_of(ratio, "%.2f") + " times the work of the reference (all points at " +
+                              text_of(lab_.full) + ", none at " + text_of(lab_.none) + ")";
+                work += std::log(std::max(ratio, 1e-6));
+                if (right) line.points = line.most * counts_points(lab_, ratio);
+            }
+            if (!right) line.found += "; no points, because a hit is wrong elsewhere";
+        }
+        all_known &= figures.wrong.empty() && reference > 0;
+        marks.lines.push_back(line);
+    }
+    if (all_known) marks.work = std::exp(work / double(cases.size()));
+    if (!with_speed) return;
+    Line line{"speed", "speed", 0,    lab_.points_speed, "rays a second, in turns with the reference on this machine",
+              "",      "",      false};
+    bool steady = true;
+    for (const CaseFigures& figures : all) {
+        speed += figures.ms > 0 && figures.reference_ms > 0 ? std::log(figures.reference_ms / figures.ms) : 0;
+        steady &= figures.steady;
+    }
+    if (right) {
+        marks.speed = std::exp(speed / double(all.size()));
+        line.points = line.most * std::min(1.0, marks.speed);
+        line.found = text_of(marks.speed, "%.2f") + " times as fast as the reference" +
+                     (steady ? "" : "; the machine was busy, so the best of all rounds counts");
+    } else {
+        line.found = "not measured, because a hit is wrong";
+    }
+    marks.lines.push_back(line);
+}
+
+}  // namespace clarity::lab

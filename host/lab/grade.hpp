@@ -1,0 +1,68 @@
+// grade.hpp -- marks a submission of a lab. Students run the same code, with the public cases and without the reference.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "lab/build.hpp"
+#include "lab/lab.hpp"
+#include "lab/measure.hpp"
+#include "plugin/registry.hpp"
+
+namespace clarity::lab {
+
+// One row of what a student reads.
+struct Line {
+    std::string section;  // "build", "checks", "counts" or "speed"
+    std::string name;     // "hits.random", "city"
+    double points = 0, most = 0;
+    std::string tried, found;
+    std::string alone;  // a command that shows it alone; "": there is none
+    bool hidden = false;
+};
+
+struct Marks {
+    std::vector<Line> lines;
+    double work = 0;   // a ray, by that of the reference: the geometric mean of all cases; 0: not known
+    double speed = 0;  // T_ref / T, in the same way
+    std::string sandbox;
+    double of(const std::string& section) const;  // points
+    double total() const;
+};
+
+struct GradeOptions {
+    std::string device;
+    std::string sdk;   // the folder that Clarity is installed in
+    std::string work;  // a folder for builds, which later submissions use again
+    bool times = true;
+    std::vector<std::string> only;  // lines, by name; empty: all
+};
+
+class Grader {
+ public:
+    // Builds the reference and takes its figures once. Throws Error if that fails: it is the teacher's fault.
+    Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Progress& progress);
+    Marks grade(const std::string& submission, Progress& progress);
+    // Work a ray of the reference on each case; the handout holds those of the public ones.
+    std::vector<double> reference_work(Progress& progress);
+    const Lab& lab() const { return lab_; }
+
+ private:
+    void mark_checks(const std::string& library, Marks& marks, bool& hits_are_right, Progress& progress);
+    void mark_cases(const std::string& library, Marks& marks, Progress& progress);
+    MeasureJob job_for(const std::string& library) const;
+    ClosedBuilder closed(const std::string& library) const;
+    bool is_wanted(const std::string& name) const;
+
+    const Lab lab_;
+    const GradeOptions options_;
+    const Sandbox sandbox_;
+    std::string layout_, reference_;  // libraries
+    std::vector<MadeCase> cases_;
+};
+
+// Points of counts. ratio: work by that of the reference; on a log scale from `none` to `full`.
+double counts_points(const Lab& lab, double ratio);
+
+}  // namespace clarity::lab

@@ -1,0 +1,66 @@
+// lab.hpp -- a lab: an assignment of a course, which is a folder. What students get, what they hand in, and how it is marked.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rt_types.h"
+#include "scene/scene.hpp"
+
+namespace clarity::lab {
+
+// A scene and rays, made by a generator: the same on every machine.
+struct Case {
+    std::string name, scene;  // scene: a row of kGenerators
+    unsigned triangles = 0, rays = 0;
+    uint64_t seed = 0;
+    bool hidden = false;
+    double reference = 0;  // work a ray of the reference solution, where students have no reference; 0: not known
+};
+
+struct Lab {
+    std::string folder, title;
+    // The plugin. layout: of a builder of trees, the structure that packs and traces them; "": the plugin's host code is the
+    // teacher's, and students write kernels.
+    std::string id, layout;
+    struct File {
+        std::string name;
+        uint64_t most_bytes = 0;
+    };
+    std::vector<File> files;             // that students hand in
+    std::vector<std::string> forbidden;  // what must not stand in them
+    std::vector<std::string> checks;     // of `clarity check`, or their beginnings
+    int lanes = 1;                       // of all kernels: counts do not depend on the machine
+    double points_checks = 50, points_counts = 35, points_speed = 15;
+    // Counts: all points at `full` times the work of the reference, none at `none` times.
+    double full = 1.1, none = 8;
+    double compile_s = 120, build_s = 2;  // for the compiler, of the clock; for one build of a structure, of the processor
+    uint64_t memory_bytes = uint64_t(1) << 30;
+    std::string visibility = "visible", hidden_visibility = "visible";  // of lines, in Gradescope's words
+    std::vector<Case> cases;
+
+    // The folder from which a plugin is built, but for the files of students.
+    std::string handout() const;
+    std::string reference() const;  // "": there is none, as in what students have
+};
+
+// Reads FOLDER/lab.json, and FOLDER/hidden/cases.json if it is there and wanted. Throws Error(usage), which names file and key.
+Lab read_lab(const std::string& folder, bool with_hidden);
+
+struct MadeCase {
+    Scene scene;
+    std::vector<rt_ray> rays;
+};
+// Throws Error(usage) for an unknown generator.
+MadeCase make_case(const Case& of);
+
+// clarity lab handout: copies what students get into a new folder. references: work a ray of the reference, of each public
+// case.
+void write_handout(const Lab& lab, const std::string& folder, const std::vector<double>& references);
+
+// The folder of the labs that are installed with the program.
+std::string installed_labs();
+// clarity lab new: a copy of an installed lab, with another id.
+void copy_lab(const std::string& from, const std::string& to);
+
+}  // namespace clarity::lab

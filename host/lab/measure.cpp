@@ -1,0 +1,186 @@
+#include "lab/measure.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "bench/run/measure.hpp"
+#include "check/hits/checked_scene.hpp"
+#include "check/hits/judge.hpp"
+#include "device/device.hpp"
+#include "plugin/registry.hpp"
+#include "worker/child.hpp"
+
+namespace clarity::lab {
+namespace {
+
+using check::CheckedScene;
+using check::Variant;
+
+constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;
+constexpr size_t kJudged = 600;     // rays of a case that are compared with every primitive
+constexpr double kCompile_s = 120;  // processor time of the first launch, which compiles
+constexpr double kTimes_s = 3;      // for the times of a case
+
+const rt_plugin* open_library(const std::string& path) {
+    if (path.empty()) return nullptr;
+    const PluginRecord record = load_plugin(path);
+    if (!record.plugin || !record.plugin->accel) throw Error(Exit::failed, path + ": is no structure: " + record.why);
+    return record.plugin;
+}
+
+// Of a structure, rays with counts. With one lane each ray has its own.
+struct Counted {
+    std::vector<rt_hit> hits;
+    double nodes = 0, tests = 0;
+};
+Counted count(CheckedScene& scene, const Variant& variant, const std::vector<rt_ray>& rays) {
+    Counted counted;
+    counted.hits = scene.count(variant, rays, false).hits;
+    for (size_t i = 0; i < counted.hits.size(); i += static_cast<size_t>(variant.lanes))
+        counted.nodes += counted.hits[i].steps, counted.tests += counted.hits[i].leaf_tests;
+    counted.nodes /= double(rays.size()), counted.tests /= double(rays.size());
+    return counted;
+}
+
+// What is wrong with the first rays; "": nothing.
+std::string fault_of(CheckedScene& scene, const Variant& variant, std::vector<rt_ray> rays, std::vector<rt_hit> nearest) {
+    // Every k-th one, so that all kinds are among them.
+    const size_t step = (rays.size() + kJudged - 1) / kJudged;
+    for (size_t i = 0; i * step < rays.size(); ++i) rays[i] = rays[i * step], nearest[i] = nearest[i * step];
+    rays.resize((rays.size() + step - 1) / step), nearest.resize(rays.size());
+    const std::vector<check::Truth> truths = check::BruteForce(scene.build_scene()).trace(rays);
+    const std::vector<rt_hit> any = scene.trace(variant, rays, true).hits;
+    for (const bool any_hit : {false, true}) {
+        const std::vector<rt_hit>& hits = any_hit ? any : nearest;
+        const check::Faults faults = check::Faults::of(rays, truths, hits, any_hit);
+        if (!faults.wrong.empty())
+            return std::string(any_hit ? "any-hit queries" : "nearest hits") + ": " +
+                   faults.text(rays, truths, hits, variant.lanes);
+    }
+    return {};
+}
+
+void measure_job(ParcelReader& arguments) {
+    auto job = worker::arguments_in<MeasureJob>(arguments);
+    const rt_plugin *layout = open_library(job.layout), *reference = open_library(job.reference),
+                    *student = job.closed.empty() ? open_library(job.library) : take_closed_builder(job.closed.front());
+    worker::enter_sandbox(worker::WorkerKind::driver);
+    const auto device = std::make_shared<Device>(choose_device(job.device));
+    const Variant variant{job.lanes, false, false};
+    const auto layout_for = [&](const rt_plugin& plugin) { return plugin.accel->topology ? layout : nullptr; };
+    for (size_t c = 0; c < job.scenes.size(); ++c) {
+        const std::vector<rt_ray>& rays = job.rays[c];
+        nlohmann::json report;
+        std::unique_ptr<CheckedScene> theirs;
+        double reference_work = 0;
+        if (reference) {
+            worker::say_step("tracing the reference", kCompile_s);
+            theirs = std::make_unique<CheckedScene>(*reference, layout_for(*reference), job.scenes[c].scene, device);
+            const Counted counted = count(*theirs, variant, rays);
+            reference_work = work_of(counted.nodes, counted.tests);
+        }
+        report["reference_work"] = reference_work;
+        try {
+            // The library's own limit of time is that of its builds.
+            worker::say_step("building", kCompile_s);
+            CheckedScene own(*student, layout_for(*student), job.scenes[c].scene, device);
+            worker::say_step("compiling", kCompile_s);
+            own.compile(variant);
+            own.count(variant, {rays.front()}, false);
+            worker::say_step("tracing " + std::to_string(rays.size()) + " rays", job.limit_s);
+            Counted counted = count(own, variant, rays);
+            worker::say_step("comparing hits", 60 + job.limit_s);
+            report["wrong"] = fault_of(own, variant, rays, std::move(counted.hits));
+            report["nodes"] = counted.nodes, report["tests"] = counted.tests;
+            if (job.times && theirs && report["wrong"] == "") {
+                worker::say_step("measuring times", 20 * kTimes_s);
+                const RayBlocks blocks(rays, static_cast<unsigned>(job.lanes));
+                RayQueries own_queries(device), their_queries(device);
+                const auto contender = [&](const char* name, RayQueries& queries, CheckedScene& scene) {
+                    return bench::Contender{name, [&queries, &blocks, prepared = scene.prepared(variant)] {
+                                                RayQuery query;
+                                                query.brief = true;
+                                                bench::Sample sample;
+                                                sample.time_ms = sample.wall_ms = queries.trace(*prepared, blocks, query);
+                                                const RayTuning tuning = queries.tuning();
+                                                sample.trial = tuning.trial, sample.settled = tuning.settled;
+                                                sample.variant = tuning.variant;
+                                                return sample;
+                                            }};
+                };
+                bench::MeasureRules rules;
+                rules.budget_s = kTimes_s;
+                Progress progress;
+                const std::vector<bench::Measured> measured = bench::measure_interleaved(
+                    {contender("reference", their_queries, *theirs), contender("submission", own_queries, own)}, rules,
+                    progress);
+                // The least of each: on a busy machine medians are of the others' work.
+                report["reference_ms"] = measured[0].time_ms.min, report["ms"] = measured[1].time_ms.min;
+                report["steady"] = measured[0].status == bench::RowStatus::ok && measured[1].status == bench::RowStatus::ok;
+            }
+        } catch (const Error& e) {
+            report["wrong"] = e.what();
+        }
+        worker::send_message(worker::kChannelFd, {worker::MessageKind::report, 0, 0,
+                                                  report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+    }
+}
+
+class Run : public worker::Job {
+ public:
+    explicit Run(double limit_s) : Job(kMeasureJob, "the structure", {limit_s, 0, kMemoryBytes}) {}
+    std::vector<CaseFigures> cases;
+
+ private:
+    void on_output(const std::string&) override {}  // of a kernel's printf, too
+    void on_report(const std::string& text) override {
+        const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+        CaseFigures figures;
+        figures.wrong = json.value("wrong", "");
+        figures.nodes = json.value("nodes", 0.0), figures.tests = json.value("tests", 0.0);
+        figures.work = work_of(figures.nodes, figures.tests);
+        figures.reference_work = json.value("reference_work", 0.0);
+        figures.ms = json.value("ms", 0.0), figures.reference_ms = json.value("reference_ms", 0.0);
+        figures.steady = json.value("steady", true);
+        cases.push_back(std::move(figures));
+    }
+};
+
+}  // namespace
+
+double work_of(double nodes, double tests) {
+    return nodes + tests;
+}
+
+std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress) {
+    Run run(job.limit_s);
+    run.subject = job.library;
+    std::string died;
+    try {
+        run.run(job, progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& e) {
+        died = e.what();
+    }
+    while (run.cases.size() < job.scenes.size()) {
+        run.cases.emplace_back();
+        run.cases.back().wrong = died.empty() ? "nothing was measured" : died;
+    }
+    return run.cases;
+}
+
+const worker::JobKind kMeasureJob = {
+    "lab",
+    "to see what a lab measures, run `clarity lab check`",
+    Exit::failed,
+    true,
+    LogLevel::debug,
+    {"it crashed ({how}) while {step}", "it ended the process ({how}) while {step}",
+     "it did not come to its end within {how} while {step}: a loop without end", "it was killed while {step}",
+     "it needs more than {how} of memory while {step}", "it was killed while {step}"},
+    measure_job};
+
+}  // namespace clarity::lab

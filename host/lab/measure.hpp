@@ -1,0 +1,48 @@
+// measure.hpp -- what a structure costs on the cases of a lab: wrong hits, work a ray, and times in turns with the reference.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "import/wire.hpp"
+#include "lab/lab.hpp"
+#include "render/accel/build_in_worker.hpp"
+#include "worker/job.hpp"
+
+namespace clarity::lab {
+
+struct MeasureJob {
+    std::string library;                // of the student; of kernels alone, since `closed` is empty
+    std::vector<ClosedBuilder> closed;  // of a builder of trees; none or one
+    std::string reference, layout;      // libraries; "": there is none
+    std::string device;
+    int lanes = 1;
+    bool times = false;
+    double limit_s = 10;  // of a step
+    std::vector<import::SentScene> scenes;
+    std::vector<std::vector<rt_ray>> rays;  // of each scene
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.library, self.closed, self.reference, self.layout, self.device, self.lanes, self.times, self.limit_s,
+               self.scenes, self.rays);
+    }
+};
+
+struct CaseFigures {
+    std::string wrong;                      // what is wrong; "": every hit is right
+    double work = 0, nodes = 0, tests = 0;  // a ray, of the student
+    double reference_work = 0;              // 0: no reference
+    double ms = 0, reference_ms = 0;
+    bool steady = true;  // of the times: no row was refused
+};
+
+// Work a ray that is graded: nodes that were visited and primitives that were tested. One place, for all labs.
+double work_of(double nodes, double tests);
+
+// Runs a job in a worker. The cases after the one in which the worker died have the same `wrong`. Throws Cancelled.
+std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress);
+
+extern const worker::JobKind kMeasureJob;
+
+}  // namespace clarity::lab
