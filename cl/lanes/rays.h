@@ -32,6 +32,9 @@ typedef struct rt_rays {
 #if RT_HAS_MASKS
     vint mask;                     /* what instances must have a bit of: RT_SEEN_BY_*; set by RT_SEEN_BY */
 #endif
+#ifdef RT_CARRIES_CONES
+    vfloat travelled;              /* how long the rays before it were together, back to the camera */
+#endif
     vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
 #ifdef RT_COUNT_STEPS

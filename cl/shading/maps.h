@@ -189,9 +189,14 @@ RT_INLINE void rt_turn_frame(const rt_surface *s, rt_vec normal, rt_vec *x, rt_v
 #else
 #define RT_MAP_NORMALS(ctx, s, bits)
 #endif
-/* For tracers that do not carry cones from surface to surface: each ray sees as much as a camera ray would. */
+/* For tracers other than `path`: the cone of a camera ray grows along the rays of mirrors and glass, too. Curved ones do not widen it. */
+#ifdef RT_CARRIES_CONES
+#define RT_WAY_OF(ray, t) ((ray)->travelled + (t))
+#else
+#define RT_WAY_OF(ray, t) (t)
+#endif
 #define RT_COMPLETE(ctx, frame, s, ray, hit, bits) \
-    RT_SPREAD_SURFACE(frame, s, ray, (hit)->t * rt_vfloat(rt_pixel_angle(frame))) \
+    RT_SPREAD_SURFACE(frame, s, ray, RT_WAY_OF(ray, (hit)->t) * rt_vfloat(rt_pixel_angle(frame))) \
     RT_MAP_NORMALS(ctx, s, bits)
 
 #endif

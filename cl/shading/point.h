@@ -14,6 +14,9 @@ typedef struct rt_point {
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;      /* rt_surface.area */
 #endif
+#ifdef RT_CARRIES_CONES
+    vfloat travelled; /* rt_rays.travelled of the rays that start here */
+#endif
     vfloat outward;   /* rays that stay on this side start at: at + outward geometric */
     vfloat inward;    /* rays that go through the surface start at: at + inward geometric */
 } rt_point;
@@ -28,6 +31,9 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
 #endif
     p.incoming = rt_vec_of(ray->dx, ray->dy, ray->dz);
     p.at = s->at;
+#ifdef RT_CARRIES_CONES
+    p.travelled = ray->travelled + rt_dot(rt_sub(s->at, rt_vec_of(ray->ox, ray->oy, ray->oz)), p.incoming);
+#endif
     p.leaving = RT_MASK(rt_dot(s->geometric, p.incoming) > zero);
     const vfloat side = rt_select(p.leaving, -one, one);
     p.geometric = rt_scale(side, s->geometric);

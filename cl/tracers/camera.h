@@ -111,6 +111,9 @@ RT_INLINE void rt_camera_rays_through(const constant rt_frame *frame, vfloat px,
     r->dy = dy * scale;
     r->dz = dz * scale;
     r->t_min = rt_vfloat(0.0f);
+#ifdef RT_CARRIES_CONES
+    r->travelled = rt_vfloat(0.0f);
+#endif
 }
 
 /* Computes the camera rays through pixels (x, y) of the film. A sample's rays go through the same point of every pixel, which

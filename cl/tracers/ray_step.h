@@ -46,6 +46,9 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
         const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(mirrored, bounced, bent);
         ray->ox = from.x, ray->oy = from.y, ray->oz = from.z;
         ray->dx = along.x, ray->dy = along.y, ray->dz = along.z;
+#ifdef RT_CARRIES_CONES
+        ray->travelled = point.travelled;
+#endif
         passed = rt_choose(mirrored, rt_scale(split.mirrored, *weight), through);
         rt_rays shadow;
         rt_vec sent;

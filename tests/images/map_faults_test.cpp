@@ -44,6 +44,7 @@ const PlantedFault kFaults[] = {
     {"SmallerPicturesAreNotShown", "shading/textures.h", "if (at[l] == 0) continue;", "continue;", "SmallerPictures.AreWhat*"},
     {"SmallerPicturesAreBiased", "shading/maps.h", "spread * spread * rt_vfloat(size)",
      "spread * spread * rt_vfloat(4.0f * size)", "SmallerPictures.HaveTexels*"},
+    {"ConesBeginAnewAtMirrors", "shading/maps.h", "((ray)->travelled + (t))", "(t)", "SmallerPictures.FollowM*"},
     {"SpreadIgnoresTheInstance", "shading/surface.h", "area * sqrt(grown) / rt_vfloat(fabs(determinant))", "area",
      "SmallerPictures.AreNotShown*"},
     {"RoughnessIsInRed", "shading/matter_maps.h",

@@ -235,10 +235,8 @@ TEST(SmallerPictures, AreWhatDistantSurfacesShow) {
         << "without them the picture depends on which texels rays hit";
 }
 
-// 64 x 64 texels in 32 x 32 pixels are the first of the smaller pictures, in 16 x 16 the second. Here each has a colour of its
-// own.
-TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
-    Scene scene = white_square();
+// The only texture: 64 x 64 red texels, whose smaller pictures are green, blue and black.
+void put_colored_levels(Scene& scene) {
     Texels texels;
     for (const auto& [side, color] :
          {std::pair(64, kRed), {32, kGreen}, {16, kBlue}, {8, kBlack}, {4, kBlack}, {2, kBlack}, {1, kBlack}})
@@ -246,6 +244,12 @@ TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
     scene.texels.own() = texels;
     scene.textures = {{0, 64, 64, 0, 0, 6, 0}};
     scene.materials[0].values.texture = 0;
+}
+
+// 64 x 64 texels in 32 x 32 pixels are the first of the smaller pictures, in 16 x 16 the second.
+TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
+    Scene scene = white_square();
+    put_colored_levels(scene);
     const auto seen = [&](int side, const char* mips) {
         return pixel(trace(scene, flat_view(), side, side, 1, {{"mips", mips}}).image, side / 2, side / 2);
     };
@@ -264,6 +268,29 @@ TEST(SmallerPictures, HaveTexelsAsWideAsPixels) {
     const auto of_paths = pixel(trace_paths(scene, flat_view(), 4, {{"strategy", "bsdf"}, {"size", "23x23"}}).mean, 11, 11);
     EXPECT_NEAR(of_paths[1], 0.5, 0.15);
     EXPECT_NEAR(of_paths[0], 1 - of_paths[1], 0.03);
+}
+
+// A camera next to a square looks at a plane half as far away as another square, which half mirrors the first one and half lets
+// the second one through. Both are as far away along the rays as in the test above. A cone that began anew at the plane would
+// be half as wide.
+TEST(SmallerPictures, FollowMirrorsAndGlass) {
+    Scene scene = white_square();
+    put_colored_levels(scene);
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].world_from_object = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5};
+    MaterialValues half = diffuse(1, 1, 1);
+    half.reflect = half.refract = 0.5f;
+    half.ior = 1;
+    scene.planes.push_back({{0, 0, -1}, -2.5f, add_material(scene, half)});
+    View view = flat_view();
+    view.background = {0, 0, 0};
+    view.camera.eye = {1, 1, 1e-3f};
+    view.camera.target = {1, 1, 5};
+    for (const auto& [tracer, lanes] : {std::pair("iterative", "8"), {"iterative", "1"}, {"wavefront", "1"}}) {
+        const auto seen =
+            trace(scene, view, 32, 32, 2, {{"tracer", tracer}, {"lanes", lanes}, {"mips", "nearest"}, {"packet", "4x4"}}).image;
+        expect_color(seen, 16, 16, {0, 1, 0}, 1e-3, tracer);
+    }
 }
 
 // Seen as large as it is, the picture itself is shown. An instance of the same size, at any scale of its mesh, shows the same.

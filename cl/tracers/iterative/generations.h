@@ -21,12 +21,14 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
         count = rt_append(next, capacity, count, mirror_bits, rt_along(p->outward, p->geometric, p->at), rt_mirror_direction(p),
                           rt_scale(split.mirrored, weight), pixel, &tally->dropped);
         RT_KEEP_AREA(next, first, count, p, mirror_bits)
+        RT_KEEP_CONE(next, first, count, p->travelled, mirror_bits)
     }
     if (refract_bits != 0u) {
         const uint first = count;
         count = rt_append(next, capacity, count, refract_bits, rt_along(p->inward, p->geometric, p->at), rt_refracted_direction(p, &split),
                           rt_refracted_weight(&split, m, weight), pixel, &tally->dropped);
         RT_KEEP_AREA(next, first, count, p, refract_bits)
+        RT_KEEP_CONE(next, first, count, p->travelled, refract_bits)
     }
     return count;
 }

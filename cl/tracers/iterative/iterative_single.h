@@ -8,9 +8,12 @@
 #ifndef RT_ITERATIVE_SINGLE_H
 #define RT_ITERATIVE_SINGLE_H
 
-RT_INLINE uint rt_put_ray(rt_queue *next, uint count, rt_vec origin, rt_vec direction, rt_vec weight, rt_tally *tally)
+/* Both rays of a surface have come as far as `next_ray`. */
+RT_INLINE uint rt_put_ray(rt_queue *next, uint count, const rt_rays *next_ray, rt_vec origin, rt_vec direction, rt_vec weight, rt_tally *tally)
 {
-    return rt_append(next, RT_RAY_SLOTS, count, 1u, origin, direction, weight, 0, &tally->dropped);
+    const uint more = rt_append(next, RT_RAY_SLOTS, count, 1u, origin, direction, weight, 0, &tally->dropped);
+    RT_KEEP_CONE(next, count, more, next_ray->travelled, 1u)
+    return more;
 }
 
 RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float4 *sums,
@@ -48,8 +51,8 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
         if (stays)
             next_count = 1u;
         else if (next_lanes)
-            next_count = rt_put_ray(next, next_count, rt_vec_of(ray.ox, ray.oy, ray.oz), rt_vec_of(ray.dx, ray.dy, ray.dz), weight, tally);
-        if (splits != 0u) next_count = rt_put_ray(next, next_count, deferred.origin, deferred.direction, deferred.weight, tally);
+            next_count = rt_put_ray(next, next_count, &ray, rt_vec_of(ray.ox, ray.oy, ray.oz), rt_vec_of(ray.dx, ray.dy, ray.dz), weight, tally);
+        if (splits != 0u) next_count = rt_put_ray(next, next_count, &ray, deferred.origin, deferred.direction, deferred.weight, tally);
         if (++at == count) {
             tally->secondary += next_count;
             count = next_count;

@@ -10,6 +10,9 @@ typedef struct rt_queue {
 #ifdef RT_SPLITS_INCOHERENT
     float area[RT_QUEUE_ROOM];     /* rt_surface.area of the surface that the ray starts on */
 #endif
+#ifdef RT_CARRIES_CONES
+    float travelled[RT_QUEUE_ROOM];
+#endif
     RT_RECORD(int record[RT_QUEUE_ROOM])
 } rt_queue;
 
@@ -66,6 +69,13 @@ RT_INLINE uint rt_append(rt_queue *queue, uint capacity, uint count, uint bits, 
 #define RT_USE_AREA(generation, queue, base, ray, active)
 #endif
 
+#ifdef RT_CARRIES_CONES
+#define RT_KEEP_CONE(queue, first, count, way, bits) \
+    if ((count) != (first)) rt_store(rt_compress(way, bits), (queue)->travelled + (first));
+#else
+#define RT_KEEP_CONE(queue, first, count, way, bits)
+#endif
+
 /* Loads RT_LANES rays from `base` on. */
 RT_INLINE void rt_take(const rt_queue *queue, uint base, rt_rays *ray, rt_vec *weight, vint *pixel)
 {
@@ -78,6 +88,9 @@ RT_INLINE void rt_take(const rt_queue *queue, uint base, rt_rays *ray, rt_vec *w
     ray->t_min = rt_vfloat(0.0f);
     *weight = rt_vec_of(rt_load(queue->field[6] + base), rt_load(queue->field[7] + base), rt_load(queue->field[8] + base));
     *pixel = rt_load(queue->pixel + base);
+#ifdef RT_CARRIES_CONES
+    ray->travelled = rt_load(queue->travelled + base);
+#endif
 }
 
 #endif

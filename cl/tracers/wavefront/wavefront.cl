@@ -125,7 +125,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 tally.dropped += wanted - taken;
             }
             if (splits != 0u)
-                rt_store_wavefront_rays(next, room, first + before, splits, deferred.origin, deferred.direction, deferred.weight, pixel, generation);
+                rt_store_wavefront_rays(next, room, first + before, splits, &ray, deferred.origin, deferred.direction, deferred.weight, pixel, generation);
         }
 
         if (pixel_bits != 0u) {

@@ -40,6 +40,8 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Sett
     if (features.maps) out.define_int("RT_HAS_MAPS", 1);
     const std::string mips = settings.mips != "auto" ? settings.mips : row.has(kPicksLights) ? "smooth" : "off";
     if (features.mips && mips != "off") out.define_int("RT_HAS_MIPS", 1);
+    // `path` has cones of its own.
+    if (features.mips && mips != "off" && !row.has(kPicksLights)) out.define_int("RT_CARRIES_CONES", 1);
     if (features.mips && mips == "smooth") out.define_int("RT_MIX_MIPS", 1);
     if (features.tangents) out.define_int("RT_HAS_TANGENTS", 1);
     if (features.uvs2) out.define_int("RT_HAS_UVS2", 1);
