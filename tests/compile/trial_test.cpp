@@ -88,7 +88,7 @@ TEST_F(Trials, AHarmlessEditIsTriedOnce) {
 TEST_F(Trials, ALoopWithoutEndIsStopped) {
     edit(linear_, loop_, "for (uint i = 0; i < count; i += 0u) {");
     expect_refused(render("linear"), {"kernels were tried in a worker first, and did not come to an end within",
-                                      scratch_.path(linear_) + ", changed from line 6 on", "clarity check linear"});
+                                      scratch_.path(linear_) + ", changed from line 7 on", "clarity check linear"});
     EXPECT_EQ(kept(), 0u);
     edit(linear_, "for (uint i = 0; i < count; i += 0u) {", loop_);
     EXPECT_EQ(render("linear").exit_code, 0);
@@ -97,7 +97,7 @@ TEST_F(Trials, ALoopWithoutEndIsStopped) {
 TEST_F(Trials, AReadBehindASlotIsFound) {
     edit(linear_, "RT_LEAF(ctx, first + i, ray, hit)", "RT_LEAF(ctx, first + i + count, ray, hit)");
     expect_refused(render("linear"), {"kernels were tried in a worker first, and crashed (segmentation fault", "the leaves",
-                                      "changed from line 7 on"});
+                                      "changed from line 8 on"});
     // Untried, the small scene hides it: the buffer has room behind its end.
     EXPECT_NE(render("linear", "off").exit_code, 5);
 }
