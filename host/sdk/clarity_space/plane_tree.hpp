@@ -6,11 +6,20 @@
 #pragma once
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 #include <vector>
 
 #include "clarity_space/tree.hpp"
 
 namespace clarity::space {
+
+// Parameters of their heuristic.
+inline constexpr rt_param kIntersectionCost =
+    rt::float_param("intersection_cost", "Intersection cost", "cost of a primitive, in units of the heuristic", 0.01, 100, 1.5);
+inline constexpr rt_param kEmptyBonus = rt::float_param(
+    "empty_bonus", "Empty bonus", "share of its cost that a plane saves which cuts off empty space", 0, 0.9, 0.2);
+inline constexpr rt_param kMaxDepth = rt::int_param(
+    "max_depth", "Max depth", "levels below the root, at most; 8 + 1.3 log2 of the primitives bounds them, too", 1, 64, 64);
 
 // The root is the first node, and children stand behind their parents. The list has numbers of primitives within the group.
 template <class Node, rt_u32 Bits>
@@ -80,6 +89,18 @@ Box finite_box(const rt_prim& p) {
     return box;
 }
 
+// The box around all of `count` boxes, box_at(0) to box_at(count - 1); of none: the origin.
+template <class Box, class BoxAt>
+Box box_around(rt_u32 count, const BoxAt& box_at) {
+    Box all;
+    for (int k = 0; k < 3; ++k) all.lo[k] = count > 0 ? FLT_MAX : 0, all.hi[k] = count > 0 ? -FLT_MAX : 0;
+    for (rt_u32 i = 0; i < count; ++i) {
+        const Box& box = box_at(i);
+        for (int k = 0; k < 3; ++k) all.lo[k] = std::min(all.lo[k], box.lo[k]), all.hi[k] = std::max(all.hi[k], box.hi[k]);
+    }
+    return all;
+}
+
 // Writes the trees of all groups into the slots 0 (heads), 1 (nodes) and 2 (list), and their statistics. boxes: of each group.
 // Returns the greatest depth.
 template <class Head, class Tree, class Box>
@@ -110,6 +131,21 @@ rt_u32 put_trees(const rt_host* host, const rt_build_input& in, const rt_build_o
     rt::stat(out, "references", double(all.list.size()));
     rt::stat(out, "depth", all.depth);
     return all.depth;
+}
+
+// Builds and writes the tree of each group. build(group, most_depth, box) returns it, and the bounds of its primitives in
+// `box`. max_depth: as the user asks. Returns the size of the traversal's stack.
+template <class Head, class Tree, class Box, class Build>
+rt_u32 build_groups(const rt_host* host, const rt_build_input& in, const rt_build_output* out, double max_depth,
+                    const Build& build) {
+    primitive_count(host, in);  // fails if there are too many
+    std::vector<Tree> trees(in.group_count);
+    std::vector<Box> boxes(in.group_count);
+    rt::parallel_for(host, in.group_count, [&](rt_u32 g) {
+        const double bound = 8 + 1.3 * std::log2(std::max(in.groups[g].count, 1u));
+        trees[g] = build(in.groups[g], rt_u32(std::min(max_depth, bound)), boxes[g]);
+    });
+    return (put_trees<Head>(host, in, out, trees, boxes) + 8) / 8 * 8;
 }
 
 }  // namespace clarity::space

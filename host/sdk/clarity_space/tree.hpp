@@ -1,6 +1,7 @@
 // tree.hpp -- what builders that part space write alike. Header only, part of the SDK.
 #pragma once
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "rt_plugin.hpp"
@@ -32,32 +33,47 @@ inline void put_leaves(const rt_host* host, const rt_build_input& in, const rt_b
     }
 }
 
-// A node of a tree, and the cell that is its part of space. Cell has lo[3] and hi[3].
+// A node of a tree, and the cell that is its part of space.
 template <class Cell>
 struct Visit {
     rt_u32 node, level;
     Cell cell;
 };
 
-// Gives the sink the cells of a level, or of the leaves. box: of the root, its lower corner first. is_leaf(node) tells leaves
-// from others; is_shown(visit) whether there is something in a cell; part(visit, stack) appends a node's children.
-template <class Cell, class IsLeaf, class IsShown, class Part>
-void show_level(rt_u32 root, const float* box, rt_u32 level, const rt_volume_sink* sink, const IsLeaf& is_leaf,
-                const IsShown& is_shown, const Part& part) {
-    Cell all;
-    std::copy_n(box, 3, all.lo);
-    std::copy_n(box + 3, 3, all.hi);
+// A box, which has lo[3] and hi[3], from six numbers: its lower corner first.
+template <class Box>
+Box box_of(const float* numbers) {
+    Box box;
+    std::copy_n(numbers, 3, box.lo);
+    std::copy_n(numbers + 3, 3, box.hi);
+    return box;
+}
+
+// Gives the sink the boxes around the cells of a level, or of the leaves. all: the cell of the root. is_leaf(node) tells leaves
+// from others; is_shown(visit) whether there is something in a cell; part(visit, stack) appends a node's children;
+// box_of_cell(cell) returns its box.
+template <class Cell, class IsLeaf, class IsShown, class Part, class BoxOfCell>
+void show_level(rt_u32 root, const Cell& all, rt_u32 level, const rt_volume_sink* sink, const IsLeaf& is_leaf,
+                const IsShown& is_shown, const Part& part, const BoxOfCell& box_of_cell) {
     std::vector<Visit<Cell>> stack{{root, 0, all}};
     while (!stack.empty()) {
-        const Visit<Cell> at = stack.back();
+        const Visit<Cell> at = std::move(stack.back());
         stack.pop_back();
         const bool leaf = is_leaf(at.node);
         if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level) {
-            if (is_shown(at)) sink->box(sink->ctx, at.cell.lo, at.cell.hi);
+            if (!is_shown(at)) continue;
+            const auto& box = box_of_cell(at.cell);
+            sink->box(sink->ctx, box.lo, box.hi);
         } else if (!leaf) {
             part(at, stack);
         }
     }
+}
+// The same of cells that are boxes.
+template <class Cell, class IsLeaf, class IsShown, class Part>
+void show_level(rt_u32 root, const Cell& all, rt_u32 level, const rt_volume_sink* sink, const IsLeaf& is_leaf,
+                const IsShown& is_shown, const Part& part) {
+    show_level(root, all, level, sink, is_leaf, is_shown, part, [](const Cell& cell) -> const Cell& { return cell; });
 }
 
 }  // namespace clarity::space

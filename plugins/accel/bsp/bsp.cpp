@@ -5,15 +5,12 @@
 // 12 bytes a level. Oblique planes part what no axis parts: slanted strands, and neighbours in a slanted surface. So a ray
 // tests a third fewer primitives than in a kd-tree. A plane costs it four times the arithmetic, and a build takes ten times as
 // long, because the cells are polyhedra. It cannot be refitted.
-#include <algorithm>
-#include <cmath>
-
 #include "builder.hpp"
 
 namespace bsp {
 namespace {
 
-enum Param { kDirections, kObliqueBelow, kTraversalCost, kObliqueCost, kIntersectionCost, kEmptyBonus, kMaxDepth };
+enum Param { kDirections, kObliqueBelow, kTraversal, kOblique, kIntersection, kEmpty, kDepth };
 constexpr rt_param kParams[] = {
     rt::int_param("directions", "Directions",
                   "3 axes, 7 with the diagonals of a cube, 13 with those of its faces; 3 make a kd-tree", 3, BSP_DIRECTIONS,
@@ -22,31 +19,25 @@ constexpr rt_param kParams[] = {
                   1000000000, 3),
     rt::float_param("traversal_cost", "Traversal cost", "cost of a plane of an axis, in units of the heuristic", 0.01, 100, 1),
     rt::float_param("oblique_cost", "Oblique cost", "cost of another plane", 0.01, 100, 1),
-    rt::float_param("intersection_cost", "Intersection cost", "cost of a primitive, in units of the heuristic", 0.01, 100, 1.5),
-    rt::float_param("empty_bonus", "Empty bonus", "share of its cost that a plane saves which cuts off empty space", 0, 0.9,
-                    0.2),
-    rt::int_param("max_depth", "Max depth", "levels below the root, at most; 8 + 1.3 log2 of the primitives bounds them, too",
-                  1, 64, 64),
+    clarity::space::kIntersectionCost,
+    clarity::space::kEmptyBonus,
+    clarity::space::kMaxDepth,
 };
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    clarity::space::primitive_count(host, *in);  // fails if there are too many
-    std::vector<Tree> trees(in->group_count);
-    std::vector<Box> boxes(in->group_count);
-    rt::parallel_for(host, in->group_count, [&](rt_u32 g) {
-        const rt_group& group = in->groups[g];
-        const double bound = 8 + 1.3 * std::log2(std::max(group.count, 1u));
-        const Rules rules{in->params[kTraversalCost],
-                          in->params[kObliqueCost],
-                          in->params[kIntersectionCost],
-                          in->params[kEmptyBonus],
-                          rt_u32(in->params[kDirections]),
-                          rt_u32(in->params[kObliqueBelow]),
-                          rt_u32(std::min(in->params[kMaxDepth], bound))};
-        trees[g] = build_tree(host, rules, in->prims + group.first, group.count, in->geometry->triangles, boxes[g]);
-    });
-    const rt_u32 depth = clarity::space::put_trees<bsp_head>(host, *in, out, trees, boxes);
-    rt::define(out, "BSP_STACK", (depth + 8) / 8 * 8);
+    const double* const params = in->params;
+    const auto build_group = [&](const rt_group& group, rt_u32 max_depth, Box& box) {
+        const Rules rules{params[kTraversal],
+                          params[kOblique],
+                          params[kIntersection],
+                          params[kEmpty],
+                          rt_u32(params[kDirections]),
+                          rt_u32(params[kObliqueBelow]),
+                          max_depth};
+        return build_tree(host, rules, in->prims + group.first, group.count, in->geometry->triangles, box);
+    };
+    rt::define(out, "BSP_STACK",
+               clarity::space::build_groups<bsp_head, Tree, Box>(host, *in, out, params[kDepth], build_group));
     return RT_OK;
 }
 
@@ -55,29 +46,18 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const bsp_head& head = static_cast<const bsp_head*>(built->slots[0])[built->roots[group]];
     const auto* const nodes = static_cast<const bsp_node*>(built->slots[1]);
-    struct Visit {
-        rt_u32 node, level;
-        Cell cell;
-    };
-    Box box;
-    std::copy_n(head.box, 3, box.lo);
-    std::copy_n(head.box + 3, 3, box.hi);
-    std::vector<Visit> stack{{head.node, 0, Cell(box)}};
-    while (!stack.empty()) {
-        const Visit at = std::move(stack.back());
-        stack.pop_back();
+    const Box box = clarity::space::box_of<Box>(head.box);
+    using Visit = clarity::space::Visit<Cell>;
+    const auto is_leaf = [&](rt_u32 node) { return Tree::is_leaf(nodes[node]); };
+    const auto is_shown = [&](const Visit& at) { return !is_leaf(at.node) || nodes[at.node].code >> 4 != 0; };
+    const auto part = [&](const Visit& at, std::vector<Visit>& stack) {
         const bsp_node& node = nodes[at.node];
-        const bool leaf = Tree::is_leaf(node);
-        if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level) {
-            if (leaf && node.code >> 4 == 0) continue;
-            const Box shown = at.cell.empty() ? box : at.cell.box();
-            sink->box(sink->ctx, shown.lo, shown.hi);
-        } else if (!leaf) {
-            for (rt_u32 side = 0; side < 2; ++side)
-                stack.push_back({(node.code >> 4) + side, at.level + 1,
-                                 at.cell.empty() ? at.cell : at.cell.half(node.code & BSP_LEAF, node.at.split, int(side))});
-        }
-    }
+        for (rt_u32 side = 0; side < 2; ++side)
+            stack.push_back({(node.code >> 4) + side, at.level + 1,
+                             at.cell.empty() ? at.cell : at.cell.half(node.code & BSP_LEAF, node.at.split, int(side))});
+    };
+    clarity::space::show_level(head.node, Cell(box), level, sink, is_leaf, is_shown, part,
+                               [&](const Cell& cell) { return cell.empty() ? box : cell.box(); });
     return RT_OK;
 }
 

@@ -8,7 +8,7 @@ typedef struct bsp_head {
     rt_f32 box[6]; /* lo.xyz, hi.xyz */
     rt_u32 node, pad;
 } bsp_head;
-/* 8 B. Bits 0 to 3 of `code` are the direction of the plane: the points p with n . p = split, for the n of BSP_NORMAL. The others are
+/* 8 B. Bits 0 to 3 of `code` are the direction of the plane: the points p with n . p = split, for the n of BSP_COMPONENT. The others are
  * the index of the child below it, and the child above is the next node. Of a leaf they are 15, and the others are the number of its
  * primitives; then `first` is the place of their positions in bsp_list. */
 typedef struct bsp_node {
@@ -19,11 +19,6 @@ typedef struct bsp_node {
     rt_u32 code;
 } bsp_node;
 #define BSP_LEAF 15u
-/* An entry of the traversal's stack: a node, and the distances between which the ray is in it. 12 B. */
-typedef struct bsp_entry {
-    rt_u32 node;
-    rt_f32 from, to;
-} bsp_entry;
 /* The 13 axes of a cube's symmetry: its three axes, its four diagonals, and the six of its faces. Components are -1, 0 or 1, so n . p has no
  * product that rounds. Two bits for each direction k: the component plus 1. */
 #define BSP_DIRECTIONS 13u

@@ -1,7 +1,6 @@
 #include "builder.hpp"
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 
 namespace bsp {
@@ -187,12 +186,8 @@ Item item_of(const rt_prim& prim, rt_u32 number, const rt_packed_prim* triangles
 Tree build_tree(const rt_host* host, const Rules& rules, const rt_prim* prims, rt_u32 count, const rt_packed_prim* triangles,
                 Box& box) {
     std::vector<Item> items(count);
-    for (int k = 0; k < 3; ++k) box.lo[k] = count > 0 ? FLT_MAX : 0, box.hi[k] = count > 0 ? -FLT_MAX : 0;
-    for (rt_u32 i = 0; i < count; ++i) {
-        items[i] = item_of(prims[i], i, triangles);
-        const Box of = clarity::space::finite_box<Box>(prims[i]);
-        for (int k = 0; k < 3; ++k) box.lo[k] = std::min(box.lo[k], of.lo[k]), box.hi[k] = std::max(box.hi[k], of.hi[k]);
-    }
+    for (rt_u32 i = 0; i < count; ++i) items[i] = item_of(prims[i], i, triangles);
+    box = clarity::space::box_around<Box>(count, [&](rt_u32 i) { return clarity::space::finite_box<Box>(prims[i]); });
     Tree tree;
     tree.nodes.resize(1);
     Builder(host, rules).build(tree, 0, std::move(items), Cell(box), 0);

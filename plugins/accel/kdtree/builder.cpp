@@ -1,7 +1,6 @@
 #include "builder.hpp"
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 
 namespace kdtree {
@@ -171,13 +170,8 @@ class Builder {
 Tree build_tree(const rt_host* host, const Rules& rules, const rt_prim* prims, rt_u32 count, const rt_packed_prim* triangles,
                 Box& box) {
     std::vector<Item> items(count);
-    for (int k = 0; k < 3; ++k) box.lo[k] = count > 0 ? FLT_MAX : 0, box.hi[k] = count > 0 ? -FLT_MAX : 0;
-    for (rt_u32 i = 0; i < count; ++i) {
-        items[i] = {clarity::space::finite_box<Box>(prims[i]), i};
-        for (int k = 0; k < 3; ++k) {
-            box.lo[k] = std::min(box.lo[k], items[i].box.lo[k]), box.hi[k] = std::max(box.hi[k], items[i].box.hi[k]);
-        }
-    }
+    for (rt_u32 i = 0; i < count; ++i) items[i] = {clarity::space::finite_box<Box>(prims[i]), i};
+    box = clarity::space::box_around<Box>(count, [&](rt_u32 i) -> const Box& { return items[i].box; });
     Tree tree;
     tree.nodes.resize(1);
     Builder(host, rules, prims, triangles).build(tree, 0, std::move(items), box, 0);

@@ -1,21 +1,22 @@
 /* kdtree.cl -- one ray through a kd-tree, nearest cells first (Havran 2000, "Heuristic Ray Shooting Algorithms", TA_rec_B).
  *
- * `from` and `to` are the distances between which the ray is in the node. It crosses the plane between `earliest` and `latest`, so
- * it visits both children unless that is surely behind or beyond. The stack has the farther child with its span, 12 bytes a level. */
+ * `now` is the node, with the distances between which the ray is in it. It crosses the plane between `earliest` and `latest`, so
+ * it visits both children unless that is surely behind or beyond. The stack has the farther child. */
 #include "cl/lanes/mailbox.h"
+#include "cl/lanes/span_stack.h"
 
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_single_hit *hit)
 {
-    kdtree_entry stack[KDTREE_STACK];
+    rt_span stack[KDTREE_STACK], now;
     const global kdtree_head *head = RT_NODE(ray, ctx->kdtree_heads + root);
-    uint top = 0u, at = head->node;
-    float from, to;
+    uint top = 0u;
+    now.node = head->node;
     RT_COUNT_VISIT(hit, 1u); /* the tree's box */
-    if (!rt_enter_exit(head->box, ray, hit, &from, &to)) return;
+    if (!rt_enter_exit(head->box, ray, hit, &now.from, &now.to)) return;
     rt_mailbox tested;
     rt_clear_mailbox(&tested);
     for (;;) {
-        const kdtree_node node = *RT_NODE(ray, ctx->kdtree_nodes + at);
+        const kdtree_node node = *RT_NODE(ray, ctx->kdtree_nodes + now.node);
         const uint axis = node.code & 3u;
         RT_COUNT_VISIT(hit, 1u);
         if (axis != KDTREE_LEAF) {
@@ -25,15 +26,15 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
             const float far = axis & 2u ? ray->far_z : axis & 1u ? ray->far_y : ray->far_x;
             const float earliest = fma(inverse, node.at.split, near), latest = fma(inverse, node.at.split, far) * RT_WIDE;
             const uint above = inverse < 0.0f ? 1u : 0u, nearer = (node.code >> 2) + above, farther = (node.code >> 2) + 1u - above;
-            at = nearer;
-            if (latest < from) {
-                at = farther;
-            } else if (!(earliest > to)) {
+            now.node = nearer;
+            if (latest < now.from) {
+                now.node = farther;
+            } else if (!(earliest > now.to)) {
                 stack[top].node = farther;
-                stack[top].from = rt_max(earliest, from);
-                stack[top].to = to;
+                stack[top].from = rt_max(earliest, now.from);
+                stack[top].to = now.to;
                 if (RT_STACK_OK(top + 1u, KDTREE_STACK, hit)) ++top;
-                to = rt_min(latest, to);
+                now.to = rt_min(latest, now.to);
             }
             continue;
         }
@@ -41,12 +42,6 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
             const uint place = ctx->kdtree_list[i];
             if (!rt_was_tested(&tested, place)) RT_LEAF(ctx, place, ray, hit);
         }
-        do {
-            if (top == 0u) return;
-            --top;
-        } while (stack[top].from > hit->t);
-        at = stack[top].node;
-        from = stack[top].from;
-        to = rt_min(stack[top].to, hit->t);
+        if (!rt_pop_span(stack, &top, hit->t, &now)) return;
     }
 }

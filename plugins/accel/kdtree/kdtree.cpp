@@ -5,38 +5,27 @@
 // so cells do not overlap: a ray stops at its first hit, and tests fewer primitives than in a tree of boxes. It visits more
 // nodes for that. The structure suits static scenes of unlike primitives, such as slanted or long ones. It is slow to build,
 // and cannot be refitted.
-#include <algorithm>
-#include <cmath>
-
 #include "builder.hpp"
 
 namespace kdtree {
 namespace {
 
-enum Param { kTraversalCost, kIntersectionCost, kEmptyBonus, kMaxDepth };
+enum Param { kTraversal, kIntersection, kEmpty, kDepth };
 constexpr rt_param kParams[] = {
     rt::float_param("traversal_cost", "Traversal cost", "cost of a node, in units of the heuristic", 0.01, 100, 1),
-    rt::float_param("intersection_cost", "Intersection cost", "cost of a primitive, in units of the heuristic", 0.01, 100, 1.5),
-    rt::float_param("empty_bonus", "Empty bonus", "share of its cost that a plane saves which cuts off empty space", 0, 0.9,
-                    0.2),
-    rt::int_param("max_depth", "Max depth", "levels below the root, at most; 8 + 1.3 log2 of the primitives bounds them, too",
-                  1, 64, 64),
+    clarity::space::kIntersectionCost,
+    clarity::space::kEmptyBonus,
+    clarity::space::kMaxDepth,
 };
 
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
-    clarity::space::primitive_count(host, *in);  // fails if there are too many
-    std::vector<Tree> trees(in->group_count);
-    std::vector<Box> boxes(in->group_count);
-    rt::parallel_for(host, in->group_count, [&](rt_u32 g) {
-        const rt_group& group = in->groups[g];
-        const double bound = 8 + 1.3 * std::log2(std::max(group.count, 1u));
-        const Rules rules{in->params[kTraversalCost], in->params[kIntersectionCost], in->params[kEmptyBonus],
-                          rt_u32(std::min(in->params[kMaxDepth], bound))};
-        trees[g] = build_tree(host, rules, in->prims + group.first, group.count, in->geometry->triangles, boxes[g]);
-    });
-
-    const rt_u32 depth = clarity::space::put_trees<kdtree_head>(host, *in, out, trees, boxes);
-    rt::define(out, "KDTREE_STACK", (depth + 8) / 8 * 8);
+    const double* const params = in->params;
+    const auto build_group = [&](const rt_group& group, rt_u32 max_depth, Box& box) {
+        const Rules rules{params[kTraversal], params[kIntersection], params[kEmpty], max_depth};
+        return build_tree(host, rules, in->prims + group.first, group.count, in->geometry->triangles, box);
+    };
+    rt::define(out, "KDTREE_STACK",
+               clarity::space::build_groups<kdtree_head, Tree, Box>(host, *in, out, params[kDepth], build_group));
     return RT_OK;
 }
 
@@ -55,7 +44,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
         stack.push_back(below);
         stack.push_back(above);
     };
-    clarity::space::show_level<Box>(head.node, head.box, level, sink, is_leaf, is_shown, part);
+    clarity::space::show_level(head.node, clarity::space::box_of<Box>(head.box), level, sink, is_leaf, is_shown, part);
     return RT_OK;
 }
 

@@ -17,9 +17,4 @@ typedef struct kdtree_node {
     rt_u32 code;
 } kdtree_node;
 #define KDTREE_LEAF 3u
-/* An entry of the traversal's stack: a node, and the distances between which the ray is in it. 12 B. */
-typedef struct kdtree_entry {
-    rt_u32 node;
-    rt_f32 from, to;
-} kdtree_entry;
 #endif

@@ -187,7 +187,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
         const octree_node& node = nodes[at.node];
         for (rt_u32 i = 0; i < 8; ++i) stack.push_back({node.code + i, at.level + 1, at.cell.child(i, node.at.center)});
     };
-    clarity::space::show_level<Cell>(head.node, head.box, level, sink, is_leaf, is_shown, part);
+    clarity::space::show_level(head.node, clarity::space::box_of<Cell>(head.box), level, sink, is_leaf, is_shown, part);
     return RT_OK;
 }
 

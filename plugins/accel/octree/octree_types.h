@@ -17,9 +17,4 @@ typedef struct octree_node {
     rt_u32 code;
 } octree_node;
 #define OCTREE_LEAF 0x80000000u
-/* An entry of the traversal's stack: a node, and the distances between which the ray is in it. 12 B. */
-typedef struct octree_entry {
-    rt_u32 node;
-    rt_f32 from, to;
-} octree_entry;
 #endif
