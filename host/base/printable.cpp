@@ -65,6 +65,23 @@ std::string printable_line(std::string_view text) {
     return visible(text, "");
 }
 
+std::string markup_line(std::string_view text) {
+    std::string out;
+    for (const char c : printable_line(text)) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
+    }
+    return out;
+}
+
 void print_text(const char* format, ...) {
     va_list arguments, again;
     va_start(arguments, format);

@@ -10,6 +10,8 @@ namespace clarity {
 std::string printable(std::string_view text);
 // The same for text that must stay on one line: line feeds and tabs become \xNN too.
 std::string printable_line(std::string_view text);
+// A printable line for XML and HTML, as text or as the value of an attribute.
+std::string markup_line(std::string_view text);
 
 // Like printf, but makes the text printable. All text for people goes to stdout through this function; JSON does not need it.
 [[gnu::format(printf, 1, 2)]] void print_text(const char* format, ...);

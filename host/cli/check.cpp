@@ -1,8 +1,4 @@
 // clarity check: says whether plugins are right, one line a check.
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -15,6 +11,7 @@
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/run_tool.hpp"
 #include "check/causes.hpp"
 #include "check/check.hpp"
 #include "cli/commands.hpp"
@@ -31,20 +28,10 @@ using check::CheckResult;
 using check::Outcome;
 
 // Runs a program that prints for the user. Throws Error(failed) if it fails.
-void run_tool(const std::vector<std::string>& words) {
-    std::vector<char*> argv;
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    pid_t pid = -1;
-    int status = 0;
+void run_or_throw(const std::vector<std::string>& words) {
     std::string text;
     for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-    if (const int error = posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ))
-        throw Error(Exit::failed, "`" + text + "` cannot be run: " + std::strerror(error));
-    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw Error(Exit::failed, "`" + text + "` failed; its messages are above");
+    if (!run_tool(words, text)) throw Error(Exit::failed, "`" + text + "` failed; its messages are above");
 }
 
 // Builds the plugins of a folder of source, in a folder `build` of it, as its author would.
@@ -55,9 +42,9 @@ std::vector<PluginRecord> build_folder(const std::string& folder) {
             Exit::usage,
             folder + ": is a folder without CMakeLists.txt; name a library, or a folder that `clarity new-plugin` made");
     const fs::path build = fs::path(folder) / "build", prefix = program_file().parent_path().parent_path();
-    run_tool(
+    run_or_throw(
         {"cmake", "-S", folder, "-B", build.string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_BUILD_TYPE=Release"});
-    run_tool({"cmake", "--build", build.string()});
+    run_or_throw({"cmake", "--build", build.string()});
     std::vector<PluginRecord> records;
     for (const auto& entry : fs::recursive_directory_iterator(build)) {
         if (entry.path().extension() != ".so") continue;
@@ -287,43 +274,27 @@ class Report {
     std::string cut_;
 };
 
-std::string xml(const std::string& text) {
-    std::string out;
-    for (const char c : printable_line(text)) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
-
 // An element <testsuite> of JUnit's format, as servers of continuous integration read it.
 std::string Report::junit() const {
     double seconds = 0;
     for (const CheckResult& result : results_) seconds += result.seconds;
-    std::string text = "  <testsuite name=\"" + xml(record_.plugin->id) + "\" tests=\"" + std::to_string(results_.size()) +
-                       "\" failures=\"" + std::to_string(count(Outcome::Kind::failed)) + "\" skipped=\"" +
-                       std::to_string(count(Outcome::Kind::skipped)) + "\" time=\"" + std::to_string(seconds) + "\">\n";
+    std::string text = "  <testsuite name=\"" + markup_line(record_.plugin->id) + "\" tests=\"" +
+                       std::to_string(results_.size()) + "\" failures=\"" + std::to_string(count(Outcome::Kind::failed)) +
+                       "\" skipped=\"" + std::to_string(count(Outcome::Kind::skipped)) + "\" time=\"" +
+                       std::to_string(seconds) + "\">\n";
     for (const CheckResult& result : results_) {
-        text += "    <testcase classname=\"" + xml(record_.plugin->id) + "\" name=\"" + xml(result.name) + "\" time=\"" +
-                std::to_string(result.seconds) + "\">";
-        const std::string found = xml(result.tried + ": " + result.outcome.found);
+        text += "    <testcase classname=\"" + markup_line(record_.plugin->id) + "\" name=\"" + markup_line(result.name) +
+                "\" time=\"" + std::to_string(result.seconds) + "\">";
+        const std::string found = markup_line(result.tried + ": " + result.outcome.found);
         if (result.outcome.kind == Outcome::Kind::failed)
-            text += "<failure message=\"" + found + "\">" + xml("repeat: " + repeat_text(result)) + "</failure>";
+            text += "<failure message=\"" + found + "\">" + markup_line("repeat: " + repeat_text(result)) + "</failure>";
         else if (result.outcome.kind == Outcome::Kind::skipped)
             text += "<skipped message=\"" + found + "\"/>";
         else
             text += "<system-out>" + found + "</system-out>";
         text += "</testcase>\n";
     }
-    return text + "    <system-out>" + xml(verdict()) + "</system-out>\n  </testsuite>\n";
+    return text + "    <system-out>" + markup_line(verdict()) + "</system-out>\n  </testsuite>\n";
 }
 
 // What --list says of one library.

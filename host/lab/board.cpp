@@ -28,13 +28,6 @@ tr.none td { color: #767676 }
 </style>
 )";
 
-std::string in_html(const std::string& text) {
-    std::string out;
-    for (const char c : printable_line(text))
-        out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
-    return out;
-}
-
 std::string cell(const char* format, double value) {
     char text[40];
     std::snprintf(text, sizeof text, format, value);
@@ -69,14 +62,14 @@ std::vector<BoardRow> read_board(const std::string& folder) {
 }
 
 std::string board_html(const std::string& title, const std::vector<BoardRow>& rows) {
-    std::string text =
-        kHead + ("<title>" + in_html(title)) + "</title></head><body>\n<h1>" + in_html(title) +
-        "</h1>\n<p>Work is what a ray costs, nodes and tests, by that of the reference solution: less is better. Who is "
-        "within 2 % of the best of a rank shares it.</p>\n<table><tr><th>rank</th><th>submission</th><th>work</th>"
-        "<th>checks</th><th>counts</th><th>speed</th><th>total</th></tr>\n";
+    std::string text = kHead + ("<title>" + markup_line(title)) + "</title></head><body>\n<h1>" + markup_line(title) +
+                       "</h1>\n<p>Work is what a ray costs, nodes and tests, by that of the reference solution: less is "
+                       "better. Submissions within "
+                       "2 % of the best of a rank share it.</p>\n<table><tr><th>rank</th><th>submission</th><th>work</th>"
+                       "<th>checks</th><th>counts</th><th>speed</th><th>total</th></tr>\n";
     for (const BoardRow& row : rows)
         text += (row.rank > 0 ? "<tr>" + cell("%.0f", row.rank) : "<tr class=\"none\"><td>–</td>") + "<td>" +
-                in_html(row.name) + "</td>" + (row.work > 0 ? cell("%.2f", row.work) : "<td>–</td>") +
+                markup_line(row.name) + "</td>" + (row.work > 0 ? cell("%.2f", row.work) : "<td>–</td>") +
                 cell("%.1f", row.checks) + cell("%.1f", row.counts) + cell("%.1f", row.speed) + cell("%.1f", row.total) +
                 "</tr>\n";
     return text + "</table></body></html>\n";

@@ -1,10 +1,8 @@
 #include "lab/build.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +16,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/printable.hpp"
+#include "base/run_tool.hpp"
 #include "worker/child.hpp"
 
 namespace clarity::lab {
@@ -49,20 +48,6 @@ std::vector<std::string> in_bubblewrap(const Tools& tools) {
     return words;
 }
 
-// Returns the status of waitpid().
-int run(const std::vector<std::string>& words) {
-    std::vector<char*> argv;
-    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
-    argv.push_back(nullptr);
-    pid_t pid = -1;
-    if (const int error = posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ))
-        throw Error(Exit::failed, "`" + words.front() + "` cannot be run: " + std::strerror(error));
-    int status = 0;
-    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
-    }
-    return status;
-}
-
 void run_tools(ParcelReader& arguments) {
     const auto tools = worker::arguments_in<Tools>(arguments);
     // Nothing of the grader's environment reaches the compilers.
@@ -88,9 +73,7 @@ void run_tools(ParcelReader& arguments) {
     for (const auto& command : tools.commands) {
         std::vector<std::string> words = tools.bubblewrap ? in_bubblewrap(tools) : std::vector<std::string>();
         words.insert(words.end(), command.begin(), command.end());
-        const int status = run(words);
-        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-            throw Error(Exit::failed, "`" + command[0] + " " + command[1] + "` failed");
+        if (!run_tool(words, words.front())) throw Error(Exit::failed, "`" + command[0] + " " + command[1] + "` failed");
     }
 }
 
