@@ -27,6 +27,18 @@ std::string library_of_accel(const PluginRegistry& plugins, const std::string& i
     throw Error(Exit::usage, "lab.json: `layout` is '" + id + "', and no such structure is installed (`clarity plugins`)");
 }
 
+Line line_of(const std::string& section, const std::string& name, double most, const std::string& tried) {
+    Line line;
+    line.section = section, line.name = name, line.most = most, line.tried = tried;
+    return line;
+}
+
+// Adds a file's name and bytes; of what is no regular file the name.
+void add_file(Digest& digest, const std::string& path) {
+    digest.add(fs::path(path).filename().string());
+    digest.add(fs::is_regular_file(fs::symlink_status(path)) ? digest_of_file(path) : "");
+}
+
 // Of a hidden case students learn which kind of thing went wrong, and nothing of the scene or of what their own code says about
 // it.
 std::string without_secrets(const std::string& found) {
@@ -62,6 +74,12 @@ double counts_points(const Lab& lab, double ratio) {
 Grader::Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Progress& progress)
     : lab_(std::move(lab)), options_(std::move(options)), sandbox_(find_sandbox()) {
     if (!lab_.layout.empty()) layout_ = library_of_accel(plugins, lab_.layout);
+    std::vector<std::string> own;
+    for (const auto& entry : fs::recursive_directory_iterator(lab_.folder)) own.push_back(entry.path().string());
+    std::sort(own.begin(), own.end());
+    Digest files;
+    for (const std::string& path : own) add_file(files, path);
+    lab_digest_ = files.hex();
     for (const Case& one : lab_.cases) cases_.push_back(make_case(one));
     if (lab_.reference().empty()) return;
     const std::string sources = options_.work + "/reference/sources";
@@ -85,15 +103,8 @@ ClosedBuilder Grader::closed(const std::string& library) const {
 
 std::string Grader::digest(const std::string& submission) const {
     Digest digest;
-    const auto add_file = [&](const std::string& path) {
-        digest.add(fs::path(path).filename().string());
-        digest.add(fs::is_regular_file(fs::symlink_status(path)) ? digest_of_file(path) : "");
-    };
-    for (const Lab::File& file : lab_.files) add_file(submission + "/" + file.name);
-    std::vector<std::string> own;
-    for (const auto& entry : fs::recursive_directory_iterator(lab_.folder)) own.push_back(entry.path().string());
-    std::sort(own.begin(), own.end());
-    for (const std::string& path : own) add_file(path);
+    for (const Lab::File& file : lab_.files) add_file(digest, submission + "/" + file.name);
+    digest.add(lab_digest_);
     digest.add_value(options_.times);
     return digest.hex();
 }
@@ -128,11 +139,9 @@ std::vector<double> Grader::reference_work(Progress& progress) {
 Marks Grader::grade(const std::string& submission, Progress& progress) {
     Marks marks;
     marks.sandbox = sandbox_text(sandbox_);
-    Line build{
-        "build", "build", 0, 0, "your files in the lab's folder, compiled", "", "cmake -S . -B build && cmake --build build",
-        false};
+    Line build = line_of("build", "build", 0, "your files in the lab's folder, compiled");
+    build.alone = "cmake -S . -B build && cmake --build build";
     std::string library;
-    bool hits_are_right = false;
     try {
         const std::string sources = options_.work + "/submission/sources";
         collect(lab_, submission, sources);
@@ -143,24 +152,23 @@ Marks Grader::grade(const std::string& submission, Progress& progress) {
     }
     marks.lines.push_back(build);
     if (library.empty()) return marks;
-    mark_checks(library, marks, hits_are_right, progress);
-    if (hits_are_right)
+    if (mark_checks(library, marks, progress)) {
         mark_cases(library, marks, progress);
-    else
-        marks.lines.push_back({"counts", "counts and speed", 0, lab_.points_counts + lab_.points_speed, "all cases",
-                               "not measured, because a check above failed", "", false});
+    } else {
+        marks.lines.push_back(line_of("counts", "counts and speed", lab_.points_counts + lab_.points_speed, "all cases"));
+        marks.lines.back().found = "not measured, because a check above failed";
+    }
     return marks;
 }
 
-void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_are_right, Progress& progress) {
+bool Grader::mark_checks(const std::string& library, Marks& marks, Progress& progress) {
     check::CheckOptions options;
     options.quick = true;
     options.lanes = {lab_.lanes};
     options.device = options_.device;
     for (const std::string& name : lab_.checks)
         if (is_wanted(name)) options.only.push_back(name);
-    hits_are_right = true;
-    if (options.only.empty()) return;
+    if (options.only.empty()) return true;
     PluginRecord record;
     std::vector<std::string> beside;
     if (lab_.layout.empty()) {
@@ -172,17 +180,13 @@ void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_ar
         beside.push_back(layout_);
     }
     record.path = library;
+    bool hits_are_right = true;
     std::vector<Line> lines;
     check::check_plugin_library(record, beside, options, progress, [&](const check::CheckResult& result) {
-        Line line{
-            "checks",
-            result.name,
-            0,
-            0,
-            result.tried,
-            result.outcome.found,
-            "clarity check ./build/" + lab_.id + ".so --quick --lanes " + std::to_string(lab_.lanes) + " --only " + result.name,
-            false};
+        Line line = line_of("checks", result.name, 0, result.tried);
+        line.found = result.outcome.found;
+        line.alone =
+            "clarity check ./build/" + lab_.id + ".so --quick --lanes " + std::to_string(lab_.lanes) + " --only " + result.name;
         if (result.outcome.kind == check::Outcome::Kind::passed) line.points = 1;
         if (line.points == 0 && result.name.rfind("hits", 0) == 0) hits_are_right = false;
         lines.push_back(line);
@@ -191,7 +195,8 @@ void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_ar
     const double most = lab_.points_checks / double(lab_.checks.size());
     for (const std::string& name : options.only)
         if (std::none_of(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; })) {
-            lines.push_back({"checks", name, 0, 0, "not run", "not run, because of a failure above", "", false});
+            lines.push_back(line_of("checks", name, 0, "not run"));
+            lines.back().found = "not run, because of a failure above";
             if (name.rfind("hits", 0) == 0) hits_are_right = false;
         }
     // Builds and hits are checked side by side, but students read one order.
@@ -204,6 +209,7 @@ void Grader::mark_checks(const std::string& library, Marks& marks, bool& hits_ar
         line.most = counts ? most : 0, line.points *= line.most;
         marks.lines.push_back(line);
     }
+    return hits_are_right;
 }
 
 void Grader::mark_cases(const std::string& library, Marks& marks, Progress& progress) {
@@ -221,7 +227,8 @@ void Grader::mark_cases(const std::string& library, Marks& marks, Progress& prog
     for (size_t i = 0; i < cases.size(); ++i) {
         const CaseFigures& figures = all[i];
         const double reference = figures.reference_work > 0 ? figures.reference_work : cases[i]->reference;
-        Line line{"counts", cases[i]->name, 0, counts / double(lab_.cases.size()), "", "", "", cases[i]->hidden};
+        Line line = line_of("counts", cases[i]->name, counts / double(lab_.cases.size()), "");
+        line.hidden = cases[i]->hidden;
         line.tried = cases[i]->hidden ? "a hidden scene"
                                       : cases[i]->scene + ", " + std::to_string(cases[i]->triangles) + " triangles, " +
                                             std::to_string(cases[i]->rays) + " rays";
@@ -244,8 +251,7 @@ void Grader::mark_cases(const std::string& library, Marks& marks, Progress& prog
     }
     if (all_known) marks.work = std::exp(work / double(cases.size()));
     if (!with_speed) return;
-    Line line{"speed", "speed", 0,    lab_.points_speed, "rays a second, in turns with the reference on this machine",
-              "",      "",      false};
+    Line line = line_of("speed", "speed", lab_.points_speed, "rays a second, in turns with the reference on this machine");
     bool steady = true;
     for (const CaseFigures& figures : all) {
         speed += figures.ms > 0 && figures.reference_ms > 0 ? std::log(figures.reference_ms / figures.ms) : 0;

@@ -51,7 +51,8 @@ class Grader {
     const Lab& lab() const { return lab_; }
 
  private:
-    void mark_checks(const std::string& library, Marks& marks, bool& hits_are_right, Progress& progress);
+    // Returns whether all hits that were checked are right.
+    bool mark_checks(const std::string& library, Marks& marks, Progress& progress);
     void mark_cases(const std::string& library, Marks& marks, Progress& progress);
     MeasureJob job_for(const std::string& library) const;
     ClosedBuilder closed(const std::string& library) const;
@@ -62,6 +63,7 @@ class Grader {
     const Sandbox sandbox_;
     std::string layout_, reference_;  // libraries
     std::vector<MadeCase> cases_;
+    std::string lab_digest_;  // of the lab's own files
 };
 
 // Points of counts. ratio: work by that of the reference; on a log scale from `none` to `full`.
