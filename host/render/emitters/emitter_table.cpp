@@ -82,7 +82,7 @@ double flux_of_sky(const rt_lighting& sky, const SkyTable& picture) {
 class Collector {
  public:
     Collector(const Scene& scene, const AccelData& accel, const MovedPrims* moved, const View& view, EmitterTable& out,
-              std::vector<double>& powers, std::vector<LightBound>& bounds)
+              std::vector<double>& powers, std::vector<LightBound>* bounds)
         : scene_(scene),
           accel_(accel),
           leaves_(moved ? moved->leaves.data() : static_cast<const rt_packed_prim*>(accel.leaves.data())),
@@ -126,9 +126,10 @@ class Collector {
         return found;
     }
 
-    // bound: of its place and normal. facing: the largest area that is seen of it from one side. share: of the material's
-    // emission that it has in the mean.
-    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, double facing, LightBound bound,
+    // bound_of(): of its place and normal, called for a light tree alone. facing: the largest area that is seen of it from one
+    // side. share: of the material's emission that it has in the mean.
+    template <class BoundOf>
+    void add(rt_u32 at, rt_u32 instance, rt_u32 prim, rt_u32 of_material, double area, double facing, const BoundOf& bound_of,
              double share = 1) {
         if (!(share > 0) || !(area > 0) || !std::isfinite(area)) return;
         if (out_.emitters.size() >= kMostPicked) {
@@ -146,10 +147,12 @@ class Collector {
         emitter.area = static_cast<float>(area);
         out_.emitters.push_back(emitter);
         const rt_material& m = material(of_material);
-        bound.intensity = share * facing * mean(m.emission);
-        bound.two_sided = !(m.flags & RT_MATERIAL_ONE_SIDED);
-        bound.emitter = number;
-        bounds_.push_back(bound);
+        if (bounds_) {
+            LightBound& bound = bounds_->emplace_back(bound_of());
+            bound.intensity = share * facing * mean(m.emission);
+            bound.two_sided = !(m.flags & RT_MATERIAL_ONE_SIDED);
+            bound.emitter = number;
+        }
         powers_.push_back(share * area * kPi * mean(m.emission) * (m.flags & RT_MATERIAL_ONE_SIDED ? 1 : 2));
     }
 
@@ -208,8 +211,9 @@ class Collector {
             const rt_u32 triangle = build.attribute_triangle[RT_REF_INDEX(leaf(f.at).ref)];
             const Vec normal = cross(f.corners[1] - f.corners[0], f.corners[2] - f.corners[0]);
             const double area = 0.5 * length(normal);
-            add(f.at, f.instance, f.prim, f.material, area, area,
-                bound_of_flat(f.corners.data(), 3, (f.mirrored ? -1.0 : 1.0) * normal),
+            add(
+                f.at, f.instance, f.prim, f.material, area, area,
+                [&] { return bound_of_flat(f.corners.data(), 3, (f.mirrored ? -1.0 : 1.0) * normal); },
                 map == RT_NONE ? 1 : mean_of_map(scene_, map, triangle));
         }
     }
@@ -219,7 +223,8 @@ class Collector {
         for (const rt_u32 at : leaves)
             if (at != RT_NONE) {
                 const double radius = leaf(at).b[0], disc = kPi * radius * radius;
-                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * disc, disc, bound_of_ball(to_vec(leaf(at).a), radius));
+                add(at, RT_NONE, leaf(at).prim, leaf(at).material, 4 * disc, disc,
+                    [&] { return bound_of_ball(to_vec(leaf(at).a), radius); });
             }
     }
 
@@ -236,7 +241,7 @@ class Collector {
             double area = 0;
             for (rt_u32 c = 2; c < polygon.count; ++c) area += 0.5 * length(cross(all[c - 1] - all[0], all[c] - all[0]));
             add(leaves[i], RT_NONE, leaf(leaves[i]).prim, leaf(leaves[i]).material, area, area,
-                bound_of_flat(all.data(), all.size(), to_vec(leaf(leaves[i]).a)));
+                [&] { return bound_of_flat(all.data(), all.size(), to_vec(leaf(leaves[i]).a)); });
         }
     }
 
@@ -247,7 +252,7 @@ class Collector {
     const View& view_;
     EmitterTable& out_;
     std::vector<double>& powers_;
-    std::vector<LightBound>& bounds_;
+    std::vector<LightBound>* const bounds_;  // nullptr: there is no light tree
     // So that light is drawn from it, and from all of it alike.
     std::vector<bool> emits_, emits_evenly_;
 };
@@ -278,7 +283,7 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         emitter.at = rt_u32(out.emitters.size());
         emitter.instance = emitter.leaf = RT_NONE;
         LightBound bound;
-        if (bound_light(light, bound)) {
+        if (tree && bound_light(light, bound)) {
             bound.emitter = emitter.at;
             bound.intensity *= mean(light.color);
             bounds.push_back(bound);
@@ -298,7 +303,7 @@ EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, cons
         out.emitters.push_back(emitter);
         powers.push_back(flux * kPi * radius * radius);
     }
-    Collector(scene, accel, moved, view, out, powers, bounds).collect();
+    Collector(scene, accel, moved, view, out, powers, tree ? &bounds : nullptr).collect();
     // A file that says what lies behind its objects says what lights them. Without a word of it, lights that stand in stay.
     const bool lit = values.kind != RT_NONE || has_emitting_surfaces(scene, view) ||
                      (scene.background != Scene{}.background && out.lighting.sky_emitter != RT_NONE);
