@@ -4,6 +4,7 @@
 
 #include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
+#include "device/set_arguments.hpp"
 #include "render/film/film.hpp"
 
 namespace clarity {
@@ -11,12 +12,6 @@ namespace {
 
 constexpr int kLevels = 5;  // the last one reaches 2 * 16 pixels to each side
 constexpr size_t kLocalSize = 64;
-
-template <class... Arguments>
-void set_arguments(cl::Kernel& kernel, const Arguments&... arguments) {
-    cl_uint index = 0;
-    (kernel.setArg(index++, arguments), ...);
-}
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
 #include "device/launch_limit.hpp"
+#include "device/set_arguments.hpp"
 #include "render/film/false_colors.hpp"
 
 namespace clarity {
@@ -75,9 +76,7 @@ cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned count, Cou
     if (!read_sums_) read_sums_ = memory_.lend(kSumBytes);
     queue.enqueueFillBuffer(out, cl_uint(0), 0, kSumBytes);
     cl::Kernel& kernel = width == CounterWidth::bits64 ? sum_wide_counters_ : sum_counters_;
-    kernel.setArg(0, counters);
-    kernel.setArg(1, count);
-    kernel.setArg(2, out);
+    set_arguments(kernel, counters, count, out);
     summed_ = run(kernel, std::min(count, device_->info().compute_units * kSummersPerUnit));
     queue.enqueueReadBuffer(out, CL_FALSE, 0, kSumBytes, read_sums_.get(), nullptr, &sums_read_);
     return sums_read_;
@@ -94,11 +93,8 @@ RayCounts FilmKernels::end_sum(KernelTime& time) {
 
 void FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
                           const Settings& settings) {
-    kernel.setArg(0, film);
-    kernel.setArg(1, display);
-    kernel.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
-    kernel.setArg(3, static_cast<float>(settings.exposure));
-    kernel.setArg(4, number_of_tone(settings.tone));
+    set_arguments(kernel, film, display, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce),
+                  static_cast<float>(settings.exposure), number_of_tone(settings.tone));
 }
 
 cl::Event FilmKernels::map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings) {
@@ -127,14 +123,9 @@ const cl::Buffer& FilmKernels::table_of(const std::vector<rt_u32>& rows) {
 cl::Event FilmKernels::add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds,
                                   const GroupRows& rows) {
     const size_t items = rows.row_pixels() * rows.rows.size();
-    add_layers_.setArg(0, film);
-    add_layers_.setArg(1, layers);
-    add_layers_.setArg(2, static_cast<cl_uint>(size_t(rows.width) * rows.height));
-    add_layers_.setArg(3, static_cast<cl_uint>(count));
-    add_layers_.setArg(4, static_cast<cl_uint>(adds));
-    add_layers_.setArg(5, table_of(rows.rows));
-    add_layers_.setArg(6, static_cast<cl_uint>(rows.row_pixels()));
-    add_layers_.setArg(7, static_cast<cl_uint>(items));
+    set_arguments(add_layers_, film, layers, static_cast<cl_uint>(size_t(rows.width) * rows.height),
+                  static_cast<cl_uint>(count), static_cast<cl_uint>(adds), table_of(rows.rows),
+                  static_cast<cl_uint>(rows.row_pixels()), static_cast<cl_uint>(items));
     return run(add_layers_, items);
 }
 
