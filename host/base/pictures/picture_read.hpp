@@ -16,7 +16,7 @@ FloatImage read_picture(const std::string& path);
 FloatImage decode_picture(const std::string& bytes);
 // Whether it is a picture of floats: PFM, EXR or HDR. Asks the first bytes alone.
 bool holds_floats(const std::string& bytes);
-// Width and height as the picture of floats says, whose pixels may be missing. Throws as decode_picture() does.
+// Width and height as the head of a picture of floats says. Its pixels are not read. Throws as decode_picture() does.
 std::array<unsigned, 2> size_of_floats(const std::string& bytes);
 
 }  // namespace clarity

@@ -31,8 +31,8 @@ struct MovedPrims {
 };
 
 // The emitters of a view. accel: where the scene's primitives are now. sky: of scene.sky. moved: leaves and instances in place
-// of those of accel; nullptr: nothing has moved on the device. tree: emitters whose light falls off with the distance are in a
-// light tree, which has one place in the table.
+// of those of accel; nullptr: nothing has moved on the device. tree: emitters with light that falls off with the distance are
+// in a light tree, which has one place in the table.
 EmitterTable make_emitter_table(const Scene& scene, const AccelData& accel, const View& view, const SkyTable& sky,
                                 const MovedPrims* moved, bool tree);
 // Whether a surface emits, so that the table depends on where primitives are.

@@ -18,7 +18,7 @@ double orientation_cost(const LightBound& b) {
     return 2 * kPi * (1 - std::cos(o)) +
            kPi / 2 * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
 }
-// The area of the box. The squared diagonal tells lights in a row apart, whose box has none.
+// The area of the box, and its squared diagonal, for the box of lights in a row has no area.
 double size_cost(const LightBound& b) {
     const Vec d = b.upper - b.lower;
     return 2 * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]) + dot(d, d);
