@@ -5,8 +5,8 @@
 
 namespace clarity {
 
-// Runs words[0], found by PATH, and waits for its end. Returns whether it ended with code 0. Throws Error(failed) if it cannot be
-// run; the message calls it `shown`.
+// Runs words[0], found by PATH, and waits for its end. Returns whether it ended with code 0. Throws Error(failed) if it cannot
+// be run; the message calls it `shown`.
 bool run_tool(const std::vector<std::string>& words, const std::string& shown);
 
 }  // namespace clarity
