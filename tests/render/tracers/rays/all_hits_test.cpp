@@ -286,7 +286,7 @@ TEST(AllHitsFaults, AreFound) {
         {"so do those of single rays", "primitives/triangle_single_ray.h",
          "RT_AT(h->t, l) = rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim);",
          "rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim); RT_AT(h->t, l) = t;", "AllHits.OfASoup"},
-        {"numbers within a mesh", "primitives/leaf_scene.h", "h->list->first_prim = (int)instance->first_prim;", "",
+        {"numbers within a mesh", "primitives/leaf_scene.h", "h->list->first_prim = visit->first;", "",
          "AllHits.OfInstances*"},
         {"hits stay in the instance", "primitives/leaf_scene.h", "h->list->inside = -1;", "", "AllHits.OfInstances*"},
         {"one side of a sphere", "primitives/sphere.h", "if (rt_any(enters)) RT_FN(rt_record)(", "if (0) RT_FN(rt_record)(",
