@@ -56,6 +56,10 @@ const PlantedFault kFaults[] = {
     {"MetalOfItsOwnIsInBlue", "shading/matter_maps.h", "metal ? 0 : 2", "2", "Maps.MultiplyTheSurfaceModel"},
 };
 
+TEST(MapTexts, HaveTheirTexts) {
+    expect_plantable(kFaults);
+}
+
 class MapFaults : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(MapFaults, IsFound) {

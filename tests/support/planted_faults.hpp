@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include "device/kernel_files.hpp"
@@ -51,6 +52,20 @@ inline std::string why_not_found(const PlantedFault& fault) {
     if (output.find("C++ exception") != std::string::npos) return "the tests did not run: " + output;
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 1) return "no test failed: " + output.substr(0, 2000);
     return "";
+}
+
+// Every fault has its text in the kernels: short, so that ./test finds a table that a change of the kernels left behind.
+template <typename Faults>
+void expect_plantable(const Faults& faults) {
+    for (const PlantedFault& fault : faults) EXPECT_NO_THROW(FaultyKernel(fault.file, fault.from, fault.to)) << fault.name;
+}
+
+// Tests find every fault in their quick form, which has fewer structures: they are run for each.
+template <typename Faults>
+void expect_found(const Faults& faults) {
+    Environment few;
+    few.set("CLARITY_QUICK_TESTS", "1");
+    for (const PlantedFault& fault : faults) EXPECT_EQ(why_not_found(fault), "") << fault.name;
 }
 
 }  // namespace clarity::test

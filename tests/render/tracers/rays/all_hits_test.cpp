@@ -271,32 +271,33 @@ TEST(AllHits, OfNoRay) {
     EXPECT_TRUE(none.hits.empty());
 }
 
+const char* const kList = "lanes/hit_list.h";
+const PlantedFault kFaults[] = {
+    {"what is listed is not sought", kList, "lanes &= ~(RT_MASK(list->t[i] == t) & RT_MASK(list->prim[i] == number));", ";",
+     "AllHits.OfASoup"},
+    {"the last place is never filled", kList, "rt_precedes(t, number, list->t[RT_ALL_HITS - 1u], list->prim[RT_ALL_HITS - 1u])",
+     "rt_precedes(t, number, list->t[RT_ALL_HITS - 2u], list->prim[RT_ALL_HITS - 2u])", "AllHits.OfASoup"},
+    {"the rest at one t is lost where a list ends", kList, "rt_precedes(list->after_t, list->after_prim, t, number)",
+     "RT_MASK(list->after_t < t)", "AllHits.OfDuplicates"},
+    {"lists end at the nearest hit", "primitives/record.h", "h->t = rt_select(closer, h->list->t[RT_ALL_HITS - 1u], h->t);",
+     "h->t = rt_select(closer, t, h->t);", "AllHits.OfASoup"},
+    {"so do those of single rays", "primitives/triangle_single_ray.h",
+     "RT_AT(h->t, l) = rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim);",
+     "rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim); RT_AT(h->t, l) = t;", "AllHits.OfASoup"},
+    {"numbers within a mesh", "primitives/leaf_scene.h", "h->list->first_prim = visit->first;", "", "AllHits.OfInstances*"},
+    {"hits stay in the instance", "primitives/leaf_scene.h", "h->list->inside = -1;", "", "AllHits.OfInstances*"},
+    {"one side of a sphere", "primitives/sphere.h", "if (rt_any(enters)) RT_FN(rt_record)(", "if (0) RT_FN(rt_record)(",
+     "AllHits.OfInstances*"},
+    {"one side of a shape", "primitives/leaf_shape.h", "asking &= RT_MASK(next > found);", "asking &= ~asking;",
+     "AllHits.OfShapes"},
+};
+
+TEST(AllHitsTexts, HaveTheirTexts) {
+    expect_plantable(kFaults);
+}
+
 TEST(AllHitsFaults, AreFound) {
-    const char* const list = "lanes/hit_list.h";
-    const PlantedFault faults[] = {
-        {"what is listed is not sought", list, "lanes &= ~(RT_MASK(list->t[i] == t) & RT_MASK(list->prim[i] == number));", ";",
-         "AllHits.OfASoup"},
-        {"the last place is never filled", list,
-         "rt_precedes(t, number, list->t[RT_ALL_HITS - 1u], list->prim[RT_ALL_HITS - 1u])",
-         "rt_precedes(t, number, list->t[RT_ALL_HITS - 2u], list->prim[RT_ALL_HITS - 2u])", "AllHits.OfASoup"},
-        {"the rest at one t is lost where a list ends", list, "rt_precedes(list->after_t, list->after_prim, t, number)",
-         "RT_MASK(list->after_t < t)", "AllHits.OfDuplicates"},
-        {"lists end at the nearest hit", "primitives/record.h", "h->t = rt_select(closer, h->list->t[RT_ALL_HITS - 1u], h->t);",
-         "h->t = rt_select(closer, t, h->t);", "AllHits.OfASoup"},
-        {"so do those of single rays", "primitives/triangle_single_ray.h",
-         "RT_AT(h->t, l) = rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim);",
-         "rt_list_add_one(h->list, l, t, v * scale, w * scale, leaf->prim); RT_AT(h->t, l) = t;", "AllHits.OfASoup"},
-        {"numbers within a mesh", "primitives/leaf_scene.h", "h->list->first_prim = visit->first;", "",
-         "AllHits.OfInstances*"},
-        {"hits stay in the instance", "primitives/leaf_scene.h", "h->list->inside = -1;", "", "AllHits.OfInstances*"},
-        {"one side of a sphere", "primitives/sphere.h", "if (rt_any(enters)) RT_FN(rt_record)(", "if (0) RT_FN(rt_record)(",
-         "AllHits.OfInstances*"},
-        {"one side of a shape", "primitives/leaf_shape.h", "asking &= RT_MASK(next > found);", "asking &= ~asking;",
-         "AllHits.OfShapes"},
-    };
-    Environment few;  // fewer structures: the tests are run for each fault
-    few.set("CLARITY_QUICK_TESTS", "1");
-    for (const PlantedFault& fault : faults) EXPECT_EQ(why_not_found(fault), "") << fault.name;
+    expect_found(kFaults);
 }
 
 }  // namespace

@@ -142,27 +142,29 @@ TEST(Masks, OfPicturesGoByTheKindOfRays) {
     }
 }
 
+const PlantedFault kFaults[] = {
+    {"instances have no mask", "primitives/leaf_scene.h", "~instance->hidden)", "0xffffffffu)", "Masks.RaysPass*"},
+    {"queries have no mask", "tracers/rays/ray_blocks.h", "rt_vint((int)frame->ray_mask)", "rt_vint(255)", "Masks.RaysPass*"},
+    {"shadow rays are the camera's", "shading/shading.h", "rt_vint(RT_SEEN_BY_SHADOW)", "rt_vint(RT_SEEN_BY_CAMERA)",
+     "Masks.OfPictures*"},
+    {"mirror rays are the camera's", "tracers/iterative/generations.h", "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_MIRROR",
+     "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_CAMERA", "Masks.OfPictures*"},
+    {"so are those of one pixel", "tracers/iterative/iterative_single.h", "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_MIRROR",
+     "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_CAMERA", "Masks.OfPictures*"},
+    {"so are those of wavefront", "tracers/wavefront/wavefront.cl", "RT_MASK(generation == rt_vint(0))",
+     "RT_MASK(generation >= rt_vint(0))", "Masks.OfPictures*"},
+    {"so are those of paths", "tracers/path/scatter.h", "RT_SEEN_BY(&ray, rt_select(RT_MASK(p->event == rt_vint(0))",
+     "RT_SEEN_BY(&ray, rt_select(RT_MASK(p->event >= rt_vint(0))", "Masks.OfPictures*"},
+    {"the camera sees what mirrors see", "tracers/aov/aov.cl", "rt_vint(RT_SEEN_BY_CAMERA)", "rt_vint(RT_SEEN_BY_ALL)",
+     "Masks.OfPictures*"},
+};
+
+TEST(MasksTexts, HaveTheirTexts) {
+    expect_plantable(kFaults);
+}
+
 TEST(MasksFaults, AreFound) {
-    const PlantedFault faults[] = {
-        {"instances have no mask", "primitives/leaf_scene.h", "~instance->hidden)", "0xffffffffu)", "Masks.RaysPass*"},
-        {"queries have no mask", "tracers/rays/ray_blocks.h", "rt_vint((int)frame->ray_mask)", "rt_vint(255)",
-         "Masks.RaysPass*"},
-        {"shadow rays are the camera's", "shading/shading.h", "rt_vint(RT_SEEN_BY_SHADOW)", "rt_vint(RT_SEEN_BY_CAMERA)",
-         "Masks.OfPictures*"},
-        {"mirror rays are the camera's", "tracers/iterative/generations.h", "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_MIRROR",
-         "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_CAMERA", "Masks.OfPictures*"},
-        {"so are those of one pixel", "tracers/iterative/iterative_single.h", "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_MIRROR",
-         "? RT_SEEN_BY_CAMERA : RT_SEEN_BY_CAMERA", "Masks.OfPictures*"},
-        {"so are those of wavefront", "tracers/wavefront/wavefront.cl", "RT_MASK(generation == rt_vint(0))",
-         "RT_MASK(generation >= rt_vint(0))", "Masks.OfPictures*"},
-        {"so are those of paths", "tracers/path/scatter.h", "RT_SEEN_BY(&ray, rt_select(RT_MASK(p->event == rt_vint(0))",
-         "RT_SEEN_BY(&ray, rt_select(RT_MASK(p->event >= rt_vint(0))", "Masks.OfPictures*"},
-        {"the camera sees what mirrors see", "tracers/aov/aov.cl", "rt_vint(RT_SEEN_BY_CAMERA)", "rt_vint(RT_SEEN_BY_ALL)",
-         "Masks.OfPictures*"},
-    };
-    Environment few;  // fewer structures: the tests are run for each fault
-    few.set("CLARITY_QUICK_TESTS", "1");
-    for (const PlantedFault& fault : faults) EXPECT_EQ(why_not_found(fault), "") << fault.name;
+    expect_found(kFaults);
 }
 
 }  // namespace

@@ -144,6 +144,10 @@ const PlantedFault kFaults[] = {
      "lanes, p->weight, p->weight, bounce, by, first, number)", "PathReplay.*WithALens"},
 };
 
+TEST(ReplayTexts, HaveTheirTexts) {
+    expect_plantable(kFaults);
+}
+
 class ReplayFaults : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(ReplayFaults, AreFound) {
