@@ -156,6 +156,7 @@ class Hit:
         self.instance = None if brief else np.empty(shape, np.int32)
         self.uv = None if brief else np.empty(tuple(shape) + (2,), np.float32)
         self._rays = None
+        self._made = None
 
     @property
     def mask(self):
@@ -179,9 +180,14 @@ class Hit:
             check_out(getattr(self, name), shape + ((2,) if name == "uv" else ()), dtype, f"out.{name}")
 
     def _struct_for(self, rays):
+        """What the library is told. It is kept for these arrays: to make it is a third of a call with one ray."""
         self._rays = rays
-        places = [None if array is None else address_of(array) for array in (self.t, self.prim, self.instance, self.uv)]
-        return header.structs["clarity_hits"](_HITS_BYTES, 0, *places)
+        t, prim, instance, uv = arrays = self.t, self.prim, self.instance, self.uv
+        made = self._made
+        if not made or made[0] is not t or made[1] is not prim or made[2] is not instance or made[3] is not uv:
+            places = [None if array is None else address_of(array) for array in arrays]
+            self._made = made = *arrays, header.structs["clarity_hits"](_HITS_BYTES, 0, *places)
+        return made[4]
 
 
 _OF_HIT = {"t": np.float32, "prim": np.int32, "instance": np.int32, "uv": np.float32}

@@ -3,6 +3,7 @@ import atexit
 import ctypes
 import json
 import os
+import time
 import weakref
 
 import numpy as np
@@ -12,8 +13,9 @@ from ._calls import call, check, end_log, start_log
 from ._errors import UsageError
 from ._rays import AllHits, Hit, Packed, Rays, address_of, array_of, as_array, check_out, rays_of
 
-# Rays that are traced before a person waits: no thread is started for them.
-_FEW = 4096
+# Rays that are traced before a person waits: no thread is started for them. A start takes up to 0.1 ms, in which a GPU traces a
+# million rays; so a tracer learns how fast it is.
+_FEW, _SHORT_S = 4096, 0.005
 
 
 def _settings(settings):
@@ -102,7 +104,7 @@ class Tracer:
 
     def __init__(self, scene, device, accel, settings, progress):
         self.scene = scene
-        self._warm = set()  # names of functions whose kernels are compiled
+        self._few = {}  # of each function whose kernels are compiled: how many rays take less than _SHORT_S
         options = struct("clarity_options", device=device.encode(), accel=accel.encode(), settings=texts(_settings(settings)))
         handle = ctypes.c_void_p()
 
@@ -117,12 +119,21 @@ class Tracer:
         self._handle = handle.value
 
     def _trace(self, function, rays, to, progress):
-        if rays.count <= _FEW and function.__name__ in self._warm and progress is None:
+        name = function.__name__
+        few = self._few.get(name, 0)
+        if rays.count <= few and progress is None:
+            if rays.count < _FEW:
+                return check(function(self._handle, ctypes.byref(rays.struct), to, None))
+            begin = time.perf_counter()
             check(function(self._handle, ctypes.byref(rays.struct), to, None))
         else:
+            begin = time.perf_counter()
             call(function, self._handle, ctypes.byref(rays.struct), to, progress=progress)
-            if rays.count:
-                self._warm.add(function.__name__)
+        if not few:
+            self._few[name] = _FEW if rays.count else 0
+        elif rays.count >= _FEW:
+            short = rays.count * _SHORT_S / (time.perf_counter() - begin)
+            self._few[name] = max(_FEW, min(int(short), 2 * few))
 
     def closest(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, brief=False, out=None, progress=None):
         """The nearest hits of rays as a Hit. Rays of pack(), or arrays of float32 or float64 in any strides, broadcast against each other. mask: the

@@ -207,8 +207,8 @@ class Hits(Case):
         hit, packed = rt.closest(*ray), rt.pack(*ray)
         for name, trace, limit in (
             ("new arrays", lambda: rt.closest(*ray), 55),
-            ("into arrays", lambda: rt.closest(*ray, out=hit), 55),
-            ("packed", lambda: rt.closest(packed, out=hit), 35),
+            ("into arrays", lambda: rt.closest(*ray, out=hit), 51),
+            ("packed", lambda: rt.closest(packed, out=hit), 29),
         ):
             steps = []
             sys.setprofile(lambda frame, event, what: steps.append(what) if event in ("call", "c_call") else None)

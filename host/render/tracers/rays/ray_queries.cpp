@@ -17,6 +17,10 @@ bool votes(const DeviceInfo& info, const Settings& settings) {
     return (info.nvidia && !info.pocl) || settings.portable;
 }
 
+// So few rays are traced before a launch has begun and ended: trials of other kernels, and compiling them, would cost more than
+// they could save.
+constexpr size_t kFewRays = 64;
+
 // Kernels that answer a query, the plain one first. The others need capabilities of the structure.
 std::vector<const KernelRow*> kernels_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
     if (query.count) return {&counted_rays()};
@@ -52,15 +56,16 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
         last_ = asked;
         launchers_.clear();
     }
-    if (packing_ != rays.packing) {
+    const bool few = rays.count <= kFewRays && !query.count;
+    if (!few && packing_ != rays.packing) {
         packing_ = rays.packing;
         kernels_ = kernels_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
         autotuner_ = Autotuner(static_cast<unsigned>(kernels_.size()));
     }
-    const KernelRow& row = *kernels_[autotuner_.variant()];
+    const KernelRow& row = few ? plain_rays() : *kernels_[autotuner_.variant()];
     Progress never_cancelled;
     const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
-    tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
+    if (!few) tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
     Queue& queue = device_->queue();
     rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
     frame.ray_mask = query.mask;
@@ -73,8 +78,10 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
         trace({prepared, *program, static_cast<unsigned>(blocks), query.any_hit, fields, in, out, query.progress});
     overflowed_ = debug ? overflows_.read(queue) : 0;
     if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
-    autotuner_.took(times.device_ms / double(blocks));  // pieces of one packing may differ in size
-    tuning_.settled = autotuner_.settled();
+    if (!few) {
+        autotuner_.took(times.device_ms / double(blocks));  // pieces of one packing may differ in size
+        tuning_.settled = autotuner_.settled();
+    }
     answered(out, fields);
     return times.device_ms;
 }
@@ -116,7 +123,8 @@ double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQue
 
 cl::Buffer RayQueries::pack_on_device(size_t count, unsigned lanes, const ReadRays& read) {
     return wrap_cl_errors(*device_, "packing rays", [&] {
-        const cl::Buffer in(device_->context(), CL_MEM_READ_ONLY, block_floats(count, lanes) * sizeof(float));
+        const cl::Buffer in =
+            GrowingBuffer(CL_MEM_READ_ONLY).fit(device_->context(), block_floats(count, lanes) * sizeof(float));
         write_rays(in, count, lanes, read);
         return in;
     });
