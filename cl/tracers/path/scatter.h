@@ -201,6 +201,11 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
 
+#ifdef RT_SURFACE_PLUGINS
+#define RT_WITH_PLUGINS(drawn) rt_draw_plugins(ctx, m->material, m->bsdf.color, m->wo, n, lanes, drawn)
+#else
+#define RT_WITH_PLUGINS(drawn) drawn
+#endif
 /* Draws the next directions. Returns the lanes that go on. */
 RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, const rt_surface *surface, const rt_meeting *m,
                                   const rt_sampler *sampler)
@@ -208,11 +213,7 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     const rt_point *point = &m->point;
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const rt_numbers n = rt_draw_set(sampler, RT_SURFACE_SET(p->event));
-#ifdef RT_SURFACE_PLUGINS
-    const rt_bsdf_sample s = rt_draw_plugins(ctx, m->material, m->bsdf.color, m->wo, n, lanes, rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes));
-#else
-    const rt_bsdf_sample s = rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes);
-#endif
+    const rt_bsdf_sample s = RT_WITH_PLUGINS(rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes));
     const rt_vec direction = rt_normalize(rt_to_world(m->s, m->t, point->normal, s.wi));
     const vmask above = RT_MASK(rt_dot(point->geometric, direction) > zero), agree = above ^ s.transmitted;
     rt_vec weight = rt_mul(p->weight, s.weight);
