@@ -8,7 +8,7 @@ target_include_directories(clarity_sdk INTERFACE $<INSTALL_INTERFACE:${CMAKE_INS
 set_target_properties(clarity_bvh PROPERTIES EXPORT_NAME bvh)
 install(TARGETS clarity_sdk clarity_bvh EXPORT clarityTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT sdk)
 install(DIRECTORY host/sdk/clarity_bvh host/sdk/clarity_space DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
-install(FILES host/sdk/rt_plugin.h host/sdk/rt_refit.h host/sdk/rt_device.h host/sdk/rt_device.hpp host/sdk/rt_digest.h host/sdk/rt_plugin.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
+install(FILES host/sdk/rt_plugin.h host/sdk/rt_refit.h host/sdk/rt_surface.h host/sdk/rt_surface.hpp host/sdk/rt_device.h host/sdk/rt_device.hpp host/sdk/rt_digest.h host/sdk/rt_plugin.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
 # `clarity new-plugin` finds the templates at ../share/clarity/template relative to itself, in a build folder too.
 install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/clarity)
@@ -16,7 +16,7 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/host/sdk/template ${PROJECT_BINARY_DIR}/s
 # The pages, and the kernels and structures that they name, lie as in the sources, so that links between them hold.
 install(FILES README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk)
 install(DIRECTORY docs cl DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk PATTERN "*.sh" EXCLUDE)
-install(DIRECTORY plugins/accel plugins/primitives DESTINATION ${CMAKE_INSTALL_DOCDIR}/plugins COMPONENT sdk)
+install(DIRECTORY plugins/accel plugins/primitives plugins/surfaces DESTINATION ${CMAKE_INSTALL_DOCDIR}/plugins COMPONENT sdk)
 install(FILES scenes/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT sdk)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/clarity)

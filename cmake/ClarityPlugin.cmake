@@ -1,9 +1,9 @@
-# clarity_add_plugin(accel|importer|primitive ID [LIBRARIES lib...]): builds the current folder as one plugin, which is one shared library.
+# clarity_add_plugin(accel|importer|primitive|surface ID [LIBRARIES lib...]): builds the current folder as one plugin, which is one shared library.
 #
-# Compiles every .cpp and .c file of the folder. ID.cl, ID_types.h and ID_build.cl (kernels that build: rt_device.h) of an accel plugin, or ID.cl of a primitive, are embedded, with
+# Compiles every .cpp and .c file of the folder. ID.cl, ID_types.h and ID_build.cl (kernels that build: rt_device.h) of an accel plugin, or ID.cl of a primitive or surface, are embedded, with
 # the parts that they include, ID_*.cl and ID_*.h. The plugin includes "ID.inc", which has rows of {path, text}.
 # LIBRARIES clarity::bvh links the builders' library (docs/clarity_bvh.md).
-# In clarity's tree the library is written to lib/clarity/plugins/{importers,accel,primitives} beside bin/. Elsewhere (with
+# In clarity's tree the library is written to lib/clarity/plugins/{importers,accel,primitives,surfaces} beside bin/. Elsewhere (with
 # find_package(clarity)) it is ID.so in the build folder: add that folder to CLARITY_PLUGIN_PATH, or run
 # `cmake --install build --prefix ~/.local`, which installs the plugin where clarity looks for it.
 set(CLARITY_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/rt_plugin.map)
@@ -12,8 +12,9 @@ function(clarity_add_plugin kind id)
   set(folders_accel accel)
   set(folders_importer importers)
   set(folders_primitive primitives)
+  set(folders_surface surfaces)
   if(NOT DEFINED folders_${kind})
-    message(FATAL_ERROR "clarity_add_plugin(${kind} ${id}): expected accel, importer or primitive, found '${kind}'")
+    message(FATAL_ERROR "clarity_add_plugin(${kind} ${id}): expected accel, importer, primitive or surface, found '${kind}'")
   endif()
   set(folder ${folders_${kind}})
   if(NOT id MATCHES "^[a-z][a-z0-9_]*$")
@@ -60,7 +61,7 @@ function(clarity_quiet_vectors)
   endforeach()
 endfunction()
 
-# Adds every folder under plugins/{importers,accel,primitives} that has a CMakeLists.txt, so that there is no list to edit.
+# Adds every folder under plugins/{importers,accel,primitives,surfaces} that has a CMakeLists.txt, so that there is no list to edit.
 function(clarity_add_all_plugins)
   file(GLOB lists CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/plugins/*/*/CMakeLists.txt)
   foreach(list IN LISTS lists)

@@ -70,6 +70,10 @@ RT_PART rt_bsdf rt_bsdf_of(const rt_ctx *ctx, const rt_surface *s, vmask enterin
             glass = m->refract;
         } else if (m->model == RT_MODEL_UNLIT) {
             /* It scatters nothing. */
+#ifdef RT_SURFACE_PLUGINS
+        } else if (m->model >= RT_MODEL_KINDS) {
+            diffuse = 1.0f; /* what asks for no values, as the denoiser's guides, takes it for a diffuse surface */
+#endif
 #if RT_MAY_SCATTER(RT_LOBE_LAYERS)
         } else if (m->model == RT_MODEL_GLTF) {
             rt_load_matter(ctx, s, id, mine, at, &matter);

@@ -20,6 +20,7 @@
 #include "import/import.hpp"
 #include "render/edit/edit.hpp"
 #include "render/tracers/rays/ray_text.hpp"
+#include "rt_surface.h"
 
 namespace clarity {
 namespace {
@@ -102,9 +103,10 @@ std::vector<std::string> needed_beside(const PluginRegistry& plugins, const Plug
     for (const PluginRecord& other : plugins.records()) {
         if (!other.plugin || other.shadowed || other.path == record.path) continue;
         const std::string id = other.plugin->id;
-        const bool needed = record.plugin->importer ? !other.plugin->accel && id != record.plugin->id
-                                                    : record.plugin->accel->layout && other.plugin->accel &&
-                                                          id == record.plugin->accel->layout && other.plugin->accel->pack;
+        const bool needed = record.plugin->importer
+                                ? !other.plugin->accel && id != record.plugin->id
+                                : record.plugin->accel && record.plugin->accel->layout && other.plugin->accel &&
+                                      id == record.plugin->accel->layout && other.plugin->accel->pack;
         if (needed) beside.push_back(other.path);
     }
     if (beside.empty() && record.plugin->accel && record.plugin->accel->layout)
@@ -349,6 +351,11 @@ int run_check(const PluginRegistry& plugins, const CheckCommand& asked) {
             if (!command.scene_files.empty() && !record.plugin->accel)
                 throw Error(Exit::usage, "--scene: " + std::string(record.plugin->id) +
                                              " is no structure; give the files of an importer by --samples");
+            if (rt_surface_of(record.plugin))
+                throw Error(Exit::usage,
+                            std::string(record.plugin->id) +
+                                " is a model of surfaces, a draft that has no checks yet; trace a scene that has it "
+                                "with the tracer path");
             const std::string name = is_folder ? record.path : word;
             libraries.emplace_back(std::move(record), name);
         }

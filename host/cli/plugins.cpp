@@ -9,6 +9,7 @@
 #include "plugin/capabilities.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
+#include "rt_surface.h"
 
 namespace clarity {
 namespace {
@@ -168,6 +169,13 @@ void print_keys(const rt_primitive& primitive) {
     }
 }
 
+void print_surface(const rt_surface& surface) {
+    for (rt_u32 i = 0; i < surface.key_count; ++i) {
+        const rt_surface_key& key = surface.keys[i];
+        print_text("%s%-20s %s (%g to %g; default %g)\n", kIndent, key.name, key.help, key.min, key.max, key.def[0]);
+    }
+}
+
 void print_plugin(const PluginRecord& record) {
     const rt_plugin& plugin = *record.plugin;
     print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin_kind(plugin), plugin.id, plugin.name, plugin.version,
@@ -177,6 +185,7 @@ void print_plugin(const PluginRecord& record) {
     if (plugin.reference) print_text("%sreference: %s\n", kIndent, plugin.reference);
     if (plugin.accel) print_accel(*plugin.accel);
     if (plugin.primitive) print_keys(*plugin.primitive);
+    if (const rt_surface* surface = rt_surface_of(&plugin)) print_surface(*surface);
     if (plugin.importer && plugin.importer->extensions[0]) {
         print_text("%sfiles:", kIndent);
         for (const char* const* e = plugin.importer->extensions; *e; ++e) print_text(" .%s", *e);

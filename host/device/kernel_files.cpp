@@ -11,6 +11,7 @@
 #include "base/files/read_file.hpp"
 #include "base/log.hpp"
 #include "device/kernel_includes.hpp"
+#include "rt_surface.h"
 
 namespace clarity {
 namespace {
@@ -48,7 +49,10 @@ fs::path checkout_kernels() {
 
 // A plugin's folder below that of the sources.
 std::string folder_of(const rt_plugin& plugin) {
-    return std::string(plugin.primitive ? "plugins/primitives/" : "plugins/accel/") + plugin.id;
+    return std::string(plugin.primitive ? "plugins/primitives/"
+                       : plugin.accel   ? "plugins/accel/"
+                                        : "plugins/surfaces/") +
+           plugin.id;
 }
 
 // Where kernel files may be on disk.
@@ -206,6 +210,7 @@ void add_parts(const fs::path& path, std::vector<std::string>& all) {
 
 std::vector<const rt_cl_file*> kernels_of(const rt_plugin& plugin) {
     if (plugin.primitive) return {&plugin.primitive->kernels};
+    if (const rt_surface* surface = rt_surface_of(&plugin)) return {&surface->kernels};
     if (plugin.accel) return {&plugin.accel->types, &plugin.accel->traverse};
     return {};
 }

@@ -21,6 +21,7 @@
 #include "import/import.hpp"
 #include "import/sink/scene_builder.hpp"
 #include "import/wire.hpp"
+#include "scene/surface_models.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"
 
@@ -30,11 +31,11 @@ namespace {
 // What the worker takes. It returns a SentScene (wire.hpp).
 struct ImportJob {
     worker::WorkerLimits limits;
-    std::vector<std::string> plugins, search_paths, importers, files;
+    std::vector<std::string> plugins, surfaces, search_paths, importers, files;
     std::vector<PictureFile> pictures;
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.limits, self.plugins, self.search_paths, self.importers, self.files, self.pictures);
+        parcel(self.limits, self.plugins, self.surfaces, self.search_paths, self.importers, self.files, self.pictures);
     }
 };
 
@@ -70,6 +71,7 @@ class ImportProgress : public worker::ChannelProgress, public ImportObserver {
 
 void import_files(const ImportJob& job, ImportProgress& progress) {
     const FileAccess access(job.files, job.search_paths, job.pictures);
+    number_surface_models(job.surfaces);
     const PluginRegistry plugins = PluginRegistry::of(job.plugins);
     const ImporterParameters parameters = parse_importer_choices(plugins, job.importers);
     // A file that the user named may be a link to another folder. Only the target itself may be read, not the files beside it.
@@ -192,6 +194,7 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
     const Limits limits(options);
     ImportJob job{{limits.memory_bytes(), limits.most_memory_bytes(), limits.cpu_s()},
                   {},
+                  surface_model_ids(),
                   options.search_paths,
                   options.importers,
                   files,

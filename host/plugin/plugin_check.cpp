@@ -265,9 +265,16 @@ Problem check_plugin(const rt_plugin& plugin) {
     if (Problem why = check_text("reference", plugin.reference, false)) return why;
     const int kinds = (plugin.accel != nullptr) + (plugin.importer != nullptr) + (plugin.primitive != nullptr);
     if (kinds > 1) return "it is more than one of accel, importer and primitive, expected exactly one: make libraries of it";
-    if (kinds == 0)
+    if (kinds == 0) {
+        if (const rt_surface* surface = rt_surface_of(&plugin)) return check_surface(*surface);
+        for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
+            if (std::strcmp(e->name, RT_SURFACE) == 0)
+                return "its surface is of version " + std::to_string(e->version) + " of the draft, this host has version " +
+                       std::to_string(RT_SURFACE_VERSION) + ", with " + std::to_string(sizeof(rt_surface)) +
+                       " bytes of data: rebuild it against this SDK";
         return "it is neither an accel nor an importer nor a primitive, expected exactly one: set one of them; a plugin of "
                "another kind needs a later clarity";
+    }
     if (Problem why = check_params(plugin)) return why;
     if (Problem why = check_extensions(plugin)) return why;
     if (plugin.primitive) return check_primitive(*plugin.primitive);

@@ -6,6 +6,7 @@
 
 #include "base/problem.hpp"
 #include "rt_plugin.h"
+#include "rt_surface.h"
 
 namespace clarity {
 
@@ -27,7 +28,8 @@ Problem check_plugin_head(const uint32_t head[4], uint64_t object_bytes);
 // Nothing if the text is one line that can be shown, otherwise what is wrong with it. what: what it is, "help".
 Problem check_text(const char* what, const char* text, bool required);
 
-// Checks the description of a shape.
+// Check the description of a surface, and of a shape.
+Problem check_surface(const rt_surface& surface);
 Problem check_primitive(const rt_primitive& primitive);
 
 // Checks everything after the head: names, parameters, tables, required functions. `plugin` has structs of this host's size

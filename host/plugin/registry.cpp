@@ -21,6 +21,7 @@
 #include "plugin/load_trial.hpp"
 #include "plugin/plugin_check.hpp"
 #include "plugin/plugin_copy.hpp"
+#include "scene/surface_models.hpp"
 
 namespace clarity {
 namespace {
@@ -28,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSymbol = "rt_plugin_v1";
-constexpr const char* kKindFolders[] = {"importers", "accel", "primitives"};
+constexpr const char* kKindFolders[] = {"importers", "accel", "primitives", "surfaces"};
 
 std::string dlopen_advice(const std::string& error) {
     if (error.find("undefined symbol") != std::string::npos) return "; link it with -Wl,--no-undefined to see what is missing";
@@ -281,6 +282,16 @@ void link_layouts(std::vector<PluginRecord>& records) {
     }
 }
 
+// Refuses surfaces whose keys or number of models do not go with those that are known.
+void add_surfaces(std::vector<PluginRecord>& records) {
+    for (PluginRecord& record : records) {
+        const rt_surface* const surface = record.plugin && !record.shadowed ? rt_surface_of(record.plugin) : nullptr;
+        if (!surface) continue;
+        record.why = add_surface_model(*record.plugin, *surface).text();
+        if (!record.why.empty()) record.plugin = nullptr;
+    }
+}
+
 std::string kind_and_id(const rt_plugin& plugin) {
     return std::string(plugin_kind(plugin)) + " '" + plugin.id + "'";
 }
@@ -301,6 +312,7 @@ PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_f
     for (const std::string& path : search.paths()) records.push_back(load_plugin(path));
     shadow_later_ones(records);
     link_layouts(records);
+    add_surfaces(records);
     for (size_t i = 0; log_refused && i < records.size(); ++i)
         if (!records[i].plugin)
             log(i < named ? LogLevel::error : LogLevel::warning, "plugin refused: " + records[i].path + ": " + records[i].why);
@@ -312,6 +324,7 @@ PluginRegistry PluginRegistry::of(const std::vector<std::string>& plugin_files) 
     std::vector<PluginRecord>& records = registry.list_->records;
     for (const std::string& file : plugin_files) records.push_back(load_plugin(file));
     link_layouts(records);
+    add_surfaces(records);
     for (const PluginRecord& record : records)
         if (!record.plugin) log(LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
     return registry;
@@ -332,6 +345,7 @@ Problem PluginRegistry::replace(const PluginRecord& rebuilt) {
     const size_t at = size_t(place - next.begin());
     shadow_later_ones(next);
     link_layouts(next);
+    add_surfaces(next);
     for (size_t i = 0; i < next.size(); ++i) {
         if (next[i].plugin || (i != at && !list_->records[i].plugin)) continue;
         if (i == at) return next[i].why;
@@ -347,7 +361,7 @@ std::vector<PluginRecord> PluginRegistry::records() const {
 }
 
 const char* plugin_kind(const rt_plugin& plugin) {
-    return plugin.accel ? "accel" : plugin.importer ? "importer" : "primitive";
+    return plugin.accel ? "accel" : plugin.importer ? "importer" : plugin.primitive ? "primitive" : "surface";
 }
 
 const rt_plugin* PluginRegistry::accel(std::string_view id) const {
@@ -383,6 +397,8 @@ std::vector<const rt_plugin*> PluginRegistry::primitives() const {
 std::vector<const rt_plugin*> PluginRegistry::with_kernels() const {
     std::vector<const rt_plugin*> list = accels();
     for (const rt_plugin* plugin : primitives()) list.push_back(plugin);
+    for (const PluginRecord& record : records())
+        if (record.plugin && !record.shadowed && rt_surface_of(record.plugin)) list.push_back(record.plugin);
     return list;
 }
 

@@ -43,7 +43,7 @@ class PluginRegistry {
     std::vector<const rt_plugin*> accels() const;        // usable ones, sorted by id
     std::vector<const rt_plugin*> importers() const;     // usable ones, sorted by id
     std::vector<const rt_plugin*> primitives() const;    // usable ones, sorted by id
-    std::vector<const rt_plugin*> with_kernels() const;  // accels and primitives
+    std::vector<const rt_plugin*> with_kernels() const;  // accels, primitives and surfaces
     // The importer that is most certain of a file, judged by extension and first bytes, also of a packed
     // file (bunny.ply.gz); nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;

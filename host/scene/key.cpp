@@ -75,14 +75,18 @@ Problem range_fault(const Key& key, const std::array<float, 3>& value) {
     return {};
 }
 
+Problem fault_of(const Key& key, const void* values) {
+    const std::array<float, 3> value = value_of(key, values);
+    const std::string name = "`" + std::string(key.name) + "`";
+    if (!are_finite(value)) return "not a finite number in " + name;
+    if (const Problem fault = range_fault(key, value))
+        return name + " is " + value_text(key, value, " ") + ", expected " + fault.text();
+    return {};
+}
+
 Problem fault_of(const std::vector<Key>& keys, const void* values) {
-    for (const Key& key : keys) {
-        const std::array<float, 3> value = value_of(key, values);
-        const std::string name = "`" + std::string(key.name) + "`";
-        if (!are_finite(value)) return "not a finite number in " + name;
-        if (const Problem fault = range_fault(key, value))
-            return name + " is " + value_text(key, value, " ") + ", expected " + fault.text();
-    }
+    for (const Key& key : keys)
+        if (Problem fault = fault_of(key, values)) return fault;
     return {};
 }
 

@@ -46,7 +46,8 @@ std::array<float, 3> value_of(const Key& key, const void* values);
 void set_value(const Key& key, void* values, const std::array<float, 3>& value);
 // Why the value is not allowed: "from 0 to 1", or nothing.
 Problem range_fault(const Key& key, const std::array<float, 3>& value);
-// "`reflect` is 2, expected from 0 to 1" for the first key that is not in its range, or nothing.
+// "`reflect` is 2, expected from 0 to 1" for a key that is not in its range, or nothing; of a table for the first one.
+Problem fault_of(const Key& key, const void* values);
 Problem fault_of(const std::vector<Key>& keys, const void* values);
 // The nearest value that is allowed. The default in place of what is not finite, or below a range that begins above 0.
 std::array<float, 3> nearest_value(const Key& key, const std::array<float, 3>& value);

@@ -1,15 +1,23 @@
 #include "scene/material_keys.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
+#include <deque>
+#include <functional>
+#include <mutex>
+
+#include "scene/surface_models.hpp"
 
 namespace clarity {
 namespace {
 
 using M = rt_material;
 
-constexpr const char* kModels[] = {"whitted", "lambert", "conductor", "dielectric", "gltf", "unlit", nullptr};
+// Plugins add theirs.
+const char* models[RT_MODEL_KINDS + kMostSurfaceModels + 1] = {"whitted", "lambert", "conductor", "dielectric",
+                                                               "gltf",    "unlit",   nullptr};
 constexpr const char* kAlphas[] = {"opaque", "mask", "blend", nullptr};
 
 // More than a surface can send back, but files have such colours. A colour of 8 bits a channel is beyond it.
@@ -68,9 +76,10 @@ std::vector<Key> layer_keys() {
 
 std::vector<Key> make_keys() {
     std::vector<Key> keys = {
-        shown(word_key("model", offsetof(M, model), 0, kModels), "Model", "what `path` takes the surface for",
+        shown(word_key("model", offsetof(M, model), 0, models), "Model", "what `path` takes the surface for",
               "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `gltf` has the layers of "
-              "glTF; `unlit` shows its colour and neither gets nor gives light; `whitted` is the mixture below"),
+              "glTF; `unlit` shows its colour and neither gets nor gives light; `whitted` is the mixture below; others are "
+              "plugins'"),
         shown(color_key("color", offsetof(M, color), kMostColor, 0.7f), "Colour", "r g b",
               "share of light that is scattered; also tints what is refracted. Of a conductor: what it mirrors straight on"),
         shown(number_key("roughness", offsetof(M, roughness), 0, 1, 0), "Roughness", "of a conductor, dielectric or `gltf`",
@@ -142,9 +151,59 @@ bool same_bytes(const MaterialValues& a, const MaterialValues& b) {
 
 }  // namespace
 
+namespace {
+
+// All tables that there were, which are never freed; the last one counts.
+struct Tables {
+    std::mutex mutex;
+    std::deque<std::vector<Key>> all{make_keys()};
+    std::atomic<const std::vector<Key>*> last{&all.back()};
+};
+Tables& tables() {
+    static auto& tables = *new Tables;
+    return tables;
+}
+
+}  // namespace
+
 const std::vector<Key>& material_keys() {
-    static const std::vector<Key> keys = make_keys();
-    return keys;
+    return *tables().last;
+}
+
+namespace {
+
+void change_table(const std::function<void(std::vector<Key>&)>& change) {
+    const std::lock_guard<std::mutex> lock(tables().mutex);
+    std::vector<Key> next = tables().all.back();
+    change(next);
+    tables().all.push_back(std::move(next));
+    tables().last = &tables().all.back();
+}
+
+}  // namespace
+
+void add_model_word(rt_u32 model, const char* word) {
+    models[model] = word;
+    change_table([&](std::vector<Key>& keys) { keys.front().max = model; });
+}
+
+void add_material_keys(const std::vector<Key>& more) {
+    change_table([&](std::vector<Key>& keys) { keys.insert(keys.end(), more.begin(), more.end()); });
+}
+
+bool is_key_of_surface(const Key& key) {
+    return key.models >> RT_MODEL_KINDS != 0;
+}
+
+bool has_room(rt_u32 model, const Key& key) {
+    return key.offset < sizeof(M) || (is_surface_model(model) ? has_key(model, key) : !is_key_of_surface(key));
+}
+
+const Key* find_material_key(rt_u32 model, const std::string& name) {
+    const Key* found = nullptr;
+    for (const Key& key : material_keys())
+        if (name == key.name && (!found || has_key(model, key))) found = &key;
+    return found;
 }
 
 const Key& material_key(const char* name) {
@@ -152,8 +211,25 @@ const Key& material_key(const char* name) {
 }
 
 const rt_primitive_kind* material_kind_for_plugins() {
-    static const PluginKeys keys("material", material_keys());
-    return &keys.kind;
+    static std::mutex mutex;
+    static auto& kinds = *new std::deque<std::pair<const std::vector<Key>*, PluginKeys>>;
+    const std::lock_guard<std::mutex> lock(mutex);
+    const std::vector<Key>* const table = &material_keys();
+    for (const auto& [of, keys] : kinds)
+        if (of == table) return &keys.kind;
+    // Where several models have a key of one name, importers get it once, with the range of all.
+    std::vector<Key> once;
+    for (const Key& key : *table) {
+        const auto same =
+            std::find_if(once.begin(), once.end(), [&](const Key& o) { return std::strcmp(o.name, key.name) == 0; });
+        if (same == once.end()) {
+            once.push_back(key);
+        } else {
+            same->min = std::min(same->min, key.min);
+            same->max = std::max(same->max, key.max);
+        }
+    }
+    return &kinds.emplace_back(table, PluginKeys("material", once)).second.kind;
 }
 
 bool has_key(rt_u32 model, const Key& key) {
@@ -168,13 +244,22 @@ MaterialValues::MaterialValues(const rt_material& plain) : rt_material(plain), l
 MaterialValues default_material() {
     MaterialValues m;
     m.texture = RT_NONE;
-    for (const Key& key : material_keys()) set_value(key, &m, key.def);
+    for (const Key& key : material_keys())
+        if (has_room(m.model, key)) set_value(key, &m, key.def);
     return m;
 }
 
 void set_material_value(MaterialValues& material, const Key& key, const std::array<float, 3>& value) {
+    if (!has_room(material.model, key)) return;
     const bool follows = same_bytes(material, whitted_view(material));
+    const rt_u32 before = material.model;
     set_value(key, &material, value);
+    if (material.model != before && (is_surface_model(before) || is_surface_model(material.model))) {
+        material.layers = MaterialValues(material).layers;
+        for (const Key& own : material_keys())
+            if (is_surface_model(material.model) && has_key(material.model, own) && is_key_of_surface(own))
+                set_value(own, &material, own.def);
+    }
     if (follows && !key.follows_model) material = whitted_view(material);
     if (std::strcmp(key.name, "model") == 0) material = whitted_view(material);
 }
@@ -201,6 +286,7 @@ MaterialValues material_of(const rt_material_desc& d, std::string& problem) {
         if (!d.values[i].key || !find_key(material_keys(), d.values[i].key))
             problem = "has a key that this host does not know, which is left out";
     for (const Key& key : material_keys()) {
+        if (!has_room(m.model, key)) continue;
         const std::array<float, 3> value = value_of(key, &m);
         if (!std::all_of(value.begin(), value.end(), [](float x) { return std::isfinite(x); }))
             problem = "has values that are not finite numbers; they are replaced by defaults";
@@ -210,7 +296,10 @@ MaterialValues material_of(const rt_material_desc& d, std::string& problem) {
 }
 
 Problem material_fault(const MaterialValues& material) {
-    return fault_of(material_keys(), &material);
+    for (const Key& key : material_keys())
+        if (has_room(material.model, key))
+            if (const Problem fault = fault_of(key, &material)) return fault;
+    return {};
 }
 
 }  // namespace clarity

@@ -7,11 +7,21 @@
 
 namespace clarity {
 
-// All keys but the texture, which is no number. `model` comes first, because it changes others.
+// All keys but the texture, which is no number. `model` comes first, because it changes others. Those of plugins' models come
+// last, and more of them when a plugin is loaded: the tables that were returned before stay as they are.
 const std::vector<Key>& material_keys();
+// For surface_models.cpp: another model, and the keys of one.
+void add_model_word(rt_u32 model, const char* word);
+void add_material_keys(const std::vector<Key>& keys);
 const Key& material_key(const char* name);
 // Whether materials of that model have the key.
 bool has_key(rt_u32 model, const Key& key);
+// Whether materials of that model have room for the key, though it may have no effect: models of plugins have their numbers
+// where others have layers.
+bool has_room(rt_u32 model, const Key& key);
+bool is_key_of_surface(const Key& key);
+// The key of that name that materials of the model have, or else that of another model; nullptr: there is none.
+const Key* find_material_key(rt_u32 model, const std::string& name);
 
 const rt_primitive_kind* material_kind_for_plugins();
 

@@ -142,7 +142,7 @@ TEST(Scene, validate_names_every_damage) {
         {"light 0: not a finite", [](Scene& s) { s.lights[0].values.color[0] = kNan; }},
         {"light 0: `color` is -1 0 0", [](Scene& s) { s.lights[0].values.color[0] = -1; }},
         {"camera 0: aperture or focus", [](Scene& s) { s.cameras[0].aperture = -1; }},
-        {"material 0: `model` is 6", [](Scene& s) { s.materials[0].values.model = RT_MODEL_KINDS; }},
+        {"material 0: `model` is 22", [](Scene& s) { s.materials[0].values.model = RT_MODEL_KINDS + 16; }},
         {"camera 0: not a finite", [](Scene& s) { s.cameras[0].up[0] = kNan; }},
         {"camera 0: field of view", [](Scene& s) { s.cameras[0].fov_y_rad = 4; }},
         {"camera 0: field of view", [](Scene& s) { s.cameras[0].fov_y_rad = kNan; }},

@@ -17,6 +17,9 @@ typedef struct rt_meeting {
     rt_vec s, t;  /* with point.normal, z, the frame of the surface's directions */
     rt_vec wo;    /* towards where the path comes from, in that frame */
     rt_bsdf bsdf;
+#ifdef RT_SURFACE_PLUGINS
+    vint material;
+#endif
 } rt_meeting;
 
 #ifdef RT_LIGHT_TREE
@@ -155,6 +158,9 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
     const rt_vec wi = rt_to_local(m->s, m->t, point->normal, s.towards);
     vfloat surface_pdf;
     rt_vec light = rt_bsdf_eval(&m->bsdf, m->wo, wi, lanes, &surface_pdf);
+#ifdef RT_SURFACE_PLUGINS
+    rt_eval_plugins(ctx, m->material, m->bsdf.color, m->wo, wi, lanes, &light, &surface_pdf);
+#endif
     light = rt_scale(rt_drawn_weight(frame, &s, surface_pdf), rt_mul(light, s.radiance_over_pdf));
     /* Shading normal and surface must agree on the side: else light would leak through, or come from behind. */
     const vmask above = RT_MASK(rt_dot(point->geometric, s.towards) > zero), agree = ~(above ^ RT_MASK(wi.z > zero));
@@ -195,6 +201,11 @@ RT_INLINE void rt_next_event(const rt_ctx *ctx, const constant rt_frame *frame, 
     rt_collect(frame, p, lit, light, p->event + rt_vint(1), RT_BY_NEE, first, s.light);
 }
 
+#ifdef RT_SURFACE_PLUGINS
+#define RT_WITH_PLUGINS(drawn) rt_draw_plugins(ctx, m->material, m->bsdf.color, m->wo, n, lanes, drawn)
+#else
+#define RT_WITH_PLUGINS(drawn) drawn
+#endif
 /* Draws the next directions. Returns the lanes that go on. */
 RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, const rt_surface *surface, const rt_meeting *m,
                                   const rt_sampler *sampler)
@@ -202,7 +213,7 @@ RT_INLINE vmask rt_next_direction(const rt_ctx *ctx, rt_path *p, vmask lanes, co
     const rt_point *point = &m->point;
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const rt_numbers n = rt_draw_set(sampler, RT_SURFACE_SET(p->event));
-    const rt_bsdf_sample s = rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes);
+    const rt_bsdf_sample s = RT_WITH_PLUGINS(rt_bsdf_draw(&m->bsdf, m->wo, n.a, n.b, n.c, lanes));
     const rt_vec direction = rt_normalize(rt_to_world(m->s, m->t, point->normal, s.wi));
     const vmask above = RT_MASK(rt_dot(point->geometric, direction) > zero), agree = above ^ s.transmitted;
     rt_vec weight = rt_mul(p->weight, s.weight);
@@ -328,6 +339,9 @@ RT_INLINE vmask rt_trace_segment(const rt_ctx *ctx, const constant rt_frame *fra
     around = rt_ior_around(ctx, p, &surface, scattered);
 #endif
     m.bsdf = rt_bsdf_of(ctx, &surface, ~m.point.leaving, around, scattered_bits, m.point.at);
+#ifdef RT_SURFACE_PLUGINS
+    m.material = surface.material;
+#endif
     RT_GUIDE(rt_guide_surface(frame, p, scattered, t, m.point.normal, &m.bsdf))
     if (ctx->lighting->emitter_count != 0u) rt_next_event(ctx, frame, p, scattered, &m, &sampler, tally);
     const vmask on = rt_next_direction(ctx, p, scattered, &surface, &m, &sampler);

@@ -14,6 +14,7 @@
 #include "scene/light_kinds.hpp"
 #include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
+#include "scene/surface_models.hpp"
 
 namespace clarity {
 namespace {
@@ -169,7 +170,7 @@ std::vector<MaterialValues> scene_materials(const Scene& scene) {
 void read_material(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
     const std::vector<std::string> path = split(key, '.');
     rt_u32 at = 0;
-    const Key* part = path.size() == 3 ? find_key(material_keys(), path[2]) : nullptr;
+    const Key* part = path.size() == 3 ? find_material_key(RT_MODEL_WHITTED, path[2]) : nullptr;
     const rt_u32 use = path.size() == 3 ? find_map_use(path[2]) : RT_NONE;
     if ((!part && use == RT_NONE) || !read_number(path[1], at))
         throw Error(Exit::usage, key + ": expected material.N.PART with N from 0 and PART one of " +
@@ -177,8 +178,14 @@ void read_material(const Scene& scene, EditedView& edited, const std::string& ke
     if (at >= scene.materials.size())
         throw Error(Exit::usage, key + ": the scene has materials 0 to " + std::to_string(scene.materials.size() - 1));
     if (!part) return edited.maps.give(scene, at, use, read_texture(scene, use, key, value));
-    const std::array<float, 3> number = read_key(*part, key, value, scene.origin);
     if (edited.view.materials.empty()) edited.view.materials = scene_materials(scene);
+    const rt_u32 model = edited.view.materials[at].model;
+    part = find_material_key(model, path[2]);
+    if (!has_room(model, *part))
+        throw Error(Exit::usage, key + ": materials of the model " +
+                                     value_text(material_key("model"), {static_cast<float>(model), 0, 0}, " ") +
+                                     " have no such key");
+    const std::array<float, 3> number = read_key(*part, key, value, scene.origin);
     set_material_value(edited.view.materials[at], *part, number);
 }
 
@@ -274,8 +281,12 @@ void add_light_words(const rt_light& light, size_t number, const std::array<doub
 void add_material_words(const MaterialValues& was, const MaterialValues& is, size_t number, std::vector<Word>& words) {
     bool differs = false;
     for (const Key& key : material_keys()) {
+        if (!has_room(is.model, key)) continue;
         const std::array<float, 3> value = value_of(key, &is);
-        const bool other = value != value_of(key, &was);
+        // What the first of the words, that of the model, sets.
+        const bool is_new = was.model != is.model && key.offset >= sizeof(rt_material) &&
+                            (is_surface_model(was.model) || is_surface_model(is.model));
+        const bool other = value != (is_new ? key.def : value_of(key, &was));
         differs |= other && !key.follows_model;
         if (other || (key.follows_model && differs && is.model != RT_MODEL_WHITTED))
             words.push_back({"material." + std::to_string(number) + "." + key.name, value_text(key, value, ",")});

@@ -15,7 +15,7 @@ struct SceneBuffer {
     size_t checked_bytes;               // if not 0: the size of the type, which is compared with the device's
     bool SceneFeatures::*of = nullptr;  // only kernels of scenes with this feature have it
     bool of_emitters = false;           // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
-    bool of_layers = false;             // only kernels with RT_LOBE_LAYERS have it
+    bool of_layers = false;             // only kernels with RT_LOBE_LAYERS or models of plugins have it
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {

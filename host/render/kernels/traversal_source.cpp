@@ -1,6 +1,7 @@
 #include "render/kernels/traversal_source.hpp"
 
 #include "render/kernels/scene_buffers.hpp"
+#include "scene/surface_models.hpp"
 
 namespace clarity {
 namespace {
@@ -111,7 +112,7 @@ std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneF
     };
     for (const SceneBuffer& buffer : kSceneBuffers) {
         if ((buffer.of && !(features.*buffer.of)) || (buffer.of_emitters && !picks_lights)) continue;
-        if (buffer.of_layers && !(picks_lights && (features.optics.lobes & RT_LOBE_LAYERS))) continue;
+        if (buffer.of_layers && !(picks_lights && (features.optics.lobes & (RT_LOBE_LAYERS | kSurfaceLobes)))) continue;
         add(buffer.type, buffer.name);
         if (buffer.checked_bytes) check(buffer.type, buffer.type, buffer.checked_bytes);
     }

@@ -13,6 +13,7 @@
 #include "plugin/trust.hpp"
 #include "render/film/film.hpp"
 #include "render/trial/trial_job.hpp"
+#include "scene/surface_models.hpp"
 
 namespace clarity {
 namespace {
@@ -26,6 +27,8 @@ bool is_wanted(const DeviceInfo& info, const Settings& settings) {
 std::vector<const rt_plugin*> plugins_with_kernels(const Prepared& prepared) {
     std::vector<const rt_plugin*> plugins{prepared.accel->layout};
     for (const ShapeKind& kind : prepared.scene->shape_kinds) plugins.push_back(kind.plugin);
+    for (const SurfaceModel& model : surface_models())
+        if (prepared.settings.optics.lobes & lobe_of_surface(model.number)) plugins.push_back(model.plugin);
     return plugins;
 }
 
@@ -117,6 +120,7 @@ TrialJob job_of(const Prepared& prepared, const DeviceInfo& info, const KernelRo
         if (!library.empty()) job.libraries[library] = original_of(library);
     }
     job.features = features_of(*prepared.scene, accel.scene, prepared.settings.optics);
+    job.surfaces = surface_model_ids();
     job.shapes = sample_shapes(*prepared.scene);
     job.settings.accel = accel.plugin->id;
     job.settings.accel_params = accel.params;

@@ -19,6 +19,7 @@ struct TrialJob {
     std::string kernels;                           // the id of their tracer, or kFilmKernels
     std::map<std::string, std::string> libraries;  // from each as loaded to the file that it stands for
     std::string device, device_name;               // id as `--device` takes it; the worker skips another device
+    std::vector<std::string> surfaces;             // ids of models that plugins bring, by their numbers
     SceneFeatures features;
     std::vector<TrialShape> shapes;
     Settings settings;
@@ -28,8 +29,8 @@ struct TrialJob {
         std::vector<std::pair<std::string, std::string>> texts;  // of the settings
         if constexpr (Parcel::kWrites)
             for (const Setting& setting : settings_table()) texts.emplace_back(setting.key, setting.get(self.settings));
-        parcel(self.kernels, self.libraries, self.device, self.device_name, self.features, self.shapes, self.settings.accel,
-               self.settings.accel_params, texts);
+        parcel(self.kernels, self.libraries, self.device, self.device_name, self.surfaces, self.features, self.shapes,
+               self.settings.accel, self.settings.accel_params, texts);
         if constexpr (!Parcel::kWrites)
             for (const auto& [key, value] : texts) set_setting(self.settings, key, value);
     }

@@ -5,6 +5,7 @@
 
 #include "render/settings/tracer_choice.hpp"
 #include "scene/emissive.hpp"
+#include "scene/surface_models.hpp"
 #include "scene/vec.hpp"
 
 namespace clarity {
@@ -55,6 +56,8 @@ void add(Optics& optics, const MaterialValues& m, const Material& own) {
         case RT_MODEL_UNLIT:
             lobes |= RT_LOBE_UNLIT;
             break;
+        default:
+            if (is_surface_model(m.model)) lobes |= lobe_of_surface(m.model);
     }
     if ((lobes & RT_LOBE_GLASS) && !is_black(m.absorption)) lobes |= RT_LOBE_ABSORBS;
     optics.lobes |= lobes;

@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "render/trial/worker/trial_runs.hpp"
+#include "scene/surface_models.hpp"
 #include "worker/child.hpp"
 
 namespace clarity {
@@ -18,6 +19,7 @@ Problem try_kernels(const TrialJob& job) {
         if (loaded != original) note_private_copy(loaded, original);
         libraries.push_back(loaded);
     }
+    number_surface_models(job.surfaces);
     const PluginRegistry plugins = PluginRegistry::of(libraries);
     std::shared_ptr<Device> device;
     try {

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "scene/material_keys.hpp"
+#include "scene/surface_models.hpp"
 #include "scene/tangents.hpp"
 
 namespace clarity {
@@ -95,6 +97,21 @@ void add_maps(Scene& scene, const SceneFeatures& features) {
     make_tangents(scene);
 }
 
+// Models that plugins bring, on every other triangle.
+void add_surfaces(Scene& scene, rt_u32 lobes) {
+    std::vector<rt_u32> own;
+    for (const SurfaceModel& model : surface_models()) {
+        if (!(lobes & lobe_of_surface(model.number))) continue;
+        own.push_back(static_cast<rt_u32>(scene.materials.size()));
+        scene.materials.push_back({"", default_material()});
+        set_material_value(scene.materials.back().values, material_key("model"), {static_cast<float>(model.number), 0, 0});
+    }
+    if (own.empty()) return;
+    std::vector<rt_u32> materials(scene.triangle_materials.begin(), scene.triangle_materials.end());
+    for (size_t t = 0; t < materials.size(); t += 2) materials[t] = own[t / 2 % own.size()];
+    scene.triangle_materials = SharedArray<rt_u32>(std::move(materials));
+}
+
 // In rows above the other objects.
 void add_shapes(Scene& scene, const std::vector<TrialShape>& shapes) {
     size_t number = 0;
@@ -115,6 +132,7 @@ Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& k
     add_materials(scene, features.textures);
     add_bumps(scene, kGlass);
     add_floor(scene, kTextured);
+    add_surfaces(scene, features.optics.lobes);
     if (!features.normals) scene.normals = {};
     if (!features.uvs && !features.textures) scene.uvs = {};
     if (features.textures) add_maps(scene, features);
