@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 namespace clarity {
@@ -79,26 +80,12 @@ class File {
 };
 
 std::string machine_name(unsigned machine) {
-    switch (machine) {
-        case EM_386:
-            return "x86 (32 bit)";
-        case EM_X86_64:
-            return "x86-64";
-        case EM_ARM:
-            return "ARM (32 bit)";
-        case EM_AARCH64:
-            return "AArch64";
-        case EM_RISCV:
-            return "RISC-V";
-        case EM_PPC64:
-            return "PowerPC 64";
-        case EM_S390:
-            return "S/390";
-        case EM_LOONGARCH:
-            return "LoongArch";
-        default:
-            return "machine number " + std::to_string(machine);
-    }
+    constexpr std::pair<unsigned, const char*> kNames[] = {
+        {EM_386, "x86 (32 bit)"}, {EM_X86_64, "x86-64"},    {EM_ARM, "ARM (32 bit)"}, {EM_AARCH64, "AArch64"},
+        {EM_RISCV, "RISC-V"},     {EM_PPC64, "PowerPC 64"}, {EM_S390, "S/390"},       {EM_LOONGARCH, "LoongArch"}};
+    for (const auto& [number, name] : kNames)
+        if (number == machine) return name;
+    return "machine number " + std::to_string(machine);
 }
 
 // Reads the ELF header of the running program: this machine can certainly load a library with the same values.

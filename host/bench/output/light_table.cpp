@@ -1,6 +1,4 @@
-// light_table.cpp -- pictures by paths of light: their errors by samples and by seconds; first pictures of a program just
-// started.
-#include <cstdio>
+// light_table.cpp -- pictures by paths of light: their errors by samples and by seconds.
 
 #include "bench/output/output.hpp"
 #include "bench/output/text_table.hpp"
@@ -15,7 +13,9 @@ std::string told(int number) {
 const std::vector<std::string> kHead = {"scene",      "",         "samples", "seconds", "RMSE",      "trimmed",  "relMSE",
                                         "Msamples/s", "spread %", "slope",   "B/path",  "registers", "spilled B"};
 
-std::string errors_table(const BenchReport& report) {
+}  // namespace
+
+std::string light_table(const BenchReport& report) {
     TextTable table(kHead, 2);
     for (const BenchRecord& r : report.records) {
         if (r.measure != "light" || r.status != RowStatus::ok) continue;
@@ -41,25 +41,6 @@ std::string errors_table(const BenchReport& report) {
                          : "light: errors against the reference; slope: of log RMSE over log samples, -0.5 of independent "
                            "samples;\nB/path: state of a path in a lane; not told: the driver says nothing of registers\n" +
                                table.text() + "\n";
-}
-
-std::string start_table(const BenchReport& report) {
-    TextTable table({"scene", "", "device", "compile s", "whole s"}, 3);
-    for (const BenchRecord& r : report.records)
-        if (r.measure == "start" && r.status == RowStatus::ok)
-            table.add({r.scene, r.variant, r.device_id, short_number(r.time_ms.median / 1000),
-                       short_number(r.wall_ms.median / 1000)});
-    return table.empty()
-               ? std::string()
-               : "light: a first picture of 64x64, from the start of the program to its end; cold: nothing is kept from "
-                 "earlier\n" +
-                     table.text() + "\n";
-}
-
-}  // namespace
-
-std::string light_table(const BenchReport& report) {
-    return errors_table(report) + start_table(report);
 }
 
 }  // namespace clarity::bench

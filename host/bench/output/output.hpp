@@ -17,18 +17,13 @@ std::string bench_csv(const BenchReport& report);
 BenchReport read_bench_json(const std::string& text);
 // All tables for the terminal: one per suite and measure, at most 120 columns wide, then what was left out.
 std::string bench_table(const BenchReport& report);
-// Part of bench_table(): where the time of frames goes.
-// Part of bench_table(): pictures rendered by ranks of MPI, and where their time goes.
-std::string ranks_table(const BenchReport& report);
-// Part of bench_table(): pictures rendered by several devices, compared with those of one.
-std::string devices_table(const BenchReport& report);
-// Part of bench_table(): models that move.
-std::string moving_table(const BenchReport& report);
-// Part of bench_table(): animations by one rule for refits and builds after another.
-std::string policy_table(const BenchReport& report);
+// Parts of bench_table() with one line a record: first pictures, devices, ranks, models that move, animations; and dropped
+// rays.
+std::string row_tables(const BenchReport& report);
+std::string dropped_table(const BenchReport& report);
 // Part of bench_table(): shapes and meshes of them, and their crossing points.
 std::string shapes_table(const BenchReport& report);
-// Part of bench_table(): paths of light.
+// Part of bench_table(): errors of paths of light.
 std::string light_table(const BenchReport& report);
 // Part of bench_table(): our speed compared with the fastest baseline's.
 std::string speedup_table(const BenchReport& report);

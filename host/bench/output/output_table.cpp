@@ -204,17 +204,6 @@ std::string analysis_table(const BenchReport& report) {
                                (marked ? "*: the structure tests boxes by itself, and reports how many\n" : "") + "\n";
 }
 
-std::string dropped_table(const BenchReport& report) {
-    TextTable table({"scene", "ray slots a pixel", "secondary rays", "dropped", "of them %"}, 1);
-    for (const BenchRecord& r : report.records) {
-        if (r.measure != "dropped" || r.status != RowStatus::ok) continue;
-        const double all = double(r.rays_secondary + r.rays_dropped);
-        table.add({r.scene, std::to_string(r.ray_slots), std::to_string(r.rays_secondary), std::to_string(r.rays_dropped),
-                   all > 0 ? percent(double(r.rays_dropped) / all) : ""});
-    }
-    return table.empty() ? std::string() : "rays dropped because a pixel's array was full, 4 steps\n" + table.text() + "\n";
-}
-
 // Joins the parts with commas, and breaks lines to fit a terminal of 120 columns.
 std::string wrapped(std::string line, const std::vector<std::string>& parts) {
     std::string text;
@@ -274,8 +263,8 @@ std::string left_out(const BenchReport& report) {
 std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
            accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + speedup_table(report) +
-           light_table(report) + devices_table(report) + ranks_table(report) + moving_table(report) + policy_table(report) +
-           shapes_table(report) + analysis_table(report) + dropped_table(report) + left_out(report);
+           light_table(report) + row_tables(report) + shapes_table(report) + analysis_table(report) + dropped_table(report) +
+           left_out(report);
 }
 
 }  // namespace clarity::bench

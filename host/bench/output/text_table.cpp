@@ -42,18 +42,19 @@ std::string TextTable::text(size_t cell) const {
     return text;
 }
 
-std::string short_number(double value) {
-    if (value == 0 || !std::isfinite(value)) return {};
-    const int digits = std::clamp(2 - static_cast<int>(std::floor(std::log10(std::fabs(value)) + 1e-9)), 0, 4);
+std::string decimals(double value, int digits) {
     char text[64];
     std::snprintf(text, sizeof text, "%.*f", digits, value);
     return text;
 }
 
+std::string short_number(double value) {
+    if (value == 0 || !std::isfinite(value)) return {};
+    return decimals(value, std::clamp(2 - static_cast<int>(std::floor(std::log10(std::fabs(value)) + 1e-9)), 0, 4));
+}
+
 std::string percent(double share) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%.1f", 100 * share);
-    return text;
+    return decimals(100 * share, 1);
 }
 
 }  // namespace clarity::bench

@@ -21,6 +21,7 @@ class TextTable {
 
 // Three significant digits: 0.0123, 1.23, 12.3, 1234; "" for 0.
 std::string short_number(double value);
+std::string decimals(double value, int digits);
 // A share of 1 as a number of hundredths: 0.125 is "12.5".
 std::string percent(double share);
 

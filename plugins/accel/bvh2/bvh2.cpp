@@ -13,18 +13,13 @@
 namespace bvh2 {
 namespace {
 
-int32_t build_tree(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-    build(host, *input, out);
-    return RT_OK;
-}
-
 constexpr rt_cl_file kFiles[] = {
 #include "bvh2.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<bvh2_node>("bvh2_nodes", "bvh2_node")};
 constexpr rt_accel kAccel =
-    rt::accel(kSlots, rt::file(kFiles, "bvh2_types.h"), rt::file(kFiles, "bvh2.cl"), rt::guarded<build_tree>,
-              rt::guarded<levels>, rt::Traits().merit(1, 1), rt::guarded<clarity::bvh::pack_trees<pack, BVH2_LEAF_MAX>>);
+    rt::accel(kSlots, rt::file(kFiles, "bvh2_types.h"), rt::file(kFiles, "bvh2.cl"), rt::guarded<build>, rt::guarded<levels>,
+              rt::Traits().merit(1, 1), rt::guarded<clarity::bvh::pack_trees<pack, BVH2_LEAF_MAX>>);
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
 constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
 static_assert(sizeof(bvh2_node) == 64, "a node is a cache line");

@@ -61,15 +61,16 @@ void pack(const rt_host* host, const rt_build_input& input, Topology& topology, 
     write(host, input, topology, topology.nodes.count() * sizeof(Node), out);
 }
 
-void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out) {
-    const uint64_t count = count_primitives(host, input);
-    const Rules rules = rules_of(input.params);
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    const uint64_t count = count_primitives(host, *input);
+    const Rules rules = rules_of(input->params);
     const uint64_t bytes = TopologyBuilder::bytes(rules, count);
     with_memory_for(host, count, bytes, [&] {
-        TopologyBuilder builder(host, input, rules, count, 1.0f);
+        TopologyBuilder builder(host, *input, rules, count, 1.0f);
         const Topology topology = builder.run([out](uint64_t refs) { return rt::leaves(out, refs); }, [](const Part&) {});
-        write(host, input, topology, bytes, out);
+        write(host, *input, topology, bytes, out);
     });
+    return RT_OK;
 }
 
 }  // namespace bvh2

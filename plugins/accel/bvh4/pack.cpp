@@ -32,8 +32,9 @@ void pack(const rt_host* host, const rt_build_input& input, Topology& topology, 
            out);
 }
 
-void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out) {
-    finish(build_wide(host, input, wide_rules(input.params), kLayout, host_refs(out), host_nodes<bvh4_node, 4>(out)), out);
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    finish(build_wide(host, *input, wide_rules(input->params), kLayout, host_refs(out), host_nodes<bvh4_node, 4>(out)), out);
+    return RT_OK;
 }
 
 }  // namespace bvh4

@@ -46,18 +46,13 @@ constexpr rt_param kParams[] = {
         kIncoherentWays, kAuto),
 };
 
-int32_t build_tree(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-    build(host, *input, out);
-    return RT_OK;
-}
-
 int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* sink) {
     const auto* nodes = static_cast<const WideNode<8>*>(built->slots[0]);
     show_wide_level(host, built, group, level, sink, [&](rt_u32 at) -> const WideNode<8>& { return nodes[at]; });
     return RT_OK;
 }
 
-constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>, kTraits,
+constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build>, rt::guarded<levels>, kTraits,
                                       rt::guarded<pack_trees<pack, BVH8_LEAF_MAX>>);
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
 constexpr rt_device_build kDeviceRefit =

@@ -34,9 +34,10 @@ void pack(const rt_host* host, const rt_build_input& input, Topology& topology, 
            out);
 }
 
-void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out) {
-    finish(input, build_wide(host, input, wide_rules(input.params), kLayout, host_refs(out), host_nodes<bvh8_node, 8>(out)),
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    finish(*input, build_wide(host, *input, wide_rules(input->params), kLayout, host_refs(out), host_nodes<bvh8_node, 8>(out)),
            out);
+    return RT_OK;
 }
 
 }  // namespace bvh8

@@ -11,6 +11,6 @@ namespace bvh8 {
 void pack(const rt_host* host, const rt_build_input& input, clarity::bvh::Topology& topology, const rt_u32* refs,
           const rt_build_output* out);
 // Builds a tree by the plugin's parameters, and packs it.
-void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out);
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out);
 
 }  // namespace bvh8

@@ -35,12 +35,7 @@ constexpr rt_param kParams[] = {
 };
 static_assert(std::size(kParams) == kOwnParams, "in the order of WideParam");
 
-int32_t build_tree(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-    build(host, *input, out);
-    return RT_OK;
-}
-
-constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>,
+constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build>, rt::guarded<levels>,
                                       rt::Traits().merit(0.5f, 1.35f), rt::guarded<pack_trees<pack, CWBVH_LEAF_MAX>>);
 
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);

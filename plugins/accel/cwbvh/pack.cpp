@@ -47,15 +47,16 @@ void pack(const rt_host* host, const rt_build_input& input, Topology& topology, 
     finish(host, caught, wide, refs, out);
 }
 
-void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out) {
-    Caught caught(input.group_count);
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    Caught caught(input->group_count);
     std::unique_ptr<Scratch<rt_u32>> refs;
     const RefMemory refs_of = [&](uint64_t count) {
         refs = std::make_unique<Scratch<rt_u32>>(count);
         return refs->data();
     };
-    const WideBuild wide = build_wide(host, input, wide_rules(input.params), kLayout, refs_of, caught.output());
+    const WideBuild wide = build_wide(host, *input, wide_rules(input->params), kLayout, refs_of, caught.output());
     finish(host, caught, wide, refs->data(), out);
+    return RT_OK;
 }
 
 }  // namespace cwbvh
