@@ -32,6 +32,15 @@ namespace {
 constexpr size_t kFirstBatch = size_t{1} << 14, kMostBatch = size_t{1} << 22;
 constexpr double kBatchMs = 50;
 
+// Buffers are made once for all batches that rays may have, in few sizes: the memory of a buffer that has become too small is
+// kept (base/aligned_bytes.hpp), so buffers that grow with the batches take twice as much. Pages that no batch uses are no
+// memory on a CPU.
+size_t room_for(size_t rays) {
+    size_t room = kFirstBatch;
+    while (room < std::min(rays, kMostBatch)) room *= 2;
+    return rays > kFirstBatch ? room : rays;
+}
+
 Settings settings_of(const clarity_options& options) {
     Words words;
     read_words(options.settings, words);
@@ -95,13 +104,13 @@ void clarity_tracer::trace(const clarity_rays& rays, Wanted wanted, Progress& pr
     };
     if (rays.packed) {
         for (const clarity_packed::Piece& piece : rays.packed->pieces)
-            trace_some({piece.count, piece.packing, piece.rays, {}, {}});
+            trace_some({piece.count, piece.packing, piece.rays, {}, {}, room_for(piece.count)});
         return;
     }
     while (first < rays.count) {
         const auto begin = std::chrono::steady_clock::now();
         const size_t count = std::min(batch_, size_t(rays.count) - first);
-        trace_some({count, id_, {}, reader(rays, first), {}});
+        trace_some({count, id_, {}, reader(rays, first), {}, room_for(rays.count)});
         const double ms = ms_since(begin);
         if (ms > 2 * kBatchMs) batch_ = std::max(batch_ / 2, kFirstBatch / 16);
         if (ms < kBatchMs / 2 && count == batch_) batch_ = std::min(batch_ * 2, kMostBatch);

@@ -1,5 +1,6 @@
 #include "render/tracers/rays/ray_queries.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.hpp"
@@ -70,7 +71,7 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
     rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
     frame.ray_mask = query.mask;
     view_.write(queue, *prepared.scene, *prepared.on_device, {frame}, View());
-    const cl::Buffer& out = out_.fit(device_->context(), blocks * layout.lanes * fields * sizeof(float));
+    const cl::Buffer& out = out_.fit(device_->context(), std::max(blocks * layout.lanes, rays.room) * fields * sizeof(float));
     const cl::Buffer in = rays.upload();
     const bool debug = prepared.settings.debug;
     if (debug) overflows_.clear(queue);
@@ -99,7 +100,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const auto take = [&](size_t first, size_t count, const rt_hit* some) {
             std::memcpy(&(*hits)[first], some, count * sizeof *some);
         };
-        return trace(prepared, {rays.ray_count(), rays.lanes(), rays.packing(), upload}, query,
+        return trace(prepared, {rays.ray_count(), 0, rays.lanes(), rays.packing(), upload}, query,
                      [&](const cl::Buffer& out, cl_uint fields) {
                          if (hits) read_answers(out, rays.ray_count(), rays.lanes(), fields, take, query.work);
                      });
@@ -111,13 +112,15 @@ double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQue
         const unsigned lanes = prepared.layout.lanes;
         const auto upload = [&] {
             if (rays.packed()) return rays.packed;
-            const cl::Buffer& in = in_.fit(device_->context(), block_floats(rays.count, lanes) * sizeof(float));
+            const size_t room = std::max(rays.count, rays.room);
+            const cl::Buffer& in = in_.fit(device_->context(), block_floats(room, lanes) * sizeof(float));
             write_rays(in, rays.count, lanes, rays.read);
             return in;
         };
-        return trace(prepared, {rays.count, lanes, rays.packing, upload}, query, [&](const cl::Buffer& out, cl_uint fields) {
-            read_answers(out, rays.count, lanes, fields, rays.take, query.work);
-        });
+        return trace(prepared, {rays.count, rays.room, lanes, rays.packing, upload}, query,
+                     [&](const cl::Buffer& out, cl_uint fields) {
+                         read_answers(out, rays.count, lanes, fields, rays.take, query.work);
+                     });
     });
 }
 

@@ -26,6 +26,7 @@ struct RayArrays {
     cl::Buffer packed;     // by pack_on_device(); without it `read` gives the rays
     ReadRays read;
     TakeHits take;
+    size_t room = 0;  // the buffers are made for so many rays, or for `count` if that is more
 };
 
 // Ray queries on one device, and the choice of the fastest kernel for them. Used from one thread.
@@ -55,7 +56,7 @@ class RayQueries {
  private:
     // Rays of a query. upload: returns the buffer that has them.
     struct Given {
-        size_t count;
+        size_t count, room;
         unsigned lanes;
         uint64_t packing;
         std::function<cl::Buffer()> upload;
