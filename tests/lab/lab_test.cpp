@@ -107,9 +107,9 @@ const Submission kBinned[] = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"starter", kStarter, "", 50, 50, "times the work", true},
     {"wrong_loses_one", "in->groups[g].count, split", "std::max(in->groups[g].count, 1u) - 1, split", 0, 12.5, ""},
-    // A tree that is no tree: no check passes.
-    {"wrong_no_boxes", "    lab::put_trees(out, trees);",
-     "    for (lab::Tree& tree : trees)\n        for (rt_topology_node& node : tree.nodes) node.hi[0] = node.lo[0];\n    "
+    // The root has one child twice.
+    {"wrong_no_tree", "    lab::put_trees(out, trees);",
+     "    for (lab::Tree& tree : trees)\n        if (!tree.nodes.empty()) tree.nodes[0].left = tree.nodes[0].right;\n    "
      "lab::put_trees(out, trees);",
      0, 0, ""},
 };
@@ -126,7 +126,6 @@ const Submission kBinned[] = {
     "    return *entry <= 1.0001f * fmin(fmin(fmax(x0, x1), fmax(y0, y1)), fmin(fmax(z0, z1), hit->t));\n"       \
     "}\n"
 const Submission kWholeTraversal[] = {
-    {"right", "", "", 100, 100, "1.00 times the work"},
     {"own_slabs", "#include \"ordered_visit.h\"\n", OWN_SLABS "#define rt_enter_box own_enter\n", 50, 50,
      "the host has counted 0 boxes, so it tests them by arithmetic of its own, or none: test each by rt_enter_box", true},
     {"own_slabs_that_are_reported", "#include \"ordered_visit.h\"\n",
