@@ -77,7 +77,8 @@ int check_folder(const PluginRegistry& plugins, const LabCommand& command, Progr
 }
 
 // night: what is graded already is left out, and what another process grades.
-int grade_all(const PluginRegistry& plugins, const LabCommand& command, bool night, Progress& progress) {
+int grade_all(const PluginRegistry& plugins, const LabCommand& command, Progress& progress) {
+    const bool night = command.action == "night";
     if (night && command.output.empty()) throw Error(Exit::usage, "lab night: name the folder of the marks with -o");
     expect_words(command, 2, 100000, "grade|night LAB SUBMISSION... [-o DIR] [--gradescope FILE] [--autolab]");
     if (!command.gradescope.empty() && command.words.size() > 2)
@@ -125,7 +126,7 @@ int grade_all(const PluginRegistry& plugins, const LabCommand& command, bool nig
     return static_cast<int>(Exit::failed);
 }
 
-int make_board(const LabCommand& command) {
+int make_board(const PluginRegistry&, const LabCommand& command, Progress&) {
     expect_words(command, 2, 2, "board LAB MARKS -o PAGE.html");
     if (command.output.empty()) throw Error(Exit::usage, "lab board: name the page with -o");
     const lab::Lab of = lab::read_lab(lab_folder(command.words[0]), false);
@@ -142,7 +143,7 @@ int hand_out(const PluginRegistry& plugins, const LabCommand& command, Progress&
     return static_cast<int>(Exit::done);
 }
 
-int copy_to_new(const LabCommand& command) {
+int copy_to_new(const PluginRegistry&, const LabCommand& command, Progress&) {
     expect_words(command, 2, 2, "new LAB DIR");
     lab::copy_lab(lab_folder(command.words[0]), command.words[1]);
     print_text("%s is a lab now, a copy of %s: change it, try it by `clarity lab grade %s %s/reference`\n",
@@ -150,16 +151,21 @@ int copy_to_new(const LabCommand& command) {
     return static_cast<int>(Exit::done);
 }
 
+struct Action {
+    const char* name;
+    int (*run)(const PluginRegistry&, const LabCommand&, Progress&);
+};
+constexpr Action kActions[] = {{"new", copy_to_new}, {"handout", hand_out}, {"check", check_folder},
+                               {"grade", grade_all}, {"night", grade_all},  {"board", make_board}};
+
 }  // namespace
 
 int run_lab(const PluginRegistry& plugins, const LabCommand& command) {
     Progress progress;
     const CancelOnSignal cancel(progress);
-    if (command.action == "new") return copy_to_new(command);
-    if (command.action == "handout") return hand_out(plugins, command, progress);
-    if (command.action == "check") return check_folder(plugins, command, progress);
-    if (command.action == "board") return make_board(command);
-    return grade_all(plugins, command, command.action == "night", progress);
+    for (const Action& action : kActions)
+        if (command.action == action.name) return action.run(plugins, command, progress);
+    throw Error(Exit::usage, "clarity lab " + command.action + ": no such action");
 }
 
 }  // namespace clarity

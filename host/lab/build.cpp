@@ -160,10 +160,8 @@ std::string forbidden_word(std::string text, const std::vector<std::string>& wor
 
 void collect(const Lab& lab, const std::string& from, const std::string& to) {
     fs::create_directories(to);
-    fs::copy_options how = fs::copy_options::overwrite_existing;
-    for (const auto& entry : fs::directory_iterator(lab.handout()))
-        if (entry.is_regular_file() && entry.path().filename() != "lab.json")
-            fs::copy_file(entry, to / entry.path().filename(), how);
+    for (const std::string& file : lab.given())
+        fs::copy_file(file, to / fs::path(file).filename(), fs::copy_options::overwrite_existing);
     for (const Lab::File& file : lab.files) {
         const std::string text = submitted(from + "/" + file.name, file);
         if (const std::string why = forbidden_word(text, lab.forbidden); !why.empty())

@@ -41,11 +41,27 @@ void teapots(Maker& make, unsigned triangles) {
     for (unsigned i = 0; i < kBalls; ++i) make.ball(make.around({0, 0, 0}, 1), 0.2f, 2 * rings, rings);
 }
 
+// Triangles of all sizes, a few large ones among many small ones, in crowds and between them: where the halves of a list part
+// is no good place for a plane.
+void crowds(Maker& make, unsigned triangles) {
+    for (unsigned i = 0; i < triangles; ++i) {
+        const unsigned crowd = i % 7;
+        // A tenth lies anywhere. Crowd k is 0.7^k as wide as the first one.
+        const bool alone = make.random() < 0.1f;
+        const float angle = 2.4f * float(crowd), wide = alone ? 1 : 0.25f * std::pow(0.7f, float(crowd));
+        const Point middle = {0.7f * std::cos(angle), 0.2f * float(crowd) - 0.6f, 0.7f * std::sin(angle)};
+        const Point at = make.around(alone ? Point{0, 0, 0} : middle, wide);
+        const float size = wide * 0.5f * std::pow(0.02f, make.random());
+        make.triangle(at, make.around(at, size), make.around(at, size));
+    }
+}
+
 struct Generator {
     const char* name;
     void (*make)(Maker&, unsigned triangles);
 };
-constexpr Generator kGenerators[] = {{"city", city}, {"soup", soup}, {"needles", needles}, {"teapots", teapots}};
+constexpr Generator kGenerators[] = {
+    {"city", city}, {"soup", soup}, {"needles", needles}, {"teapots", teapots}, {"crowds", crowds}};
 
 }  // namespace
 

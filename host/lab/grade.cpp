@@ -76,6 +76,7 @@ Grader::Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Pro
     if (!lab_.layout.empty()) layout_ = library_of_accel(plugins, lab_.layout);
     std::vector<std::string> own;
     for (const auto& entry : fs::recursive_directory_iterator(lab_.folder)) own.push_back(entry.path().string());
+    for (const std::string& path : lab_.given()) own.push_back(path);
     std::sort(own.begin(), own.end());
     Digest files;
     for (const std::string& path : own) add_file(files, path);
@@ -236,7 +237,9 @@ void Grader::mark_cases(const std::string& library, Marks& marks, Progress& prog
         if (!figures.wrong.empty()) {
             line.found = cases[i]->hidden ? without_secrets(figures.wrong) : figures.wrong;
         } else {
-            line.found = text_of(figures.nodes, "%.2f") + " nodes and " + text_of(figures.tests, "%.2f") + " tests a ray";
+            const RayCosts& costs = figures.costs;
+            line.found = text_of(costs.nodes, "%.2f") + " nodes of " + text_of(costs.node_bytes) + " bytes, " +
+                         text_of(costs.boxes, "%.2f") + " boxes and " + text_of(costs.tests, "%.2f") + " tests a ray";
             if (reference > 0) {
                 const double ratio = figures.work / reference;
                 line.found += ", " + text_of(ratio, "%.2f") + " times the work of the reference (all points at " +

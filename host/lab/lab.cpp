@@ -72,6 +72,21 @@ bool is_plain_name(const std::string& name) {
 std::string Lab::handout() const {
     return fs::is_directory(folder + "/handout") ? folder + "/handout" : folder;
 }
+std::vector<std::string> Lab::given() const {
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(handout()))
+        if (entry.is_regular_file() && entry.path().filename() != "lab.json" && entry.path().filename() != "page.md")
+            all.push_back(entry.path().string());
+    for (const std::string& name : shared) {
+        const std::string beside = folder + "/../shared/" + name;
+        // Students, and copies of a lab, have them in the handout.
+        if (fs::exists(beside))
+            all.push_back(beside);
+        else if (!fs::exists(handout() + "/" + name))
+            refuse(folder + "/lab.json", "`shared`: " + name + " is neither in " + folder + "/../shared nor in the handout");
+    }
+    return all;
+}
 std::string Lab::reference() const {
     return fs::is_directory(folder + "/reference") ? folder + "/reference" : "";
 }
@@ -94,6 +109,9 @@ Lab read_lab(const std::string& folder, bool with_hidden) {
         // What a student's CMake did would be done by the grader.
         if (lab.files.back().name == "CMakeLists.txt") refuse(file, "`files`: CMakeLists.txt is the teacher's");
     }
+    lab.shared = value(json, "shared", std::vector<std::string>{}, file);
+    for (const std::string& name : lab.shared)
+        if (!is_plain_name(name)) refuse(file, "`shared`: '" + name + "' is no plain name");
     lab.forbidden = value(json, "forbidden", std::vector<std::string>{}, file);
     lab.checks = value(json, "checks", std::vector<std::string>{}, file);
     lab.lanes = value(json, "lanes", 1, file);
@@ -121,7 +139,7 @@ void write_handout(const Lab& lab, const std::string& folder, const std::vector<
     if (fs::exists(folder) && !fs::is_empty(folder, error))
         throw Error(Exit::usage, folder + ": is there already, and not empty; take another folder");
     fs::create_directories(folder);
-    fs::copy(lab.handout(), folder, fs::copy_options::recursive);
+    for (const std::string& file : lab.given()) fs::copy_file(file, folder + "/" + fs::path(file).filename().string());
     if (fs::exists(lab.folder + "/page.md")) fs::copy(lab.folder + "/page.md", folder + "/page.md");
     ordered_json json = read_json(lab.folder + "/lab.json");
     for (size_t i = 0; i < references.size() && i < json["cases"].size(); ++i) json["cases"][i]["reference"] = references[i];
@@ -137,11 +155,15 @@ void copy_lab(const std::string& from, const std::string& to) {
         std::string names;
         std::error_code error;
         for (const auto& entry : fs::directory_iterator(installed_labs(), error))
-            names += (names.empty() ? "" : ", ") + entry.path().filename().string();
+            if (fs::exists(entry.path() / "lab.json")) names += (names.empty() ? "" : ", ") + entry.path().filename().string();
         throw Error(Exit::usage, from + ": no such lab to begin with; there are " + (names.empty() ? "none" : names));
     }
     if (fs::exists(to)) throw Error(Exit::usage, to + ": is there already; take another name");
     fs::copy(from, to, fs::copy_options::recursive);
+    // Beside the copy there may be no `shared`.
+    for (const std::string& file : read_lab(from, false).given())
+        if (const std::string copy = to + "/handout/" + fs::path(file).filename().string(); !fs::exists(copy))
+            fs::copy_file(file, copy);
 }
 
 }  // namespace clarity::lab

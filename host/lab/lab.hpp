@@ -28,6 +28,7 @@ struct Lab {
         uint64_t most_bytes = 0;
     };
     std::vector<File> files;             // that students hand in
+    std::vector<std::string> shared;     // files of the folder `shared` beside the labs, which belong to the handout
     std::vector<std::string> forbidden;  // what must not stand in them
     std::vector<std::string> checks;     // of `clarity check`, or their beginnings
     int lanes = 1;                       // of all kernels: counts do not depend on the machine
@@ -41,6 +42,8 @@ struct Lab {
 
     // The folder from which a plugin is built, but for the files of students.
     std::string handout() const;
+    // All files of the handout, with the shared ones. Throws Error(usage) if one of these is nowhere.
+    std::vector<std::string> given() const;
     std::string reference() const;  // "": there is none, as in what students have
 };
 

@@ -33,24 +33,35 @@ const rt_plugin* open_library(const std::string& path) {
 // Of a structure, rays with counts. With one lane each ray has its own.
 struct Counted {
     std::vector<rt_hit> hits;
-    double nodes = 0, tests = 0;
+    RayCosts costs;
 };
-Counted count(CheckedScene& scene, const Variant& variant, const std::vector<rt_ray>& rays) {
+Counted count(CheckedScene& scene, const Variant& variant, const std::vector<rt_ray>& rays, rt_u32 node_bytes) {
     Counted counted;
     std::vector<RayWork> work;
     RayQuery query;
     query.count = true;
     query.work = &work;
     counted.hits = scene.trace(*scene.prepared(variant), rays, query).hits;
+    RayCosts& costs = counted.costs;
+    costs.node_bytes = node_bytes;
+    bool own_boxes = false;
     for (size_t i = 0; i < counted.hits.size(); i += static_cast<size_t>(variant.lanes)) {
         // What a structure says of itself is no count.
         if (work[i].own_steps > 0 || work[i].own_tests > 0)
             throw Error(Exit::failed,
                         "its nodes or tests are not counted by the host: read nodes by RT_NODE, and test primitives by "
                         "RT_LEAF (cl/CONTRACT.md, \"Counting\")");
-        counted.nodes += counted.hits[i].steps, counted.tests += counted.hits[i].leaf_tests;
+        own_boxes |= work[i].own_boxes > 0;
+        costs.nodes += counted.hits[i].steps, costs.boxes += work[i].boxes, costs.tests += counted.hits[i].leaf_tests;
     }
-    counted.nodes /= double(rays.size()), counted.tests /= double(rays.size());
+    // Boxes that nobody counts would be free. Also a grid has one: its own.
+    if (own_boxes || costs.boxes == 0)
+        throw Error(Exit::failed, std::string(own_boxes ? "it tests boxes by arithmetic of its own"
+                                                        : "the host has counted 0 boxes, so it tests them by arithmetic of its "
+                                                          "own, or none") +
+                                      ": test each by rt_enter_box, rt_enter_exit, rt_enter_bounds or rt_enter_planes, which "
+                                      "count it (cl/CONTRACT.md, \"Counting\")");
+    for (double* const sum : {&costs.nodes, &costs.boxes, &costs.tests}) *sum /= double(rays.size());
     return counted;
 }
 
@@ -80,6 +91,9 @@ void measure_job(ParcelReader& arguments) {
     const auto device = std::make_shared<Device>(choose_device(job.device));
     const Variant variant{job.lanes, false, false};
     const auto layout_for = [&](const rt_plugin& plugin) { return plugin.accel->topology ? layout : nullptr; };
+    const auto node_bytes = [&](const rt_plugin& plugin) {
+        return (plugin.accel->topology ? layout : &plugin)->accel->slots[0].elem_bytes;
+    };
     for (size_t c = 0; c < job.scenes.size(); ++c) {
         const std::vector<rt_ray>& rays = job.rays[c];
         nlohmann::json report;
@@ -88,8 +102,7 @@ void measure_job(ParcelReader& arguments) {
         if (reference) {
             worker::say_step("tracing the reference", kCompile_s);
             theirs = std::make_unique<CheckedScene>(*reference, layout_for(*reference), job.scenes[c].scene, device);
-            const Counted counted = count(*theirs, variant, rays);
-            reference_work = work_of(counted.nodes, counted.tests);
+            reference_work = work_of(count(*theirs, variant, rays, node_bytes(*reference)).costs);
         }
         report["reference_work"] = reference_work;
         try {
@@ -100,10 +113,11 @@ void measure_job(ParcelReader& arguments) {
             own.compile(variant);
             own.count(variant, {rays.front()}, false);
             worker::say_step("tracing " + std::to_string(rays.size()) + " rays", job.limit_s);
-            Counted counted = count(own, variant, rays);
+            Counted counted = count(own, variant, rays, node_bytes(*student));
             worker::say_step("comparing hits", 60 + job.limit_s);
             report["wrong"] = fault_of(own, variant, rays, std::move(counted.hits));
-            report["nodes"] = counted.nodes, report["tests"] = counted.tests;
+            const RayCosts& costs = counted.costs;
+            report["costs"] = {costs.nodes, costs.boxes, costs.tests, costs.node_bytes};
             if (job.times && theirs && report["wrong"] == "") {
                 worker::say_step("measuring times", 20 * kTimes_s);
                 const RayBlocks blocks(rays, static_cast<unsigned>(job.lanes));
@@ -149,8 +163,9 @@ class Run : public worker::Job {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
         CaseFigures figures;
         figures.wrong = json.value("wrong", "");
-        figures.nodes = json.value("nodes", 0.0), figures.tests = json.value("tests", 0.0);
-        figures.work = work_of(figures.nodes, figures.tests);
+        const auto costs = json.value("costs", std::vector<double>(4));
+        figures.costs = {costs.at(0), costs.at(1), costs.at(2), costs.at(3)};
+        figures.work = work_of(figures.costs);
         figures.reference_work = json.value("reference_work", 0.0);
         figures.ms = json.value("ms", 0.0), figures.reference_ms = json.value("reference_ms", 0.0);
         figures.steady = json.value("steady", true);
@@ -160,8 +175,13 @@ class Run : public worker::Job {
 
 }  // namespace
 
-double work_of(double nodes, double tests) {
-    return nodes + tests;
+// Our estimates, in tests of a triangle. A box: by the operations, of which a slab test has 6 products and 7 choices, about a
+// fifth of a triangle's (cl/lanes/rays.h, cl/primitives/triangle.h). A node: what its line of memory costs, which is most of
+// the rest of a step, so that a node of 64 bytes with two boxes is 0.8 + 2 * 0.2 = 1.2 tests. Larger nodes are more lines, and
+// cost in proportion. They are not fitted to times: those depend on the machine, and have points of their own.
+double work_of(const RayCosts& costs) {
+    constexpr double kLine = 0.8, kLineBytes = 64, kBox = 0.2;
+    return costs.nodes * kLine * std::max(1.0, costs.node_bytes / kLineBytes) + costs.boxes * kBox + costs.tests;
 }
 
 std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress) {

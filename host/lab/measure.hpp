@@ -29,16 +29,22 @@ struct MeasureJob {
     }
 };
 
+// What a ray costs on the average of a case, counted by the host.
+struct RayCosts {
+    double nodes = 0, boxes = 0, tests = 0;
+    double node_bytes = 0;  // of an element of the structure's first slot
+};
+
+// Work a ray that is graded, in tests of a triangle. One place, for all labs.
+double work_of(const RayCosts& costs);
+
 struct CaseFigures {
-    std::string wrong;                      // what is wrong; "": every hit is right
-    double work = 0, nodes = 0, tests = 0;  // a ray, of the student
-    double reference_work = 0;              // 0: no reference
+    std::string wrong;                    // what is wrong; "": every hit is right
+    RayCosts costs;                       // of the student
+    double work = 0, reference_work = 0;  // 0: no reference
     double ms = 0, reference_ms = 0;
     bool steady = true;  // of the times: no row was refused
 };
-
-// Work a ray that is graded: nodes that were visited and primitives that were tested. One place, for all labs.
-double work_of(double nodes, double tests);
 
 // Runs a job in a worker. The cases after the one in which the worker died have the same `wrong`. Throws Cancelled.
 std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress);

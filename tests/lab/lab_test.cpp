@@ -1,4 +1,4 @@
-// lab_test.cpp -- submissions of two labs, right, slow, wrong and cheating: each gets the mark that stands beside it in the
+// lab_test.cpp -- submissions of labs, right, slow, wrong and cheating: each gets the mark that stands beside it in the
 // table.
 #include <gtest/gtest.h>
 
@@ -35,10 +35,11 @@ void install_sdk() {
 }
 
 // A submission is our solution with one edit. Its mark, of 100 without times: 50 of checks and 50 of counts.
+constexpr const char* kStarter = "starter";
 struct Submission {
     const char* name;
     const char* from;  // the first place of this text ...
-    const char* to;    // ... becomes this; "": the file is this text
+    const char* to;    // ... becomes this. kStarter: the file is that of the handout
     double least, most;
     const char* found;  // stands in what some line found; "": anything
     bool quick = false;
@@ -102,26 +103,59 @@ const Submission kOrdered[] = {
     {"redefines_what_counts", "uint ordered_next", "#define RT_COUNT_VISIT(a, b)\nuint ordered_next", 0, 0, "has `#`"},
 };
 
+const Submission kBinned[] = {
+    {"right", "", "", 100, 100, "1.00 times the work", true},
+    {"starter", kStarter, "", 50, 50, "times the work", true},
+    {"wrong_loses_one", "in->groups[g].count, split", "std::max(in->groups[g].count, 1u) - 1, split", 0, 12.5, ""},
+    // The root has one child twice.
+    {"wrong_no_tree", "    lab::put_trees(out, trees);",
+     "    for (lab::Tree& tree : trees)\n        if (!tree.nodes.empty()) tree.nodes[0].left = tree.nodes[0].right;\n    "
+     "lab::put_trees(out, trees);",
+     0, 0, ""},
+};
+
+// Kernels that test boxes by themselves, of a lab in which students write all of the traversal.
+#define OWN_SLABS                                                                                                \
+    "#include \"ordered_visit.h\"\n"                                                                             \
+    "int own_enter(const global float *box, const rt_single_ray *ray, const rt_single_hit *hit, float *entry)\n" \
+    "{\n"                                                                                                        \
+    "    const float x0 = (box[0] - ray->ox) / ray->dx, x1 = (box[3] - ray->ox) / ray->dx;\n"                    \
+    "    const float y0 = (box[1] - ray->oy) / ray->dy, y1 = (box[4] - ray->oy) / ray->dy;\n"                    \
+    "    const float z0 = (box[2] - ray->oz) / ray->dz, z1 = (box[5] - ray->oz) / ray->dz;\n"                    \
+    "    *entry = fmax(fmax(fmin(x0, x1), fmin(y0, y1)), fmax(fmin(z0, z1), ray->t_min)) * 0.9999f;\n"           \
+    "    return *entry <= 1.0001f * fmin(fmin(fmax(x0, x1), fmax(y0, y1)), fmin(fmax(z0, z1), hit->t));\n"       \
+    "}\n"
+const Submission kWholeTraversal[] = {
+    {"own_slabs", "#include \"ordered_visit.h\"\n", OWN_SLABS "#define rt_enter_box own_enter\n", 50, 50,
+     "the host has counted 0 boxes, so it tests them by arithmetic of its own, or none: test each by rt_enter_box", true},
+    {"own_slabs_that_are_reported", "#include \"ordered_visit.h\"\n",
+     OWN_SLABS "#define rt_enter_box(box, ray, hit, entry) (RT_COUNT_BOXES(hit, 1), own_enter(box, ray, hit, entry))\n", 50, 50,
+     "it tests boxes by arithmetic of its own: test each by rt_enter_box"},
+};
+
 bool is_quick() {
     return std::getenv("CLARITY_QUICK_TESTS") != nullptr;
 }
 
 // The records of all submissions of a lab, which one run grades; in quick tests of some.
-std::map<std::string, json> grade(const std::string& lab, const std::string& file, const std::vector<Submission>& submissions) {
+std::map<std::string, json> grade(const std::string& folder, const std::string& file,
+                                  const std::vector<Submission>& submissions) {
     const Scratch scratch;
-    const std::string solution = [&] {
-        std::ifstream in(kLabs + "/" + lab + "/reference/" + file);
+    const std::string lab = fs::path(folder).filename().string();
+    const auto text_in = [&](const char* part) {
+        std::ifstream in(folder + "/" + part + "/" + file);
         return std::string(std::istreambuf_iterator<char>(in), {});
-    }();
-    std::vector<std::string> words = {"lab", "grade", kLabs + "/" + lab};
+    };
+    const std::string solution = text_in("reference"), starter = text_in("handout");
+    std::vector<std::string> words = {"lab", "grade", folder};
     for (const Submission& one : submissions) {
-        std::string text = solution;
-        if (*one.from) {
+        std::string text = one.from == kStarter ? starter : solution;
+        if (*one.from && one.from != kStarter) {
             const size_t at = text.find(one.from);
             EXPECT_NE(at, std::string::npos) << one.name;
             text.replace(at, std::string(one.from).size(), one.to);
         }
-        const std::string hidden = kLabs + "/" + lab + "/hidden/cases.json";
+        const std::string hidden = folder + "/hidden/cases.json";
         for (size_t at = text.find("HIDDEN"); at != std::string::npos; at = text.find("HIDDEN")) text.replace(at, 6, hidden);
         if (lab == "median") {
             text.replace(text.find("build(const rt_host*, "), 22, "build([[maybe_unused]] const rt_host* host, ");
@@ -159,12 +193,12 @@ std::map<std::string, json> grade(const std::string& lab, const std::string& fil
 }
 
 template <size_t N>
-void expect_marks(const std::string& lab, const std::string& file, const Submission (&all)[N]) {
+void expect_marks(const std::string& folder, const std::string& file, const Submission (&all)[N]) {
     install_sdk();
     std::vector<Submission> chosen;
     for (const Submission& one : all)
         if (one.quick || !is_quick()) chosen.push_back(one);
-    const auto records = grade(lab, file, chosen);
+    const auto records = grade(folder, file, chosen);
     for (const Submission& one : chosen) {
         const json& record = records.at(one.name);
         ASSERT_TRUE(record.is_object()) << one.name;
@@ -178,7 +212,7 @@ void expect_marks(const std::string& lab, const std::string& file, const Submiss
             if (line["hidden"] == true) {
                 EXPECT_EQ(text.find("probe"), std::string::npos) << "a hidden line quotes the submission";
             }
-            for (const char* secret : {"7301", "4117", "9241", "5003"})
+            for (const char* secret : {"7301", "4117", "9241", "5003", "6133", "3907"})
                 EXPECT_EQ(text.find(secret), std::string::npos) << one.name << " shows a hidden seed: " << text;
         }
         EXPECT_TRUE(found) << one.name << ": no line has '" << one.found << "'" << record.dump(1);
@@ -187,10 +221,47 @@ void expect_marks(const std::string& lab, const std::string& file, const Submiss
 }
 
 TEST(LabSubmissions, OfMedianSplit) {
-    expect_marks("median", "median.cpp", kMedian);
+    expect_marks(kLabs + "/median", "median.cpp", kMedian);
 }
 TEST(LabSubmissions, OfOrderedChildren) {
-    expect_marks("ordered", "ordered_visit.h", kOrdered);
+    expect_marks(kLabs + "/ordered", "ordered_visit.h", kOrdered);
+}
+
+TEST(LabSubmissions, OfBinnedBuilds) {
+    expect_marks(kLabs + "/binned", "binned.cpp", kBinned);
+}
+// A copy of `ordered` in which ordered.cl is handed in. Its counts are worth 50 of 100 points.
+TEST(LabSubmissions, BoxesThatNobodyCountsAreRefused) {
+    const Scratch scratch;
+    const std::string folder = scratch.path("whole");
+    fs::copy(kLabs + "/ordered", folder, fs::copy_options::recursive);
+    fs::remove_all(folder + "/hidden");
+    fs::rename(folder + "/reference/ordered_visit.h", folder + "/handout/ordered_visit.h");
+    fs::copy(folder + "/handout/ordered.cl", folder + "/reference/ordered.cl");
+    json lab = json::parse(scratch.read("whole/lab.json"));
+    lab["files"] = {{{"name", "ordered.cl"}, {"bytes", 16384}}};
+    lab["forbidden"] = json::array(), lab["checks"] = {"hits.random"};
+    lab["cases"] = {{{"name", "city"}, {"scene", "city"}, {"triangles", 500}, {"rays", 200}}};
+    scratch.write("whole/lab.json", lab.dump());
+    expect_marks(folder, "ordered.cl", kWholeTraversal);
+}
+
+// A shared file that is nowhere, and a name that leads elsewhere, are refused.
+TEST(Lab, SharedFilesComeWithTheHandoutAndWithACopy) {
+    const Scratch scratch;
+    const auto has = [&](const std::string& file) { return fs::exists(scratch.path(file)); };
+    clarity::lab::copy_lab(kLabs + "/binned", scratch.path("copy"));
+    EXPECT_TRUE(has("copy/handout/lab_tree.hpp"));
+    clarity::lab::write_handout(clarity::lab::read_lab(scratch.path("copy"), true), scratch.path("mine"), {});
+    for (const char* file : {"mine/lab_tree.hpp", "mine/binned.cpp", "mine/page.md", "mine/lab.json", "mine/CMakeLists.txt"})
+        EXPECT_TRUE(has(file)) << file;
+    EXPECT_FALSE(has("mine/reference") || has("mine/hidden"));
+    fs::remove(scratch.path("copy/handout/lab_tree.hpp"));
+    EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true).given(), clarity::Error);
+    json lab = json::parse(scratch.read("copy/lab.json"));
+    lab["shared"] = {"../lab.json"};
+    scratch.write("copy/lab.json", lab.dump());
+    EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true), clarity::Error);
 }
 
 TEST(Lab, LinksAndLargeFilesAreRefused) {

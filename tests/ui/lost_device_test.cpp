@@ -17,7 +17,8 @@ class LostDevice : public FaultyDriverTest {
     }
     // What is done about a loss is added to its message once the thread that prepares scenes is idle: some frames later.
     static void expect_message(WindowDriver& window, const char* text) {
-        EXPECT_TRUE(window.reaches([&](const nlohmann::json& state) { return says(state, text); })) << window.state()["message"];
+        EXPECT_TRUE(window.reaches([&](const nlohmann::json& state) { return says(state, text); }))
+            << window.state()["message"];
     }
 };
 
