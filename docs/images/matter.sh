@@ -3,21 +3,30 @@
 # glTF-Sample-Assets. OUT and OPTIONS in the environment: another folder for the pictures, further options of `render`.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
-program=$1 assets=$2
+program=$(realpath "$1") assets=$(realpath "$2") out=$(realpath "${OUT:-$here}")
 shift 2
 wanted=" $* "
 
 sun=$here/matter.scene
 sky=$here/../../scenes/plaster_sky.scene # alone, where suns that are seen through glass would be noise
 
+# Pictures carry the command that made them. It runs in a folder of links, so that it names no folder of this computer.
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
 # show NAME MODEL SIZE CAMERA LIGHT [SAMPLES]
 show() {
     case $wanted in "  " | *" $1 "*) ;; *) return 0 ;; esac
     model=$2
-    [ -e "$model" ] || model=$(find "$assets" -name "$2" | head -n 1)
+    [ -e "$model" ] || model=$(find -L "$assets" -name "$2" | head -n 1)
+    [ -n "$model" ] || { echo "matter.sh: no $2 in $assets" >&2; exit 1; }
+    ln -sfn "$(dirname "$model")" models
+    ln -sf "$5" .
     # shellcheck disable=SC2086
-    "$program" render "$model" "$5" -o "${OUT:-$here}/matter_$1.png" --tracer path --spp "${6:-64}" --depth 12 \
-        --size "$3" --camera "$4" ${OPTIONS:-}
+    "$program" render "models/$(basename "$model")" "$(basename "$5")" -o "matter_$1.png" --tracer path --spp "${6:-64}" \
+        --depth 12 --size "$3" --camera "$4" ${OPTIONS:-}
+    mv "matter_$1.png" "$out"
 }
 
 show alpha AlphaBlendModeTest.glb 480x200 0,1.5,11.2,0,1.05,0,24 "$sun"

@@ -13,6 +13,12 @@ std::string trimmed(std::string_view text) {
     return first == text.npos ? "" : std::string(text.substr(first, text.find_last_not_of(kXmlBlanks) + 1 - first));
 }
 
+// The id that a reference within the file means.
+std::string after_hash(std::string_view reference) {
+    const std::string url = trimmed(reference);
+    return url.substr(url.find('#') == 0 ? 1 : 0);
+}
+
 // NONE and BORDER have a colour around the picture, for which its own border is nearer than its repetition.
 rt_u32 wrap_mode(const std::string& word) {
     return word == "MIRROR"                                        ? RT_WRAP_MIRROR
@@ -42,7 +48,8 @@ namespace {
 // <image id><init_from>file; in an <effect>: <newparam sid="surface"><surface><init_from>image, and
 // <newparam sid="sampler"><sampler2D><source>surface</source><wrap_s>CLAMP</wrap_s><wrap_t>MIRROR. COLLADA 1.5 has <ref> within
 // <init_from>, and <instance_image url> in place of the surface. <transparent opaque="A_ONE"><texture texture="sampler"/>, and
-// <transparency><float>1. Source: COLLADA 1.4.1 and 1.5.0 specifications, Khronos Group, 2008.
+// <transparency><float>1; <material name><instance_effect url="#effect"/>. Source: COLLADA 1.4.1 and 1.5.0 specifications,
+// Khronos Group, 2008.
 class Reader {
  public:
     void read(std::string_view text) {
@@ -68,6 +75,8 @@ class Reader {
             const std::string name = picture(image);
             if (!name.empty()) out.transparencies.emplace(name, transparency);
         }
+        for (const auto& [material, effect] : effects_)
+            if (shiny_effects_.count(effect)) out.shininess.insert(material);
         return out;
     }
 
@@ -83,14 +92,19 @@ class Reader {
 
     void begin(const XmlTags& tags) {
         const std::string_view name = tags.name;
+        if (name == "effect") effect_ = xml_attribute(tags.tag, "id");
+        if (name == "material") {
+            const std::string_view shown = xml_attribute(tags.tag, "name");
+            material_ = shown.empty() ? xml_attribute(tags.tag, "id") : shown;
+        }
+        if (name == "instance_effect") effects_[material_] = after_hash(xml_attribute(tags.tag, "url"));
+        if (name == "shininess") is_in_shininess_ = !tags.is_empty;
+        if (name == "texture" && is_in_shininess_) shiny_effects_.insert(effect_);
         if (name == "effect") surfaces_.clear(), images_of_samplers_.clear(), clear_ = {}, clear_image_.clear();
         if (name == "image") image_ = xml_attribute(tags.tag, "id");
         if (name == "newparam") parameter_ = xml_attribute(tags.tag, "sid");
         if (name == "sampler2D") sampler_ = {};
-        if (name == "instance_image") {
-            const std::string url = trimmed(xml_attribute(tags.tag, "url"));
-            sampler_.image = url.substr(url.find('#') == 0 ? 1 : 0);
-        }
+        if (name == "instance_image") sampler_.image = after_hash(xml_attribute(tags.tag, "url"));
         if (name == "transparent" && !tags.is_empty) {
             is_in_transparent_ = true;
             const std::string_view mode = xml_attribute(tags.tag, "opaque");
@@ -115,6 +129,7 @@ class Reader {
             images_of_samplers_[parameter_] = sampler_.image;
         }
         if (name == "transparent") is_in_transparent_ = false;
+        if (name == "shininess") is_in_shininess_ = false;
         if (name == "transparency") is_in_transparency_ = false;
         if (name == "float" && is_in_transparency_) std::from_chars(word.data(), word.data() + word.size(), clear_.factor);
         if (name == "effect" && !clear_image_.empty()) transparencies_.emplace_back(clear_image_, clear_);
@@ -125,9 +140,11 @@ class Reader {
     std::map<std::string, std::string> files_;                          // by ids of images
     std::map<std::string, std::string> surfaces_, images_of_samplers_;  // ids of images by sids within an effect
     std::vector<std::pair<std::string, Transparency>> transparencies_;  // by ids of images
-    std::string image_, parameter_, clear_image_;
+    std::map<std::string, std::string> effects_;                        // ids by names of materials
+    std::set<std::string> shiny_effects_;                               // ids of those with a picture of the shininess
+    std::string image_, parameter_, clear_image_, effect_, material_;
     Transparency clear_;
-    bool is_in_transparent_ = false, is_in_transparency_ = false;
+    bool is_in_transparent_ = false, is_in_transparency_ = false, is_in_shininess_ = false;
 };
 
 }  // namespace

@@ -1,7 +1,8 @@
 // collada_pictures.hpp -- what COLLADA says of pictures and assimp does not pass on: the wrap modes of their samplers (it reads
-// those of Maya's extension only), and what a picture of the transparency means.
+// those of Maya's extension only), what a picture of the transparency means, and that there is one of the shininess.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,7 +23,8 @@ struct ColladaPictures {
     // By file_name().
     std::map<std::string, Wrap> wraps;  // of those that do not repeat only
     std::map<std::string, Transparency> transparencies;
-    std::string differs;  // a picture that samplers wrap in several ways; the first one counts
+    std::set<std::string> shininess;  // names of materials with a picture of it
+    std::string differs;              // a picture that samplers wrap in several ways; the first one counts
 };
 ColladaPictures collada_pictures(std::string_view text);
 

@@ -168,6 +168,7 @@ rt_u32 MaterialTable::id(unsigned material) {
     importers::give_maps(maps, out);
     for (const auto& [type, word] : kLeftOut)
         if (!picture_of(m, type).empty()) add_word(left_out, word);
+    if (pictures_.shininess.count(name.C_Str())) add_word(left_out, "shininess");  // assimp says nothing of it
     if (!left_out.empty())
         rt::warn(sink_, "material '" + std::string(name.C_Str()) + "': left out the pictures of " + left_out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));

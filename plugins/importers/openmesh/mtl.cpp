@@ -166,6 +166,7 @@ void Reader::close() {
     const bool has_strengths = std::any_of(material.maps.begin(), material.maps.end(),
                                            [](const ObjMap& map) { return map.use == RT_MAP_SPECULAR_COLOR; });
     if (!statements_.specular_map.names.empty() && !has_strengths) leave_out("map_Ks");
+    for (const std::string& statement : material.left_out) leave_out(statement);
     material.folder = folder_;
     material.left_out = std::move(left_out_);
     library_.materials[name_] = std::move(material);

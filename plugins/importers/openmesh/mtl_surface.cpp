@@ -67,22 +67,29 @@ void read_pbr(const MtlStatements& s, ObjMaterial& m) {
     read_alpha(s, m);
 }
 
+bool is_glass(const MtlStatements& s) {
+    return s.illumination == 4 || s.illumination == 6 || s.illumination == 7 || s.illumination == 9;
+}
+
+bool is_clear(const MtlStatements& s) {
+    return !s.has_dissolve || s.dissolve >= 1;
+}
+
 // Wavefront's illumination models: 0 shows the colour as it is; 3, 5 and 8 (without ray tracing) mirror; 4, 6, 7 and 9 are
 // glass. Source: "MTL material format", appendix B1 of Wavefront's manual, 1995.
 void read_illumination(const MtlStatements& s, ObjMaterial& m) {
     rt_material_desc& out = m.values;
     const bool mirrors = s.illumination == 3 || s.illumination == 5 || s.illumination == 8;
-    const bool is_glass = s.illumination == 4 || s.illumination == 6 || s.illumination == 7 || s.illumination == 9;
     if (s.illumination == 0) m.keys.set("model", importers::unlit_model);
     const bool is_dull = s.illumination == 0 || s.illumination == 1, is_unstated = largest(s.specular) == 0;
     for (int k = 0; k < 3; ++k)
         out.specular[k] = is_dull ? 0 : is_there(s.specular_map) && is_unstated ? 1 : std::min(s.specular[k], 1.0f);
     out.shininess = std::clamp(s.exponent, 1.0f, 10000.0f);
     out.ior = 1;
-    if (is_glass) {
+    if (is_glass(s)) {
         out.refract = std::clamp(1 - s.dissolve, 0.0f, 1.0f);
         out.ior = s.ior > 1 ? std::min(s.ior, 10.0f) : 1.5f;
-        if (!s.has_dissolve || s.dissolve >= 1) {
+        if (is_clear(s)) {
             // Glass without an opacity is clear. Its hue is that of the transmission filter; the filter's strength is ignored,
             // because programs write it in either sense. The diffuse colour keeps its share of the light.
             out.refract = 1 - largest(out.color);
@@ -116,6 +123,10 @@ ObjMaterial to_material(const MtlStatements& s) {
         read_pbr(s, m);
     else
         read_illumination(s, m);
+    // Only clear glass has the hue of its filter. Programs write a grey filter, as they write `Ni`, for what is opaque.
+    const bool has_hue = s.filter[0] != s.filter[1] || s.filter[1] != s.filter[2];
+    if (has_hue && !is_there(s.filter_map) && (pbr || !is_glass(s) || !is_clear(s))) m.left_out.emplace_back("hue of Tf");
+    if (is_there(s.filter_map) && !pbr) m.left_out.emplace_back("map_Tf");
     return m;
 }
 

@@ -160,6 +160,9 @@ TEST(ColladaMaterials, SayWhichPicturesAreLeftOut) {
         folder, kDiffuse + "<specular>" + picture("other") + "</specular><reflective>" + picture("other") + "</reflective>");
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_NE(scene.warnings[0].find("'m': left out the pictures of reflection"), std::string::npos) << scene.warnings[0];
+    const Scene shiny = square(folder, kDiffuse + "<shininess>" + picture("other") + "</shininess>");
+    ASSERT_EQ(shiny.warnings.size(), 1u);
+    EXPECT_NE(shiny.warnings[0].find("'m': left out the pictures of shininess"), std::string::npos) << shiny.warnings[0];
 }
 
 }  // namespace

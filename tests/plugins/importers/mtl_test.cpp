@@ -223,6 +223,20 @@ TEST_F(Mtl, HighlightsAreReflections) {
     EXPECT_EQ(mapped.textures[mapped.maps[m.maps[RT_MAP_SPECULAR_COLOR]].texture].flags, 0u) << "a colour";
 }
 
+// A filter has a hue in clear glass alone; elsewhere that is said. A grey one means nothing, as programs write it beside all.
+TEST_F(Mtl, HuesOfFiltersAreShownOrNamed) {
+    folder_.write("four.ppm", picture());
+    const MaterialValues glass = values_of("illum 6\nKd .1 .1 .1\nTf 1 .2 .1");
+    EXPECT_FLOAT_EQ(glass.color[1], 0.2f);
+    for (const char* lost : {"Tf 1 .2 .1", "illum 2\nd .5\nTf 1 .2 .1", "illum 6\nd .5\nTf 1 .2 .1", "Pr .1\nTf 1 .2 .1"}) {
+        const Scene scene = square_of(lost);
+        EXPECT_EQ(scene.warnings.size(), 1u) << lost;
+        EXPECT_TRUE(warns(scene, "'a': left out hue of Tf")) << lost;
+    }
+    EXPECT_EQ(values_of("illum 2\nd .5\nTf .5 .5 .5").opacity, 0.5f);
+    EXPECT_TRUE(warns(square_of("map_Tf four.ppm"), "'a': left out map_Tf"));
+}
+
 // One warning for each material that is used, whatever its number of statements.
 TEST_F(Mtl, WhatIsLeftOutIsOneWarningForEachMaterial) {
     folder_.write(
