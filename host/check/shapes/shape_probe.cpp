@@ -73,7 +73,8 @@ std::vector<ShapeSubject> subjects_of(const rt_plugin& plugin, const ShapeTrial&
             subject.coordinate = std::max({subject.coordinate, std::fabs(part.min[k]), std::fabs(part.max[k])});
         subject.error = kErrorOfSize * subject.size;
         subject.numbers = guarded_numbers(part.numbers.data(), part.numbers.size(), "numbers of the shape");
-        subject.more = guarded_numbers(trial.scene.shape_numbers.data() + part.first_more, part.more_count, "`more` of the shape");
+        subject.more =
+            guarded_numbers(trial.scene.shape_numbers.data() + part.first_more, part.more_count, "`more` of the shape");
         subjects.push_back(std::move(subject));
     }
     return subjects;
@@ -94,8 +95,7 @@ void ShapeProbe::run(cl::Kernel& kernel, const ShapeSubject& subject, const void
                      size_t out_bytes, size_t count, const float* error) {
     if (count == 0) return;
     wrap_cl_errors(*device_, "calling the shape's kernels", [&] {
-        const cl::Buffer numbers = guarded_buffer(*device_, *subject.numbers),
-                         more = guarded_buffer(*device_, *subject.more);
+        const cl::Buffer numbers = guarded_buffer(*device_, *subject.numbers), more = guarded_buffer(*device_, *subject.more);
         const cl::Buffer from(device_->context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, in_bytes, const_cast<void*>(in));
         const cl::Buffer to(device_->context(), CL_MEM_READ_WRITE, out_bytes);
         kernel.setArg(0, numbers);

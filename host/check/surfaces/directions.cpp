@@ -35,7 +35,8 @@ std::vector<CellDensity> densities(SurfaceProbe& probe, const SurfaceSubject& su
             const int part = int(i) % parts;
             std::copy_n(wo, 3, queries[i].wo);
             std::fill_n(queries[i].u, 3, 0.5f);
-            set_in_cell(cells[first + i / size_t(parts)], (part / side + 0.5) / side, (part % side + 0.5) / side, queries[i].wi);
+            set_in_cell(cells[first + i / size_t(parts)], (part / side + 0.5) / side, (part % side + 0.5) / side,
+                        queries[i].wi);
         }
         const auto answers = probe.ask(subject, queries);
         for (size_t i = 0; i < answers.size(); ++i) {

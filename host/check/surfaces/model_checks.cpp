@@ -98,7 +98,8 @@ std::string fault_of(const SurfaceQuery& query, const SurfaceAnswer& answer) {
     const double length = std::hypot(double(answer.wi[0]), double(answer.wi[1]), double(answer.wi[2]));
     if (!(std::fabs(length - 1) < 1e-3))
         return "sample draws " + direction_text(answer.wi) + ", which is no unit vector," + of_draw(query);
-    if (answer.drawn() && any_wrong(answer.weight)) return "sample's weight is " + direction_text(answer.weight) + of_draw(query);
+    if (answer.drawn() && any_wrong(answer.weight))
+        return "sample's weight is " + direction_text(answer.weight) + of_draw(query);
     return {};
 }
 
@@ -111,7 +112,8 @@ Outcome finite(ModelBench& bench, const Step& step) {
                         SurfaceQuery& query = queries[i];
                         const double near = i % 2 ? kGrazingCosines[i / 2 % std::size(kGrazingCosines)] : double(query.u[0]);
                         // Many opposite to wo, or on its side: there formulas divide by little.
-                        const double turn = std::atan2(wo[1], wo[0]) / 6.283185307179586 + (i % 3 ? 0.5 * (i % 3 - 1) : query.u[1]);
+                        const double turn =
+                            std::atan2(wo[1], wo[0]) / 6.283185307179586 + (i % 3 ? 0.5 * (i % 3 - 1) : query.u[1]);
                         set_direction(std::max(near, 1e-6), turn, query.wi);
                         if (i < 27)  // the ends of each number
                             for (size_t k = 0, digits = i; k < 3; ++k, digits /= 3)
@@ -132,8 +134,8 @@ bool near(double a, double b) {
 Outcome weights(ModelBench& bench, const Step& step) {
     std::mt19937 random = bench.random(92);
     size_t drawn = 0;
-    Outcome outcome = each(
-        bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+    Outcome outcome =
+        each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
             const auto queries = random_draws(wo, bench.pairs(), random);
             const auto answers = probe.ask(subject, queries);
             for (size_t i = 0; i < answers.size(); ++i) {
@@ -178,12 +180,13 @@ Outcome reciprocity(ModelBench& bench, const Step& step) {
 
 Outcome total(ModelBench& bench, const Step& step) {
     double greatest = 0;
-    Outcome outcome = each(
-        bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+    Outcome outcome =
+        each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
             const double sum = shares_of(probe, subject, wo).total;
             greatest = std::max(greatest, sum);
             if (sum <= 1.01) return Outcome::passed("");  // NaN fails; 1 % is for the integration
-            return failed(subject, "the integral of pdf over the hemisphere is " + text_of(sum) + of_wo(wo) + ", expected at most 1");
+            return failed(subject,
+                          "the integral of pdf over the hemisphere is " + text_of(sum) + of_wo(wo) + ", expected at most 1");
         });
     if (outcome.kind == Outcome::Kind::passed) outcome.found += "; the greatest integral is " + text_of(greatest);
     return outcome;
@@ -208,8 +211,8 @@ Outcome density(ModelBench& bench, const Step& step) {
 Outcome energy(ModelBench& bench, const Step& step) {
     std::mt19937 random = bench.random(95);
     double greatest = 0;
-    Outcome outcome = each(
-        bench, step, {kWhite}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+    Outcome outcome =
+        each(bench, step, {kWhite}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
             double mean = 0, error = 0;
             for (int again = 0; again < 2; ++again) {  // as in density()
                 const auto answers = probe.ask(subject, random_draws(wo, bench.draws(), random));
@@ -229,8 +232,9 @@ Outcome energy(ModelBench& bench, const Step& step) {
                     return Outcome::passed("");
                 }
             }
-            return failed(subject, "it sends back " + text_of(mean) + " of the light (the mean weight, with a standard error of " +
-                                       text_of(error) + ")" + of_wo(wo) + ", expected at most 1");
+            return failed(subject, "it sends back " + text_of(mean) +
+                                       " of the light (the mean weight, with a standard error of " + text_of(error) + ")" +
+                                       of_wo(wo) + ", expected at most 1");
         });
     if (outcome.kind == Outcome::Kind::passed) outcome.found += "; it sends back at most " + text_of(greatest);
     return outcome;

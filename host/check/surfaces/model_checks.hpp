@@ -1,4 +1,5 @@
-// model_checks.hpp -- whether the three functions of a model of surfaces (rt_surface.h) agree with each other, and with physics.
+// model_checks.hpp -- whether the three functions of a model of surfaces (rt_surface.h) agree with each other, and with
+// physics.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -24,9 +24,9 @@ struct SurfaceQuery {
     float wo[3], wi[3], u[3];
 };
 struct SurfaceAnswer {
-    float wi[3], weight[3], pdf;       // drawn for wo and u
-    float f[3], density;               // of the query's wi
-    float drawn_f[3], drawn_density;   // of the direction that was drawn; 0 where none was
+    float wi[3], weight[3], pdf;      // drawn for wo and u
+    float f[3], density;              // of the query's wi
+    float drawn_f[3], drawn_density;  // of the direction that was drawn; 0 where none was
     bool drawn() const { return pdf > 0 && wi[2] > 0; }
 };
 
