@@ -35,4 +35,9 @@ double median(std::vector<double> values) {
     return summarize(std::move(values)).median;
 }
 
+double normal_of_chi_square(double chi_square, double degrees) {
+    const double k = 2 / (9 * degrees);
+    return (std::cbrt(chi_square / degrees) - (1 - k)) / std::sqrt(k);
+}
+
 }  // namespace clarity

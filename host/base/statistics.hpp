@@ -19,4 +19,8 @@ Summary summarize(std::vector<double> values);
 // The median; for an even number of values the mean of the middle two. 0 if there are none.
 double median(std::vector<double> values);
 
+// A random number of a standard normal distribution that is as unlikely as a chi-square of `degrees` degrees (Wilson, Hilferty
+// 1931).
+double normal_of_chi_square(double chi_square, double degrees);
+
 }  // namespace clarity

@@ -15,6 +15,7 @@
 #include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
 #include "check/oclgrind.hpp"
+#include "rt_surface.h"
 #include "worker/child.hpp"
 #include "worker/job.hpp"
 
@@ -100,6 +101,8 @@ class Run {
         } else if (record_.plugin->primitive) {
             // Kernels of a shape whose host part fails say nothing.
             if (phase("keys")) kernels("shape");
+        } else if (rt_surface_of(record_.plugin)) {
+            phase("surface");
         } else {
             structure();
         }

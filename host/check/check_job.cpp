@@ -32,6 +32,7 @@
 #include "check/process_size.hpp"
 #include "check/shapes/key_checks.hpp"
 #include "check/shapes/shape_checks.hpp"
+#include "check/surfaces/model_checks.hpp"
 #include "device/device.hpp"
 #include "render/tracers/rays/ray_text.hpp"
 #include "worker/child.hpp"
@@ -149,6 +150,12 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const CheckJob& job
     return checks;
 }
 
+std::vector<Check> surface_model_checks(const PluginRecord& record, const CheckJob& job) {
+    worker::enter_sandbox(WorkerKind::driver);
+    return model_checks(
+        *record.plugin, [device = job.device] { return std::make_shared<Device>(choose_device(device)); }, job.quick, job.seed);
+}
+
 std::vector<Check> key_value_checks(const CheckJob& job) {
     const auto inputs = std::make_shared<KeyInputs>();
     std::vector<std::string> libraries = {job.library};
@@ -241,6 +248,7 @@ void run_all(const CheckJob& job) {
     const std::vector<Check> checks = job.phase == "builds"    ? builder_checks(record, job)
                                       : job.phase == "imports" ? importer_checks(job)
                                       : job.phase == "keys"    ? key_value_checks(job)
+                                      : job.phase == "surface" ? surface_model_checks(record, job)
                                                                : kernel_checks(record, job);
     for (const Check& check : checks) {
         if (job.done.count(check.name) || !is_wanted(check.name, job.only)) continue;

@@ -15,7 +15,7 @@
 namespace clarity::check {
 
 struct CheckJob {
-    std::string library, phase;  // builds, hits, keys, shape, accesses or imports
+    std::string library, phase;  // builds, hits, keys, shape, accesses, surface or imports
     std::string device, report, truth, scratch, rays;
     std::vector<std::string> beside, samples, only;
     std::set<std::string> done;  // checks that an earlier worker ran

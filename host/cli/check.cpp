@@ -20,7 +20,6 @@
 #include "import/import.hpp"
 #include "render/edit/edit.hpp"
 #include "render/tracers/rays/ray_text.hpp"
-#include "rt_surface.h"
 
 namespace clarity {
 namespace {
@@ -351,11 +350,6 @@ int run_check(const PluginRegistry& plugins, const CheckCommand& asked) {
             if (!command.scene_files.empty() && !record.plugin->accel)
                 throw Error(Exit::usage, "--scene: " + std::string(record.plugin->id) +
                                              " is no structure; give the files of an importer by --samples");
-            if (rt_surface_of(record.plugin))
-                throw Error(Exit::usage,
-                            std::string(record.plugin->id) +
-                                " is a model of surfaces, a draft that has no checks yet; trace a scene that has it "
-                                "with the tracer path");
             const std::string name = is_folder ? record.path : word;
             libraries.emplace_back(std::move(record), name);
         }

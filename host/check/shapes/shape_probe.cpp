@@ -43,14 +43,19 @@ std::string source_of(const rt_plugin& plugin, const Device& device, const Varia
     return out.text();
 }
 
-std::shared_ptr<const GuardedBytes> guarded(const float* numbers, size_t count, const char* name) {
+}  // namespace
+
+std::shared_ptr<const GuardedBytes> guarded_numbers(const float* numbers, size_t count, const char* name) {
     GuardedBytes bytes(std::max<size_t>(count, 4) * sizeof(float), name, kAlignment);
     if (count > 0) std::memcpy(bytes.data(), numbers, count * sizeof(float));
     bytes.make_read_only();
     return std::make_shared<const GuardedBytes>(std::move(bytes));
 }
 
-}  // namespace
+cl::Buffer guarded_buffer(Device& device, const GuardedBytes& bytes) {
+    const cl_mem_flags how = device.info().cpu ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    return cl::Buffer(device.context(), CL_MEM_READ_ONLY | how, bytes.bytes(), const_cast<void*>(bytes.data()));
+}
 
 std::vector<ShapeSubject> subjects_of(const rt_plugin& plugin, const ShapeTrial& trial, size_t most) {
     std::vector<ShapeSubject> subjects;
@@ -67,8 +72,9 @@ std::vector<ShapeSubject> subjects_of(const rt_plugin& plugin, const ShapeTrial&
         for (size_t k = 0; k < 3; ++k)
             subject.coordinate = std::max({subject.coordinate, std::fabs(part.min[k]), std::fabs(part.max[k])});
         subject.error = kErrorOfSize * subject.size;
-        subject.numbers = guarded(part.numbers.data(), part.numbers.size(), "numbers of the shape");
-        subject.more = guarded(trial.scene.shape_numbers.data() + part.first_more, part.more_count, "`more` of the shape");
+        subject.numbers = guarded_numbers(part.numbers.data(), part.numbers.size(), "numbers of the shape");
+        subject.more =
+            guarded_numbers(trial.scene.shape_numbers.data() + part.first_more, part.more_count, "`more` of the shape");
         subjects.push_back(std::move(subject));
     }
     return subjects;
@@ -85,17 +91,11 @@ ShapeProbe::ShapeProbe(const rt_plugin& plugin, std::shared_ptr<Device> device, 
     });
 }
 
-cl::Buffer ShapeProbe::buffer_of(const GuardedBytes& bytes) {
-    // A CPU reads the guarded memory itself.
-    const cl_mem_flags how = device_->info().cpu ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    return cl::Buffer(device_->context(), CL_MEM_READ_ONLY | how, bytes.bytes(), const_cast<void*>(bytes.data()));
-}
-
 void ShapeProbe::run(cl::Kernel& kernel, const ShapeSubject& subject, const void* in, size_t in_bytes, void* out,
                      size_t out_bytes, size_t count, const float* error) {
     if (count == 0) return;
     wrap_cl_errors(*device_, "calling the shape's kernels", [&] {
-        const cl::Buffer numbers = buffer_of(*subject.numbers), more = buffer_of(*subject.more);
+        const cl::Buffer numbers = guarded_buffer(*device_, *subject.numbers), more = guarded_buffer(*device_, *subject.more);
         const cl::Buffer from(device_->context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, in_bytes, const_cast<void*>(in));
         const cl::Buffer to(device_->context(), CL_MEM_READ_WRITE, out_bytes);
         kernel.setArg(0, numbers);

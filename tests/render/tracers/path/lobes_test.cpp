@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/angle.hpp"
+#include "base/statistics.hpp"
 #include "reference/path_surface.hpp"
 #include "render/tracers/path/lane_kernel.hpp"
 #include "support/workbench.hpp"
@@ -17,13 +18,6 @@ using namespace clarity;
 using namespace clarity::test;
 
 namespace {
-
-// A random number of a standard normal distribution that is as unlikely as a chi-square of `degrees` degrees (Wilson, Hilferty
-// 1931).
-double normal_of(double chi_square, double degrees) {
-    const double k = 2 / (9 * degrees);
-    return (std::cbrt(chi_square / degrees) - (1 - k)) / std::sqrt(k);
-}
 
 // How far a value may be off: by a share of light that is spread over the hemisphere, and by a share of itself.
 struct Room {
@@ -137,7 +131,7 @@ double density_misfit(const Lobe& lobe, double mu, unsigned seed) {
     } else if (rest_count > 60) {
         return 1000;
     }
-    return normal_of(chi_square, std::max(1.0, degrees));
+    return normal_of_chi_square(chi_square, std::max(1.0, degrees));
 }
 
 }  // namespace

@@ -1,0 +1,105 @@
+#include "check/surfaces/surface_probe.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "check/shapes/shape_probe.hpp"
+#include "device/cl_errors.hpp"
+#include "device/program.hpp"
+#include "render/kernels/source_writer.hpp"
+
+namespace clarity::check {
+namespace {
+
+constexpr size_t kShare = 64;  // RT_PROBE_SHARE
+
+std::string number_text(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, " %.9g", x);
+    return text;
+}
+
+// choice: of each key, its least value (-1), its default or its greatest one (1).
+SurfaceSubject subject_of(const rt_plugin& plugin, const std::array<float, 3>& color, const std::vector<int>& choice) {
+    const rt_surface& surface = *rt_surface_of(&plugin);
+    SurfaceSubject subject;
+    subject.color = color;
+    subject.what = "`model " + std::string(plugin.id) + "  color";
+    for (const float c : color) subject.what += number_text(c);
+    std::vector<float> numbers;
+    for (rt_u32 i = 0; i < surface.key_count; ++i) {
+        const rt_surface_key& key = surface.keys[i];
+        subject.what += "  " + std::string(key.name);
+        for (int k = 0; k < (key.kind == RT_KEY_COLOR ? 3 : 1); ++k) {
+            numbers.push_back(float(choice[i] < 0 ? key.min : choice[i] > 0 ? key.max : key.def[k]));
+            subject.what += number_text(double(numbers.back()));
+        }
+    }
+    subject.what += "`";
+    subject.numbers = guarded_numbers(numbers.data(), numbers.size(), "numbers of the surface");
+    return subject;
+}
+
+std::string source_of(const rt_plugin& plugin, const Device& device) {
+    SourceWriter out;
+    out.define_int("RT_LANES", 1);
+    out.define_int("RT_CPU", device.info().traces_packets());
+    for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h", "shading/surface_draw.h"}) out.include(name);
+    out.include(plugin, rt_surface_of(&plugin)->kernels);
+    const std::string id = plugin.id;
+    out.line("#define RT_PROBE_EVAL " + id + "_eval\n#define RT_PROBE_PDF " + id + "_pdf\n#define RT_PROBE_SAMPLE " + id +
+             "_sample");
+    out.include("shading/surface_probe.cl");
+    return out.text();
+}
+
+}  // namespace
+
+std::vector<SurfaceSubject> surface_subjects(const rt_plugin& plugin, const std::array<float, 3>& color) {
+    const size_t keys = rt_surface_of(&plugin)->key_count;
+    std::vector<std::vector<int>> choices = {std::vector<int>(keys, 0), std::vector<int>(keys, -1), std::vector<int>(keys, 1)};
+    for (size_t i = 0; i < keys; ++i)
+        for (const int end : {-1, 1}) {
+            choices.emplace_back(keys, 0);
+            choices.back()[i] = end;
+        }
+    std::vector<SurfaceSubject> subjects;
+    std::set<std::string> known;
+    for (const std::vector<int>& choice : choices) {
+        SurfaceSubject subject = subject_of(plugin, color, choice);
+        if (known.insert(subject.what).second) subjects.push_back(std::move(subject));
+    }
+    return subjects;
+}
+
+SurfaceProbe::SurfaceProbe(const rt_plugin& plugin, std::shared_ptr<Device> device) : device_(std::move(device)) {
+    const BuildResult built = build_program(*device_, source_of(plugin, *device_), "-cl-std=CL1.2",
+                                            std::string("surface ") + plugin.id + " by itself");
+    kernel_ = wrap_cl_errors(*device_, "making kernels", [&] { return cl::Kernel(built.program, "probe_model"); });
+}
+
+std::vector<SurfaceAnswer> SurfaceProbe::ask(const SurfaceSubject& subject, const std::vector<SurfaceQuery>& queries) {
+    std::vector<SurfaceAnswer> answers(queries.size());
+    if (queries.empty()) return answers;
+    wrap_cl_errors(*device_, "calling the surface's kernels", [&] {
+        const size_t in_bytes = queries.size() * sizeof(SurfaceQuery), out_bytes = answers.size() * sizeof(SurfaceAnswer);
+        const cl::Buffer numbers = guarded_buffer(*device_, *subject.numbers);
+        const cl::Buffer from(device_->context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, in_bytes,
+                              const_cast<SurfaceQuery*>(queries.data()));
+        const cl::Buffer to(device_->context(), CL_MEM_READ_WRITE, out_bytes);
+        kernel_.setArg(0, numbers);
+        kernel_.setArg(1, from);
+        kernel_.setArg(2, to);
+        kernel_.setArg(3, static_cast<cl_uint>(queries.size()));
+        for (cl_uint k = 0; k < 3; ++k) kernel_.setArg(4 + k, subject.color[k]);
+        // One size of work-groups: PoCL compiles a kernel anew for each.
+        device_->queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange((queries.size() + kShare - 1) / kShare),
+                                              cl::NDRange(1));
+        device_->queue().enqueueReadBuffer(to, CL_TRUE, 0, out_bytes, answers.data());
+        return 0;
+    });
+    return answers;
+}
+
+}  // namespace clarity::check
