@@ -241,11 +241,18 @@ class Run {
                 return passed;
             } catch (const Stopped& stopped) {
                 CheckResult result = run.current();
+                // A worker that was cut before it named a check has still tried to begin one.
+                const bool begun = !result.name.empty();
+                if (!begun && !log.empty()) {
+                    result.plugin = record_.plugin->id;
+                    result.name = kAccessCheck;
+                    result.tried = kAccessTried;
+                }
                 if (result.name.empty() || job.done.count(result.name)) return passed;
-                const std::string during = stopped.why + ", while " + run.step();
-                result.outcome = stopped.why == accesses_cut
+                const std::string during = stopped.why + ", while " + (begun ? run.step() : "the simulated device was made");
+                result.outcome = begun && stopped.why == accesses_cut
                                      ? with_findings(Outcome::passed("no access outside of a buffer so far; " + during), log)
-                                     : Outcome::skipped("cut by " + during);
+                                     : Outcome::skipped((stopped.why == accesses_cut ? "" : "cut by ") + during);
                 finish(result);
                 return passed;
             } catch (const worker::JobDied& died) {

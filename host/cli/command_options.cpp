@@ -148,7 +148,7 @@ void add_check(CLI::App& app, CheckCommand& command) {
     single(app.add_option("--oclgrind-time", command.options.oclgrind_time_s,
                           "Processor time for accesses.oclgrind, which then says that it was cut; default: 60"))
         ->type_name("SECONDS")
-        ->check(CLI::Range(1.0, 1e6));
+        ->check(CLI::Range(0.01, 1e6));
     app.add_flag("--stop-at-first", command.options.stop_at_first, "Begin no check after one has failed");
     app.add_option("--samples", command.options.samples,
                    "Of importers: files to read and to damage, or folders with files of its extensions; may be repeated")

@@ -128,12 +128,20 @@ TEST_F(CheckCommand, WhatTheTimeLimitCutsIsNotRight) {
     EXPECT_NE(cut.out.find("cut by --time-limit: 1 s are over"), std::string::npos) << cut.out;
 }
 
+// A cut before anything was traced says so; it is not taken for a name that no check has.
+TEST_F(CheckCommand, OclgrindIsCutBeforeItBegins) {
+    const ProgramResult cut = run_program({"check", "bvh2", "--only", "accesses", "--oclgrind-time", "0.01"});
+    if (cut.out.find("oclgrind is not installed") != std::string::npos) GTEST_SKIP() << "no oclgrind";
+    EXPECT_EQ(cut.exit_code, 1) << cut.out << cut.err;
+    EXPECT_NE(cut.out.find("while the simulated device was made"), std::string::npos) << cut.out << cut.err;
+}
+
 // A cut is no fault, and the line says what was done last.
 TEST_F(CheckCommand, OclgrindIsCutAfterItsTime) {
-    const ProgramResult cut = run_program({"check", "bvh2", "--only", "accesses", "--oclgrind-time", "1"});
+    const ProgramResult cut = run_program({"check", "bvh2", "--only", "accesses", "--oclgrind-time", "2"});
     if (cut.out.find("oclgrind is not installed") != std::string::npos) GTEST_SKIP() << "no oclgrind";
-    EXPECT_EQ(cut.exit_code, 0) << cut.out;
-    EXPECT_NE(cut.out.find("no access outside of a buffer so far; cut after 1 s, while "), std::string::npos) << cut.out;
+    EXPECT_EQ(cut.exit_code, 0) << cut.out << cut.err;
+    EXPECT_NE(cut.out.find("no access outside of a buffer so far; cut after 2 s, while "), std::string::npos) << cut.out;
 }
 
 TEST_F(CheckCommand, NothingThatWasCheckedIsNotRight) {
