@@ -138,10 +138,13 @@ TEST_F(CheckCommand, OclgrindIsCutBeforeItBegins) {
 
 // A cut is no fault, and the line says what was done last.
 TEST_F(CheckCommand, OclgrindIsCutAfterItsTime) {
-    const ProgramResult cut = run_program({"check", "bvh2", "--only", "accesses", "--oclgrind-time", "2"});
+    const ProgramResult cut = run_program({"check", "bvh2", "--only", "accesses", "--oclgrind-time", "1"});
     if (cut.out.find("oclgrind is not installed") != std::string::npos) GTEST_SKIP() << "no oclgrind";
-    EXPECT_EQ(cut.exit_code, 0) << cut.out << cut.err;
-    EXPECT_NE(cut.out.find("no access outside of a buffer so far; cut after 2 s, while "), std::string::npos) << cut.out;
+    const bool begun = cut.out.find("while the simulated device was made") == std::string::npos;  // not on a very busy machine
+    EXPECT_EQ(cut.exit_code, begun ? 0 : 1) << cut.out << cut.err;
+    const char* const expected =
+        begun ? "no access outside of a buffer so far; cut after 1 s, while " : "cut after 1 s, while ";
+    EXPECT_NE(cut.out.find(expected), std::string::npos) << cut.out;
 }
 
 TEST_F(CheckCommand, NothingThatWasCheckedIsNotRight) {
