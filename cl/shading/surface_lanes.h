@@ -1,11 +1,12 @@
-/* surface_lanes.h -- calls the surfaces of plugins for one lane after the other. The host writes rt_surface_eval_by() and
- * rt_surface_sample_by(), which choose by the model. */
-#ifndef RT_SURFACE_LANES_H
+/* surface_lanes.h -- calls the surfaces of plugins for one lane after the other, in programs that have any. The host writes
+ * rt_surface_eval_by() and rt_surface_sample_by(), which choose by the model. */
+#if defined(RT_SURFACE_PLUGINS) && !defined(RT_SURFACE_LANES_H)
 #define RT_SURFACE_LANES_H
 #define RT_SURFACE_LANE(value, l) (((const float *)&(value))[l])
 #define RT_SURFACE_LANES(v, l) (float3)(RT_SURFACE_LANE((v).x, l), RT_SURFACE_LANE((v).y, l), RT_SURFACE_LANE((v).z, l))
 
-/* f |cos wi| and the density of wi in the lanes whose material is a plugin's; other lanes keep theirs. materials: of each lane. */
+/* Sets f |cos wi| and the density of wi in the lanes with a model of a plugin. Other lanes keep what they have. materials: the number
+ * of each lane's material. */
 RT_PART void rt_eval_plugins(const rt_ctx *ctx, vint materials, rt_vec color, rt_vec wo, rt_vec wi, vmask lanes, rt_vec *f, vfloat *pdf)
 {
     int ids[RT_LANES];
@@ -29,7 +30,7 @@ RT_PART void rt_eval_plugins(const rt_ctx *ctx, vint materials, rt_vec color, rt
     *pdf = rt_load(density);
 }
 
-/* The same of a drawn direction. */
+/* Draws a direction in the lanes with a model of a plugin. Other lanes keep what they have. */
 RT_PART rt_bsdf_sample rt_draw_plugins(const rt_ctx *ctx, vint materials, rt_vec color, rt_vec wo, rt_numbers n, vmask lanes, rt_bsdf_sample s)
 {
     int ids[RT_LANES];

@@ -1,6 +1,5 @@
 /* surface_probe.cl -- what the three functions of one model of surfaces answer, without scene and tracer. For `clarity check`, which
- * defines their names. Each work-item takes 64 queries. */
-#define RT_PROBE_SHARE 64u
+ * defines their names, and RT_PROBE_SHARE: how many queries each work-item takes. */
 
 /* queries: wo, wi and u. answers: direction, weight and pdf that are drawn for wo and u; eval and pdf of wi; those of the direction
  * that was drawn, 0 where none was. */

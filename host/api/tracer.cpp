@@ -36,9 +36,10 @@ constexpr double kBatchMs = 50;
 // kept (base/aligned_bytes.hpp), so buffers that grow with the batches take twice as much. Pages that no batch uses are no
 // memory on a CPU.
 size_t room_for(size_t rays) {
+    if (rays <= kFirstBatch) return rays;
     size_t room = kFirstBatch;
     while (room < std::min(rays, kMostBatch)) room *= 2;
-    return rays > kFirstBatch ? room : rays;
+    return room;
 }
 
 Settings settings_of(const clarity_options& options) {

@@ -1,6 +1,7 @@
 // steps.hpp -- what a check says while it runs and when it is done.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,5 +33,11 @@ struct Check {
     std::string tried;  // "the same result whatever the number of threads"
     std::function<Outcome(const Step&)> run;
 };
+
+// A check whose function takes what the checks of a phase share.
+template <class Bench>
+Check check_of(const std::shared_ptr<Bench>& bench, const char* name, const char* tried, Outcome (*run)(Bench&, const Step&)) {
+    return {name, tried, [=](const Step& step) { return run(*bench, step); }};
+}
 
 }  // namespace clarity::check

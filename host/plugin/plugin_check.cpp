@@ -254,6 +254,17 @@ Problem check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
     return {};
 }
 
+Problem check_key_name(const char* name, rt_u32 number) {
+    if (is_identifier(name) && is_plugin_id(name)) return {};
+    return "key " + std::to_string(number) + " has no name, or one that is not [a-z][a-z0-9_]*";
+}
+
+Problem check_kernel_file(const rt_cl_file& file) {
+    if (Problem why = check_text("the name of its kernels", file.name, true)) return why;
+    if (file.text && *file.text) return {};
+    return "its kernels have no text: embed <id>.cl (clarity_add_plugin does) and point kernels.text at it";
+}
+
 Problem check_plugin(const rt_plugin& plugin) {
     const size_t id_bytes = plugin.id ? strnlen(plugin.id, kMaxText) : 0;
     if (!is_plugin_id(std::string_view(plugin.id ? plugin.id : "", id_bytes)))

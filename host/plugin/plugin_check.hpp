@@ -28,6 +28,10 @@ Problem check_plugin_head(const uint32_t head[4], uint64_t object_bytes);
 // Nothing if the text is one line that can be shown, otherwise what is wrong with it. what: what it is, "help".
 Problem check_text(const char* what, const char* text, bool required);
 
+// Check the name of key `number` of a shape or surface, and the file of its kernels.
+Problem check_key_name(const char* name, rt_u32 number);
+Problem check_kernel_file(const rt_cl_file& file);
+
 // Check the description of a surface, and of a shape.
 Problem check_surface(const rt_surface& surface);
 Problem check_primitive(const rt_primitive& primitive);

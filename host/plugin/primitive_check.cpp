@@ -15,18 +15,17 @@ bool is_list(const rt_key& key) {
 }
 
 Problem check_key(const rt_key& key, rt_u32 number) {
-    if (!is_identifier(key.name) || !is_plugin_id(key.name))
-        return "key " + std::to_string(number) + " has no name, or one that is not [a-z][a-z0-9_]*";
-    const std::string who = "key '" + std::string(key.name) + "'";
-    if (std::strcmp(key.name, "material") == 0) return who + " is a key of every statement: take another name";
-    if (const Problem why = check_text("help", key.help, true)) return who + ": " + why.text();
-    if (key.kind > RT_KEY_POINTS) return who + " has the unknown kind " + std::to_string(key.kind);
+    if (Problem why = check_key_name(key.name, number)) return why;
+    const std::string where = "key '" + std::string(key.name) + "'";
+    if (std::strcmp(key.name, "material") == 0) return where + " is a key of every statement: take another name";
+    if (const Problem why = check_text("help", key.help, true)) return where + ": " + why.text();
+    if (key.kind > RT_KEY_POINTS) return where + " has the unknown kind " + std::to_string(key.kind);
     if (!std::isfinite(key.min) || !std::isfinite(key.max) || key.min > key.max)
-        return who + ": expected finite min <= max, found " + std::to_string(key.min) + ", " + std::to_string(key.max);
+        return where + ": expected finite min <= max, found " + std::to_string(key.min) + ", " + std::to_string(key.max);
     if (is_list(key) || (key.flags & RT_KEY_REQUIRED)) return {};
     const int count = key.kind == RT_KEY_POINT || key.kind == RT_KEY_VECTOR ? 3 : 1;
     const bool sound = std::all_of(key.def, key.def + count, [&](double x) { return x >= key.min && x <= key.max; });
-    if (!sound) return who + ": its default is outside of its range; set RT_KEY_REQUIRED if it has none";
+    if (!sound) return where + ": its default is outside of its range; set RT_KEY_REQUIRED if it has none";
     return {};
 }
 
@@ -50,9 +49,7 @@ Problem check_primitive(const rt_primitive& primitive) {
         numbers += key.kind == RT_KEY_POINT || key.kind == RT_KEY_VECTOR ? 3 : 1;
         lists = lists || is_list(key);
     }
-    if (Problem why = check_text("the name of its kernels", primitive.kernels.name, true)) return why;
-    if (!primitive.kernels.text || !*primitive.kernels.text)
-        return "its kernels have no text: embed <id>.cl (clarity_add_plugin does) and point kernels.text at it";
+    if (Problem why = check_kernel_file(primitive.kernels)) return why;
     if (primitive.prepare) return {};
     if (!primitive.bounds) return "it has neither bounds nor prepare, so no structure could hold it";
     if (lists || numbers > RT_SHAPE_NUMBERS)

@@ -282,7 +282,7 @@ void link_layouts(std::vector<PluginRecord>& records) {
     }
 }
 
-// Refuses surfaces whose keys or number of models do not go with those that are known.
+// Makes the models of surfaces known. Refuses a plugin if its keys are taken, or if there are too many models.
 void add_surfaces(std::vector<PluginRecord>& records) {
     for (PluginRecord& record : records) {
         const rt_surface* const surface = record.plugin && !record.shadowed ? rt_surface_of(record.plugin) : nullptr;

@@ -8,18 +8,17 @@ namespace clarity {
 namespace {
 
 Problem check_key(const rt_surface_key& key, rt_u32 number) {
-    if (!is_identifier(key.name) || !is_plugin_id(key.name))
-        return "key " + std::to_string(number) + " has no name, or one that is not [a-z][a-z0-9_]*";
-    const std::string who = "key '" + std::string(key.name) + "'";
-    if (const Problem why = check_text("label", key.label, true)) return who + ": " + why.text();
-    if (const Problem why = check_text("unit", key.unit, false)) return who + ": " + why.text();
-    if (const Problem why = check_text("help", key.help, true)) return who + ": " + why.text();
+    if (Problem why = check_key_name(key.name, number)) return why;
+    const std::string where = "key '" + std::string(key.name) + "'";
+    if (const Problem why = check_text("label", key.label, true)) return where + ": " + why.text();
+    if (const Problem why = check_text("unit", key.unit, false)) return where + ": " + why.text();
+    if (const Problem why = check_text("help", key.help, true)) return where + ": " + why.text();
     if (key.kind != RT_KEY_NUMBER && key.kind != RT_KEY_COLOR)
-        return who + " has the kind " + std::to_string(key.kind) + ", expected RT_KEY_NUMBER or RT_KEY_COLOR";
+        return where + " has the kind " + std::to_string(key.kind) + ", expected RT_KEY_NUMBER or RT_KEY_COLOR";
     const int count = key.kind == RT_KEY_COLOR ? 3 : 1;
     bool sound = std::isfinite(key.min) && std::isfinite(key.max);
     for (int k = 0; k < count; ++k) sound = sound && key.def[k] >= key.min && key.def[k] <= key.max;
-    if (!sound) return who + ": expected finite min <= def <= max";
+    if (!sound) return where + ": expected finite min <= def <= max";
     return {};
 }
 
@@ -39,10 +38,7 @@ Problem check_surface(const rt_surface& surface) {
     if (numbers > RT_SURFACE_NUMBERS)
         return "its keys hold " + std::to_string(numbers) + " numbers, at most " + std::to_string(RT_SURFACE_NUMBERS) +
                " are taken";
-    if (Problem why = check_text("the name of its kernels", surface.kernels.name, true)) return why;
-    if (!surface.kernels.text || !*surface.kernels.text)
-        return "its kernels have no text: embed <id>.cl (clarity_add_plugin does) and point kernels.text at it";
-    return {};
+    return check_kernel_file(surface.kernels);
 }
 
 }  // namespace clarity

@@ -257,8 +257,7 @@ void set_material_value(MaterialValues& material, const Key& key, const std::arr
     if (material.model != before && (is_surface_model(before) || is_surface_model(material.model))) {
         material.layers = MaterialValues(material).layers;
         for (const Key& own : material_keys())
-            if (is_surface_model(material.model) && has_key(material.model, own) && is_key_of_surface(own))
-                set_value(own, &material, own.def);
+            if (is_key_of_surface(own) && has_key(material.model, own)) set_value(own, &material, own.def);
     }
     if (follows && !key.follows_model) material = whitted_view(material);
     if (std::strcmp(key.name, "model") == 0) material = whitted_view(material);

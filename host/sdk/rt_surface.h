@@ -1,8 +1,7 @@
 /* rt_surface.h -- the extension `surface_draft`: a model of surfaces for the tracer `path`, one ray at a time. It is a draft: each change
  * raises RT_SURFACE_VERSION, and a host takes its own version only.
  *
- * A plugin that is neither an accel nor an importer nor a primitive has an rt_extension of the name RT_SURFACE, whose data is an
- * rt_surface. Its id becomes a word of the key `model` of materials, and its keys become keys of materials with that model.
+ * Such a plugin is no accel, importer or primitive. It has an rt_extension with the name RT_SURFACE and an rt_surface as data. Its id becomes a word of the key `model` of materials, and its keys become keys of materials with that model.
  *
  * Its kernel file has three functions in OpenCL C, with the plugin's id in front. Directions are unit vectors away from the surface,
  * in the frame of its shading normal, z; wo.z > 0 and wi.z > 0. numbers: the values of its keys, in their order. color: the material's

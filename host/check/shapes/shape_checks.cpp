@@ -323,7 +323,7 @@ std::vector<Check> shape_checks(const rt_plugin& plugin, const rt_plugin* accel,
                                 const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options) {
     const auto bench = std::make_shared<ShapeBench>(plugin, accel, open, options);
     const auto check = [&](const char* name, const char* tried, Outcome (*run)(ShapeBench&, const Step&)) {
-        return Check{name, tried, [=](const Step& step) { return run(*bench, step); }};
+        return check_of(bench, name, tried, run);
     };
     return {
         check("hits.kernels", "the kernels compile for each number of lanes", kernels_compile),

@@ -1,8 +1,8 @@
 #include "check/shapes/shape_probe.hpp"
+#include "check/guarded_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "device/cl_errors.hpp"
 #include "device/program.hpp"
@@ -13,7 +13,6 @@ namespace {
 
 // As build_scene.cpp: a point's height above a surface has about 16 roundings of numbers of the shape's size.
 constexpr float kErrorOfSize = 16 * 0x1p-24f;
-constexpr size_t kAlignment = 16;  // of `more`, as CONTRACT.md says
 
 std::string source_of(const rt_plugin& plugin, const Device& device, const Variant& variant) {
     SourceWriter out;
@@ -44,18 +43,6 @@ std::string source_of(const rt_plugin& plugin, const Device& device, const Varia
 }
 
 }  // namespace
-
-std::shared_ptr<const GuardedBytes> guarded_numbers(const float* numbers, size_t count, const char* name) {
-    GuardedBytes bytes(std::max<size_t>(count, 4) * sizeof(float), name, kAlignment);
-    if (count > 0) std::memcpy(bytes.data(), numbers, count * sizeof(float));
-    bytes.make_read_only();
-    return std::make_shared<const GuardedBytes>(std::move(bytes));
-}
-
-cl::Buffer guarded_buffer(Device& device, const GuardedBytes& bytes) {
-    const cl_mem_flags how = device.info().cpu ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
-    return cl::Buffer(device.context(), CL_MEM_READ_ONLY | how, bytes.bytes(), const_cast<void*>(bytes.data()));
-}
 
 std::vector<ShapeSubject> subjects_of(const rt_plugin& plugin, const ShapeTrial& trial, size_t most) {
     std::vector<ShapeSubject> subjects;

@@ -12,11 +12,6 @@
 
 namespace clarity::check {
 
-// Numbers that kernels read, between guards, at least four of them.
-std::shared_ptr<const GuardedBytes> guarded_numbers(const float* numbers, size_t count, const char* name);
-// The buffer of these bytes. A CPU reads the guarded memory itself, so the bytes must outlive it.
-cl::Buffer guarded_buffer(Device& device, const GuardedBytes& bytes);
-
 // One part of a shape, in the shape's own space.
 struct ShapeSubject {
     std::string what;  // the statement it comes from, and its number

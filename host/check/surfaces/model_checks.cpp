@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/angle.hpp"
 #include "check/seed.hpp"
 #include "check/surfaces/directions.hpp"
 
@@ -112,8 +113,7 @@ Outcome finite(ModelBench& bench, const Step& step) {
                         SurfaceQuery& query = queries[i];
                         const double near = i % 2 ? kGrazingCosines[i / 2 % std::size(kGrazingCosines)] : double(query.u[0]);
                         // Many opposite to wo, or on its side: there formulas divide by little.
-                        const double turn =
-                            std::atan2(wo[1], wo[0]) / 6.283185307179586 + (i % 3 ? 0.5 * (i % 3 - 1) : query.u[1]);
+                        const double turn = std::atan2(wo[1], wo[0]) / (2 * kPi) + (i % 3 ? 0.5 * (i % 3 - 1) : query.u[1]);
                         set_direction(std::max(near, 1e-6), turn, query.wi);
                         if (i < 27)  // the ends of each number
                             for (size_t k = 0, digits = i; k < 3; ++k, digits /= 3)
@@ -246,7 +246,7 @@ std::vector<Check> model_checks(const rt_plugin& plugin, const std::function<std
                                 uint64_t seed) {
     const auto bench = std::make_shared<ModelBench>(plugin, open, quick, seed);
     const auto check = [&](const char* name, const char* tried, Outcome (*run)(ModelBench&, const Step&)) {
-        return Check{name, tried, [=](const Step& step) { return run(*bench, step); }};
+        return check_of(bench, name, tried, run);
     };
     return {
         check("surface.kernels", "the three functions compile alone", compiles),

@@ -4,15 +4,16 @@
 #include <cstdio>
 #include <set>
 
-#include "check/shapes/shape_probe.hpp"
+#include "check/guarded_numbers.hpp"
 #include "device/cl_errors.hpp"
 #include "device/program.hpp"
+#include "device/set_arguments.hpp"
 #include "render/kernels/source_writer.hpp"
 
 namespace clarity::check {
 namespace {
 
-constexpr size_t kShare = 64;  // RT_PROBE_SHARE
+constexpr unsigned kShare = 64;  // queries that a work-item takes
 
 std::string number_text(double x) {
     char text[32];
@@ -50,6 +51,7 @@ std::string source_of(const rt_plugin& plugin, const Device& device) {
     const std::string id = plugin.id;
     out.line("#define RT_PROBE_EVAL " + id + "_eval\n#define RT_PROBE_PDF " + id + "_pdf\n#define RT_PROBE_SAMPLE " + id +
              "_sample");
+    out.define_int("RT_PROBE_SHARE", kShare);
     out.include("shading/surface_probe.cl");
     return out.text();
 }
@@ -88,11 +90,8 @@ std::vector<SurfaceAnswer> SurfaceProbe::ask(const SurfaceSubject& subject, cons
         const cl::Buffer from(device_->context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, in_bytes,
                               const_cast<SurfaceQuery*>(queries.data()));
         const cl::Buffer to(device_->context(), CL_MEM_READ_WRITE, out_bytes);
-        kernel_.setArg(0, numbers);
-        kernel_.setArg(1, from);
-        kernel_.setArg(2, to);
-        kernel_.setArg(3, static_cast<cl_uint>(queries.size()));
-        for (cl_uint k = 0; k < 3; ++k) kernel_.setArg(4 + k, subject.color[k]);
+        set_arguments(kernel_, numbers, from, to, static_cast<cl_uint>(queries.size()), subject.color[0], subject.color[1],
+                      subject.color[2]);
         // One size of work-groups: PoCL compiles a kernel anew for each.
         device_->queue().enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange((queries.size() + kShare - 1) / kShare),
                                               cl::NDRange(1));

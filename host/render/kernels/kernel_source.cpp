@@ -1,7 +1,5 @@
 #include "render/kernels/kernel_source.hpp"
 
-#include <cstring>
-
 #include "plugin/capabilities.hpp"
 #include "render/kernels/shape_source.hpp"
 #include "render/kernels/surface_source.hpp"
@@ -126,10 +124,7 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
         out.include(name);
     const rt_u32 surfaces = row.has(kPicksLights) ? optics_known(row, features.optics).lobes & kSurfaceLobes : 0;
     if (surfaces != 0) write_surfaces(out, surfaces);
-    for (const char* name : row.headers) {
-        if (surfaces != 0 && std::strcmp(name, "tracers/path/scatter.h") == 0) out.include("shading/surface_lanes.h");
-        out.include(name);
-    }
+    for (const char* name : row.headers) out.include(name);
     out.include(row.file);
 
     source.declarations = kernel_text(row.file);

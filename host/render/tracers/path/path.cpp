@@ -37,7 +37,7 @@ std::vector<const char*> path_headers(const std::vector<const char*>& recorder) 
     add(emitter_headers());
     add({"tracers/path/sum.h", "tracers/path/camera_rays.h"});
     add(recorder);
-    add({"tracers/path/state.h", "tracers/path/guides.h", "tracers/path/scatter.h"});
+    add({"tracers/path/state.h", "tracers/path/guides.h", "shading/surface_lanes.h", "tracers/path/scatter.h"});
     return headers;
 }
 

@@ -174,7 +174,8 @@ void expect_everywhere(const ScenePtr& scene, const std::vector<rt_ray>& rays, b
         for (const int lanes : {1, 16}) {
             const std::string what = accel + ", " + std::to_string(lanes) + " lanes";
             ASSERT_NO_FATAL_FAILURE(expect_same(hits_of(scene, rays, accel, lanes), expected, what));
-            if (!has_reference) continue;  // counting is the same for all kinds of primitives, and a kernel of its own
+            // Counting is a kernel of its own, and the same for all kinds of primitives: shapes are counted by one structure.
+            if (!has_reference && accel != structures().front()) continue;
             const AllHits counted = hits_of(scene, rays, accel, lanes, true);
             EXPECT_TRUE(counted.hits.empty());
             EXPECT_EQ(counted.first, expected.first) << what;
