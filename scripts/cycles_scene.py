@@ -3,7 +3,8 @@
 blender -b --factory-startup -t 2 -P cycles_scene.py -- SCENE OUT W H BOUNCES SEED SPP...
 
 Reads what both programs can show by the same numbers: cameras, polygons, triangles, spheres, lamps with a size, skies, the models
-lambert, conductor (Fresnel 1) and dielectric, and files that are loaded. Anything else is an error. For each SPP it writes OUT.SPP.pfm
+lambert, conductor (Fresnel 1) and dielectric, and files that are loaded. Anything else is an error. A .glb keeps its materials as
+Blender reads them: its means differ a little, so each program is compared with its own. For each SPP it writes OUT.SPP.pfm
 and a line "CPU spp seconds" (processor time of rendering). Everything of Cycles that makes pictures biased is off.
 
 Lamps become meshes that emit: Cycles 3.4 draws its own round lamps as discs that face what they light.
@@ -157,8 +158,8 @@ class Scene:
             if set(keys) - {"material", "name"}:
                 die(where + ": a scene that is moved is not compared")
             return self.read(path, override)
-        if override is None:
-            die(where + ": materials of files are not compared; give one")
+        if override is None and not path.endswith(".glb"):
+            die(where + ": materials of files are not compared but those of .glb; give one")
         world = Matrix.Translation(Vector(keys.get("translate", (0, 0, 0))))
         for x, y, z, degrees in reversed(keys.get("rotate", [])):
             world = world @ Matrix.Rotation(math.radians(degrees), 4, Vector((x, y, z)))
@@ -169,6 +170,12 @@ class Scene:
             before = set(bpy.data.objects)
             bpy.ops.import_scene.fbx(filepath=path)
             objects = [o for o in bpy.data.objects if o not in before]
+        elif path.endswith(".glb"):
+            before = set(bpy.data.objects)
+            np.bool = bool  # which Blender 3.4's importer uses, and numpy 1.24 has no longer
+            bpy.ops.import_scene.gltf(filepath=path)
+            objects = [o for o in bpy.data.objects if o not in before]
+            cut_out(bpy.data.materials)
         else:
             die(where + ": files of this kind are not compared")
         bpy.context.view_layer.update()
@@ -176,7 +183,7 @@ class Scene:
         for o, place in places:
             o.parent = None
             o.matrix_world = place
-            if o.type == "MESH":
+            if o.type == "MESH" and override:
                 o.data.materials.clear()
                 o.data.materials.append(override)
 
@@ -362,6 +369,26 @@ class Scene:
         data.clip_start, data.clip_end = 1e-4, 1e6
 
 
+def cut_out(materials):
+    """Blender shows `alpha mask` by a setting of its own window; Cycles needs a node for it."""
+    for material in materials:
+        if material.blend_method != "CLIP" or not material.use_nodes:
+            continue
+        tree = material.node_tree
+        for node in [n for n in tree.nodes if n.type == "BSDF_PRINCIPLED"]:
+            alpha = node.inputs["Alpha"]
+            step = tree.nodes.new("ShaderNodeMath")
+            step.operation = "LESS_THAN"
+            inside = tree.nodes.new("ShaderNodeMath")
+            inside.operation = "SUBTRACT"
+            inside.inputs[0].default_value = 1
+            step.inputs[0].default_value, step.inputs[1].default_value = alpha.default_value, material.alpha_threshold
+            for link in list(alpha.links):
+                tree.links.new(link.from_socket, step.inputs[0])
+            tree.links.new(step.outputs[0], inside.inputs[1])
+            tree.links.new(inside.outputs[0], alpha)
+
+
 def read_ply(path):
     """Points and triangles of a binary PLY without other properties."""
     data = (gzip.open if path.endswith(".gz") else open)(path, "rb").read()
@@ -388,6 +415,7 @@ def unbiased(scene, width, height, bounces):
     cycles.pixel_filter_type = "BOX"
     cycles.sampling_pattern = "SOBOL"
     cycles.min_light_bounces = cycles.min_transparent_bounces = 0
+    cycles.transparent_max_bounces = 64
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
     cycles.use_auto_tile = False
     for thing in bpy.data.objects:

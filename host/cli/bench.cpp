@@ -15,6 +15,7 @@
 #include "bench/output/output.hpp"
 #include "bench/output/rows_file.hpp"
 #include "bench/report/report.hpp"
+#include "bench/run/thread_counts.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -72,6 +73,18 @@ void print_list(const Suite& suite) {
     for (const std::string& note : suite.notes) std::printf("left out  %s\n", note.c_str());
 }
 
+// Appends the records of another run.
+void append(BenchReport& all, BenchReport other) {
+    const size_t first = all.joined.size() + 1;
+    all.joined.push_back(other.run);
+    all.joined.insert(all.joined.end(), other.joined.begin(), other.joined.end());
+    for (BenchRecord& record : other.records) {
+        record.run += first;
+        all.records.push_back(std::move(record));
+    }
+    all.interrupted |= other.interrupted;
+}
+
 // Puts the records of earlier runs before the records of this run.
 void join(BenchReport& report, const std::vector<std::string>& files) {
     BenchReport all;
@@ -81,25 +94,37 @@ void join(BenchReport& report, const std::vector<std::string>& files) {
         std::stringstream text;
         if (!(text << file.rdbuf()))
             throw Error(Exit::usage, "--join " + path + ": cannot be read; name a file that --json wrote");
-        BenchReport other;
         try {
-            other = read_bench_json(text.str());
+            append(all, read_bench_json(text.str()));
         } catch (const Error& e) {
             throw Error(Exit::usage, "--join " + path + ": " + e.what());
         }
-        const size_t first = all.joined.size() + 1;
-        all.joined.push_back(other.run);
-        all.joined.insert(all.joined.end(), other.joined.begin(), other.joined.end());
-        for (BenchRecord& record : other.records) {
-            record.run += first;
-            all.records.push_back(std::move(record));
-        }
     }
-    for (BenchRecord& record : report.records) all.records.push_back(std::move(record));
+    const size_t first = all.joined.size();
+    all.joined.insert(all.joined.end(), report.joined.begin(), report.joined.end());
+    for (BenchRecord& record : report.records) {
+        if (record.run > 0) record.run += first;
+        all.records.push_back(std::move(record));
+    }
     all.notes = report.notes;
     all.interrupted = report.interrupted;
     all.failure = report.failure;
     report = std::move(all);
+}
+
+// The words of the command without those that say where records go, and with how many threads: for a run of its own.
+std::vector<std::string> words_of_a_run(const std::vector<std::string>& words) {
+    std::vector<std::string> kept;
+    for (size_t i = 1; i < words.size(); ++i) {
+        const std::string option = words[i].substr(0, words[i].find('='));
+        const bool ours =
+            option == "--threads" || option == "--json" || option == "--csv" || option == "--report" || option == "--join";
+        if (!ours)
+            kept.push_back(words[i]);
+        else if (option == words[i])
+            ++i;  // its value
+    }
+    return kept;
 }
 
 // Checks that all outputs can be written, before time is spent on measuring. Throws Error.
@@ -130,6 +155,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && command.join_files.empty())
         throw Error(Exit::usage, "bench: name a suite (" + suite_list() + ") or a scene file");
+    check_thread_counts(command.threads);
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {
@@ -141,7 +167,14 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     BenchReport report;
     join(report, command.join_files);  // fails for an unreadable file before anything is measured
     report = {};
-    if (!suite.cases.empty()) {
+    if (!command.threads.empty()) {
+        ProgressBar bar(command.quiet);
+        const CancelOnSignal cancel(bar);
+        for (BenchReport& one : run_by_threads(words_of_a_run(command.words), command.threads, bar))
+            append(report, std::move(one));
+        take_time_to_stop();
+        bar.clear();
+    } else if (!suite.cases.empty()) {
         BenchOptions options;
         options.devices = choose_devices(command.device);
         options.rules.max_spread = command.max_spread;
@@ -158,7 +191,8 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
         if (command.join_files.empty())
             throw Error(Exit::failed, "nothing to measure: no scene of the suite was found, see above");
     }
-    report.run.command = command.text;
+    report.run.command = "clarity";
+    for (const std::string& word : command.words) report.run.command += " " + word;
     join(report, command.join_files);
     write(command, report, rows ? &*rows : nullptr);
     if (report.interrupted) {

@@ -165,7 +165,7 @@ CommandLine parse_command_line(int argc, char** argv) {
 
     add_bench(*bench, p.bench);
     bench->callback([&] {
-        for (int i = 0; i < argc; ++i) parsed->bench.text += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "clarity");
+        parsed->bench.words.assign(argv + 1, argv + argc);
         line.command = [parsed](const PluginRegistry& registry) {
             BenchCommand command = parsed->bench;
             command.quiet = parsed->common.quiet;

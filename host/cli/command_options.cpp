@@ -262,6 +262,12 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::Range(1u, 4096u));
+    app.add_option("--threads", bench.threads,
+                   "Run once with each of these numbers of processors, and show what rows gain, such as 1,2,4,8,16")
+        ->type_name("N[,N...]")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(1u, 1024u));
     single(app.add_option("--mpirun", bench.mpirun,
                           "Of suite mpi: what starts them, with its options; default: mpirun --bind-to none --oversubscribe"))
         ->type_name("COMMAND");

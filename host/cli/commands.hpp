@@ -152,11 +152,12 @@ struct BenchCommand {
     double time_limit_s = 0, max_spread = 0.1;
     std::vector<std::string> only;
     uint64_t max_triangles = 10'000'000;
-    std::vector<unsigned> ranks;  // of suite mpi; empty: the suite's own
-    std::string mpirun;           // the same
-    std::string reference;        // of suite light: a picture; "": one is rendered
+    std::vector<unsigned> ranks;    // of suite mpi; empty: the suite's own
+    std::vector<unsigned> threads;  // a run with each number of processors; empty: one, with all
+    std::string mpirun;             // the same
+    std::string reference;          // of suite light: a picture; "": one is rendered
     import::ImportOptions import;
-    std::string text;  // the command line as typed
+    std::vector<std::string> words;  // as typed: "bench", "cpu", ...
 };
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& options);
 

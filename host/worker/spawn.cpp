@@ -32,7 +32,7 @@ int Spawn::start(std::vector<std::string>& words, char* const* environment, pid_
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    return posix_spawn(&pid, argv[0], &files_, &attributes_, argv.data(), environment);
+    return posix_spawnp(&pid, argv[0], &files_, &attributes_, argv.data(), environment);
 }
 
 }  // namespace clarity::worker

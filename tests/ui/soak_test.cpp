@@ -15,7 +15,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kStore = "rt_put_pixels(frame, origin, sums, film);";
+// A place in a kernel for a loop without end, which reads and writes a float4 array of that name.
+struct Kernel {
+    const char *file, *place, *array;
+};
+constexpr Kernel kKernels[] = {{"iterative/iterative.cl", "rt_put_pixels(frame, origin, sums, film);", "sums"},
+                               {"path/path.cl", "RT_FOR_PACKETS(frame, packet)", "film"}};
 constexpr const char* kMovingScene = "tests/farm/moving.scene";
 
 double number_from(const char* variable, double otherwise) {
@@ -39,20 +44,25 @@ class Soak : public WindowTest {
     void SetUp() override {
         WindowTest::SetUp();
         fs::copy(source_path("cl"), folder.path() + "/cl", fs::copy_options::recursive);
-        kernel = folder.path() + "/cl/tracers/iterative/iterative.cl";
-        std::ifstream in(kernel, std::ios::binary);
-        good = {std::istreambuf_iterator<char>(in), {}};
-        ASSERT_NE(good.find(kStore), std::string::npos) << kernel << " has changed: edit something else of it here";
+        for (const Kernel& kernel : kKernels) {
+            std::ifstream in(path_of(kernel), std::ios::binary);
+            good.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+            ASSERT_NE(good.back().find(kernel.place), std::string::npos)
+                << kernel.file << " has changed: edit something else of it here";
+        }
     }
-    void save_kernel(const std::string& text) const {
-        std::ofstream(kernel + "~", std::ios::binary) << text;
-        fs::rename(kernel + "~", kernel);
+    std::string path_of(const Kernel& kernel) const { return folder.path() + "/cl/tracers/" + kernel.file; }
+    void save(const Kernel& kernel, const std::string& text) const {
+        const std::string path = path_of(kernel);
+        std::ofstream(path + "~", std::ios::binary) << text;
+        fs::rename(path + "~", path);
     }
     std::string chosen(const std::vector<std::string>& among) { return among[random() % among.size()]; }
     // One action; returns what it was.
     std::string act(WindowDriver& window, int number) {
-        const std::string structures[] = {"bvh2", "bvh4", "bvh8", "cwbvh", "spheres", "lbvh", "ploc", "linear"};
-        switch (random() % 17) {
+        const std::string structures[] = {"bvh2", "bvh4", "bvh8",   "cwbvh",  "spheres",
+                                          "lbvh", "ploc", "linear", "kdtree", "grid"};
+        switch (random() % 20) {
             case 0:
                 return say(window, "accel " + structures[random() % std::size(structures)]);
             case 1:
@@ -87,32 +97,50 @@ class Soak : public WindowTest {
             case 14:
                 return say(window, "save " + folder.path() + "/saved." + chosen({"png", "pfm"}));
             case 15:
-                save_kernel(good + "\n// " + std::to_string(number) + "\n");
-                return "a harmless edit";
+            case 16:
+                return say(window, "set tracer " + chosen({"path", "path", "auto", "iterative"}));
+            case 17:
+                return say(window, "set " + chosen({"strategy nee", "strategy bsdf", "strategy mis", "sampler independent",
+                                                    "sampler sobol", "denoise on", "denoise off", "denoise moving",
+                                                    "adaptive 0.1", "adaptive 0", "aov variance", "aov mis",
+                                                    "light-sampling tree", "light-sampling table"}));
             default:
-                if (random() % 2 == 0) {
-                    save_kernel(good + "\nthis is no OpenCL C\n");
-                    return "a mistake in a kernel";
-                }
-                std::string endless = good;
-                endless.insert(endless.find(kStore), "while (sums[0].x < 1e30f) sums[0].y += 1.0f;\n");
-                save_kernel(endless);
-                return "a loop without end in a kernel";
+                return edit_kernel(number);
         }
+    }
+    std::string edit_kernel(int number) {
+        const size_t i = random() % std::size(kKernels);
+        const Kernel& kernel = kKernels[i];
+        const std::string name = kernel.file;
+        if (random() % 2 == 0) {
+            save(kernel, good[i] + "\n// " + std::to_string(number) + "\n");
+            return "a harmless edit of " + name;
+        }
+        if (random() % 2 == 0) {
+            save(kernel, good[i] + "\nthis is no OpenCL C\n");
+            return "a mistake in " + name;
+        }
+        const std::string array = kernel.array;
+        std::string endless = good[i];
+        endless.insert(endless.find(kernel.place), "while (" + array + "[0].x < 1e30f) " + array + "[0].y += 1.0f;\n");
+        save(kernel, endless);
+        return "a loop without end in " + name;
     }
     static std::string say(WindowDriver& window, const std::string& line) {
         window.command(line);  // some are refused now and then, such as `undo` at the beginning
         return line;
     }
     TemporaryFolder folder;
-    std::string kernel, good;
+    std::vector<std::string> good;  // texts of kKernels
     std::mt19937 random{static_cast<unsigned>(number_from("CLARITY_SOAK_SEED", 1))};
 };
 
 TEST_F(Soak, RandomActionsLeaveTheWindowSound) {
     const double seconds = 60 * number_from("CLARITY_SOAK_MINUTES", 2);
     const std::string mark = "CLARITY_SOAK_MARK=" + folder.path();
-    const std::vector<std::string> start = {"accel bvh2", "set lanes 1", "set size 64x48", "set depth 3", "set aov color"};
+    const std::vector<std::string> start = {"accel bvh2",         "set lanes 1",     "set size 64x48",   "set depth 3",
+                                            "set aov color",      "set tracer auto", "set strategy mis", "set sampler sobol",
+                                            "set denoise moving", "set adaptive 0"};
     const auto window = open_scene(source_path("scenes/primitives.scene"), "64x48",
                                    {{"CLARITY_KERNEL_PATH", folder.path() + "/cl"},
                                     {"CLARITY_COMPILE", "worker"},
@@ -120,7 +148,7 @@ TEST_F(Soak, RandomActionsLeaveTheWindowSound) {
                                     {"CLARITY_SOAK_MARK", folder.path()}});
     // Back to a known state: the picture must be that of the beginning.
     const auto rest = [&] {
-        save_kernel(good);
+        for (size_t i = 0; i < std::size(kKernels); ++i) save(kKernels[i], good[i]);
         for (const char* line : {"compare off", "level off", "continuous 0", "handles 0"}) window->command(line);
         window->key("Escape");  // ends a sequence
         window->command("open " + source_path("scenes/primitives.scene"));

@@ -136,9 +136,28 @@ std::map<std::string, std::string>& refusals() {
     return texts;
 }
 
+// The buttons of a row in one line. Returns whether one was pressed; its value is then in `text`.
+bool value_buttons(const Setting& row, std::string& text) {
+    const float width = share_of_line(static_cast<int>(row.buttons.size()));
+    bool pressed = false;
+    for (const Setting::Button& each : row.buttons) {
+        if (&each != row.buttons.data()) ImGui::SameLine();
+        if (!toggle_button((each.label + "##" + row.key).c_str(), each.value == text, row.help, width) || each.value == text)
+            continue;
+        text = each.value;
+        pressed = true;
+    }
+    return pressed;
+}
+
 bool edit_value(const Setting& row, const Settings& settings, std::string& text) {
     const bool at_once = row.at_once();
     text = row.get(settings);
+    if (!row.buttons.empty()) {
+        if (value_buttons(row, text)) return true;
+        if (row.kind == Setting::Kind::choice) return false;
+        row_label("");
+    }
     switch (row.kind) {
         case Setting::Kind::integer: {
             int value = std::atoi(text.c_str());

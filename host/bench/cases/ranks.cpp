@@ -1,22 +1,15 @@
 #include "bench/cases/ranks.hpp"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <map>
 #include <memory>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "base/digest.hpp"
@@ -31,6 +24,7 @@
 #include "bench/cases/entry.hpp"
 #include "bench/output/row.hpp"
 #include "bench/run/failure.hpp"
+#include "bench/run/program.hpp"
 #include "render/multi/multi_preparer.hpp"
 
 namespace clarity::bench {
@@ -57,66 +51,6 @@ class RankRunner {
     const TemporaryFolder folder_;
     std::vector<std::string> mpirun_, render_;
 };
-
-using Clock = std::chrono::steady_clock;
-
-// What a started program leaves behind.
-struct Ended {
-    int status = 0;  // as waitpid() tells it
-    double ms = 0;
-};
-
-// Sends a signal to the program and to what it has started.
-void send(pid_t group, int signal) {
-    kill(-group, signal);
-}
-
-// Starts a program in a process group of its own, so that Ctrl-C reaches only us, and waits for its end. messages: a file for
-// its stdout and stderr.
-Ended run_program(std::vector<std::string> words, const std::string& messages, const char* install, const Progress& progress) {
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, 1, messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&files, 1, 2);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const auto begin = Clock::now();
-    pid_t pid = -1;
-    const int error = posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&files);
-    if (error != 0) throw Error(Exit::failed, words[0] + " cannot be started: " + std::strerror(error) + "; " + install);
-    constexpr double kPatienceMs = 5000;  // mpirun ends the ranks when it gets SIGTERM
-    Clock::time_point cancelled;
-    for (bool asked = false;;) {
-        int status = 0;
-        const pid_t ended = waitpid(pid, &status, WNOHANG);
-        if (ended < 0 && errno != EINTR) throw Error(Exit::failed, words[0] + ": " + std::strerror(errno));
-        if (ended == pid) {
-            if (asked) throw Cancelled();
-            return {status, ms_since(begin)};
-        }
-        if (progress.cancelled() && !asked) {
-            asked = true;
-            cancelled = Clock::now();
-            send(pid, SIGTERM);
-        } else if (asked && ms_since(cancelled) > kPatienceMs) {
-            send(pid, SIGKILL);
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-}
 
 std::string cause(int status) {
     if (WIFSIGNALED(status)) return std::string("ended by signal ") + strsignal(WTERMSIG(status));

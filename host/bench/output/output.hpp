@@ -27,5 +27,7 @@ std::string shapes_table(const BenchReport& report);
 std::string light_table(const BenchReport& report);
 // Part of bench_table(): our speed compared with the fastest baseline's.
 std::string speedup_table(const BenchReport& report);
+// Part of bench_table(): rows that were measured with several numbers of threads.
+std::string threads_table(const BenchReport& report);
 
 }  // namespace clarity::bench

@@ -263,8 +263,8 @@ std::string left_out(const BenchReport& report) {
 std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
            accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + speedup_table(report) +
-           light_table(report) + row_tables(report) + shapes_table(report) + analysis_table(report) + dropped_table(report) +
-           left_out(report);
+           light_table(report) + threads_table(report) + row_tables(report) + shapes_table(report) + analysis_table(report) +
+           dropped_table(report) + left_out(report);
 }
 
 }  // namespace clarity::bench

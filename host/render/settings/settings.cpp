@@ -192,6 +192,12 @@ Setting Setting::only_ways() const {
     return s;
 }
 
+Setting Setting::with_buttons(std::vector<Button> of) const {
+    Setting s = *this;
+    s.buttons = std::move(of);
+    return s;
+}
+
 Setting Setting::only_of(const char* shown) const {
     Setting s = *this;
     s.picture = shown;
@@ -236,12 +242,15 @@ std::vector<Setting> settings_of_paths() {
             0, 1, 0.0),
         kernel_number("only_bounce", "Only bounce",
                       "of `path`: light that came by so many events of scattering; 0: what the camera sees shine; -1: all", -1,
-                      kMostDepth, -1),
+                      kMostDepth, -1)
+            .with_buttons({{"-1", "all"}, {"0", "seen"}, {"1", "1"}, {"2", "2"}, {"3", "3"}}),
         choice("only_by", "Only by", "of `path`: light of points that were drawn on lamps (nee), or that rays found (bsdf)",
-               {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by),
+               {"any", "nee", "bsdf"}, Effect::frame, &Settings::only_by)
+            .with_buttons({{"any", "all"}, {"nee", "drawn"}, {"bsdf", "found"}}),
         choice("only_first", "Only first",
                "of `path`: light whose last event before the camera was of this kind; mirrors are glossy",
-               {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first),
+               {"any", "diffuse", "glossy", "transmission"}, Effect::frame, &Settings::only_first)
+            .with_buttons({{"any", "all"}, {"diffuse", "diffuse"}, {"glossy", "glossy"}, {"transmission", "through"}}),
         kernel_number("only_light", "Only light",
                       "of `path`: light of the lamp of this number, in the order of `info`; -1: all", -1, 1 << 20, -1),
     };

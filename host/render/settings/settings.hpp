@@ -80,11 +80,15 @@ bool blurs(const Settings& settings);
 
 // One row of the table: how to show, read and write a setting.
 struct Setting {
+    struct Button {
+        std::string value, label;
+    };
     enum class Kind { integer, real, boolean, choice, size };  // size: "WxH"
     std::string key, label, help;                              // help states the unit
     Kind kind = Kind::integer;
     double min = 0, max = 0;
     std::vector<std::string> choices;
+    std::vector<Button> buttons;  // values for which the panel has a button; a choice is then no list
     Effect effect = Effect::rebuild;
     SettingGroup group = SettingGroup::more;
     // Whether another value gives another picture. Otherwise it says only how the picture is traced, so that a finished frame
@@ -104,6 +108,7 @@ struct Setting {
     Setting in(SettingGroup of) const;
     Setting only_ways() const;  // changes_picture is false
     Setting only_of(const char* shown) const;
+    Setting with_buttons(std::vector<Button> of) const;
 
     // TracerChoice::picture of the tracers that it is for; empty: for all.
     std::string picture = {};
