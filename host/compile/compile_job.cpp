@@ -1,5 +1,7 @@
 #include "compile/compile_job.hpp"
 
+#include <malloc.h>
+
 #include <cstdlib>
 #include <sstream>
 
@@ -34,6 +36,17 @@ std::string log_of(const cl::Program& program, const cl::Device& device) {
     std::string text(bytes, '\0');
     if (clGetProgramBuildInfo(program(), device(), CL_PROGRAM_BUILD_LOG, bytes, text.data(), nullptr) != CL_SUCCESS) return {};
     return text.c_str();  // without the final 0
+}
+
+// LLVM frees a pass's memory and asks for it again in the next one. Given back to the system meanwhile, each page is cleared
+// anew.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int kMost = 1 << 30, kStep = 64 << 20, kLargestBlock = 32 << 20;
+    mallopt(M_TRIM_THRESHOLD, kMost);
+    mallopt(M_TOP_PAD, kStep);
+    mallopt(M_MMAP_THRESHOLD, kLargestBlock);
+#endif
 }
 
 CompileOutcome compile(const CompileJob& job) {
@@ -72,6 +85,7 @@ CompileOutcome compile(const CompileJob& job) {
 void compile_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<CompileJob>(arguments);
     if (!job.pocl_cache.empty()) setenv("POCL_CACHE_DIR", job.pocl_cache.c_str(), 1);
+    keep_freed_memory();
     worker::enter_sandbox(worker::WorkerKind::driver);
     try {
         worker::answer(compile(job));

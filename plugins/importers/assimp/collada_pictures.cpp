@@ -1,8 +1,11 @@
 #include "collada_pictures.hpp"
 
+#include <array>
 #include <charconv>
+#include <sstream>
 #include <vector>
 
+#include "../common/materials.hpp"
 #include "xml_tags.hpp"
 
 namespace assimp_import {
@@ -75,8 +78,10 @@ class Reader {
             const std::string name = picture(image);
             if (!name.empty()) out.transparencies.emplace(name, transparency);
         }
-        for (const auto& [material, effect] : effects_)
+        for (const auto& [material, effect] : effects_) {
             if (shiny_effects_.count(effect)) out.shininess.insert(material);
+            if (hued_effects_.count(effect)) out.hues.insert(material);
+        }
         return out;
     }
 
@@ -85,6 +90,11 @@ class Reader {
         std::string image;
         Wrap wrap = {RT_WRAP_REPEAT, RT_WRAP_REPEAT};
     };
+    static bool is_hued(const std::string& color) {
+        std::istringstream text(color);
+        std::array<double, 3> rgb{};
+        return (text >> rgb[0] >> rgb[1] >> rgb[2]) && importers::has_hue(rgb);
+    }
     std::string picture(const std::string& image) const {
         const auto file = files_.find(image);
         return file == files_.end() ? "" : file_name(file->second);
@@ -128,6 +138,8 @@ class Reader {
             samplers_.push_back(sampler_);
             images_of_samplers_[parameter_] = sampler_.image;
         }
+        if (name == "color" && is_in_transparent_ && clear_.mode.rfind("RGB", 0) == 0 && is_hued(word))
+            hued_effects_.insert(effect_);
         if (name == "transparent") is_in_transparent_ = false;
         if (name == "shininess") is_in_shininess_ = false;
         if (name == "transparency") is_in_transparency_ = false;
@@ -142,6 +154,7 @@ class Reader {
     std::vector<std::pair<std::string, Transparency>> transparencies_;  // by ids of images
     std::map<std::string, std::string> effects_;                        // ids by names of materials
     std::set<std::string> shiny_effects_;                               // ids of those with a picture of the shininess
+    std::set<std::string> hued_effects_;                                // and of those whose transparency has a hue
     std::string image_, parameter_, clear_image_, effect_, material_;
     Transparency clear_;
     bool is_in_transparent_ = false, is_in_transparency_ = false, is_in_shininess_ = false;

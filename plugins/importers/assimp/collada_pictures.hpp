@@ -1,5 +1,6 @@
 // collada_pictures.hpp -- what COLLADA says of pictures and assimp does not pass on: the wrap modes of their samplers (it reads
-// those of Maya's extension only), what a picture of the transparency means, and that there is one of the shininess.
+// those of Maya's extension only), what a picture of the transparency means, that its colour has a hue, and that there is one
+// of the shininess.
 #pragma once
 #include <map>
 #include <set>
@@ -24,6 +25,7 @@ struct ColladaPictures {
     std::map<std::string, Wrap> wraps;  // of those that do not repeat only
     std::map<std::string, Transparency> transparencies;
     std::set<std::string> shininess;  // names of materials with a picture of it
+    std::set<std::string> hues;       // and of those whose transparency is a colour with a hue
     std::string differs;              // a picture that samplers wrap in several ways; the first one counts
 };
 ColladaPictures collada_pictures(std::string_view text);

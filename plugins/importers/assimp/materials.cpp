@@ -169,8 +169,9 @@ rt_u32 MaterialTable::id(unsigned material) {
     for (const auto& [type, word] : kLeftOut)
         if (!picture_of(m, type).empty()) add_word(left_out, word);
     if (pictures_.shininess.count(name.C_Str())) add_word(left_out, "shininess");  // assimp says nothing of it
-    if (!left_out.empty())
-        rt::warn(sink_, "material '" + std::string(name.C_Str()) + "': left out the pictures of " + left_out);
+    std::string text = left_out.empty() ? "" : "the pictures of " + left_out;
+    if (pictures_.hues.count(name.C_Str())) add_word(text, "the hue of the transparency");
+    if (!text.empty()) rt::warn(sink_, "material '" + std::string(name.C_Str()) + "': left out " + text);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
 }
 

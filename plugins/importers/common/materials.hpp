@@ -39,8 +39,14 @@ class MaterialKeys {
     std::vector<rt_key_value> values_;
 };
 // Removes the maps of a use.
-inline void drop_map(std::vector<rt_map_desc>& maps, rt_u32 use) {
-    maps.erase(std::remove_if(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; }), maps.end());
+template <class Map>
+void drop_map(std::vector<Map>& maps, rt_u32 use) {
+    maps.erase(std::remove_if(maps.begin(), maps.end(), [&](const Map& map) { return map.use == use; }), maps.end());
+}
+// Whether a colour has a hue: its channels differ by more than the steps of a picture.
+template <class Color>
+bool has_hue(const Color& c) {
+    return std::max({c[0], c[1], c[2]}) - std::min({c[0], c[1], c[2]}) > 1.0 / 256;
 }
 inline bool has_map(const std::vector<rt_map_desc>& maps, rt_u32 use) {
     return std::any_of(maps.begin(), maps.end(), [&](const rt_map_desc& map) { return map.use == use; });

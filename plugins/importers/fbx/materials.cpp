@@ -46,6 +46,7 @@ void read_phong(const Properties& p, std::vector<rt_map_desc>& maps, MaterialKey
     const Vec3 clear = p.vector("TransparentColor", {});
     const double share = (clear[0] + clear[1] + clear[2]) / 3 * p.number("TransparencyFactor", 1);
     apply_transparency(p.number("Opacity", 1 - share), 0, 0, alpha, out);
+    if (share > 0 && has_hue(clear)) left_out.emplace_back("hue of TransparentColor");
     if (add_highlight(out, keys) || !has_strengths) return;
     drop_map(maps, RT_MAP_SPECULAR_COLOR);
     left_out.emplace_back("SpecularColor");

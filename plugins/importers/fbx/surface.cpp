@@ -75,10 +75,30 @@ constexpr SurfaceMap kMaps[] = {
     {"bump", RT_MAP_NORMAL, RT_SPACE_HEIGHT},
 };
 
-// What the host has no key for: it is named if it is above 0.
-constexpr const char* kLeftOut[] = {
-    "subsurface",      "scattering",          "transmissiondispersion", "dispersion",    "coatanisotropy",
-    "coataffectcolor", "coataffectroughness", "diffuseroughness",       "diffroughness", "transmissionextraroughness"};
+// What the host has no key for: it is named if the file states another value than the neutral one and `of`, whose part it is,
+// is above 0. Source: Autodesk Standard Surface 1.0.1.
+struct LeftOut {
+    const char* name;
+    double neutral;
+    const char* of;  // or "": it counts by itself
+};
+constexpr LeftOut kLeftOut[] = {
+    {"subsurface", 0, ""},
+    {"scattering", 0, ""},
+    {"transmissiondispersion", 0, ""},
+    {"dispersion", 0, ""},
+    {"transmissionscatter", 0, "transmission"},
+    {"transmissionextraroughness", 0, ""},
+    {"coatcolor", 1, "coat"},
+    {"coatcolor", 1, "coating"},
+    {"coatior", 1.5, "coat"},
+    {"coatanisotropy", 0, ""},
+    {"coataffectcolor", 0, ""},
+    {"coataffectroughness", 0, ""},
+    {"diffuseroughness", 0, ""},
+    {"diffroughness", 0, ""},
+};
+constexpr double kNearlyNeutral = 1e-4;
 
 double largest(const Vec3& v) {
     return std::max({v[0], v[1], v[2]});
@@ -193,8 +213,13 @@ void Surface::read(const std::vector<rt_map_desc>& maps, bool has_color_map, Mat
     const Vec3 opacity = color("opacity", {1, 1, 1});
     const bool is_cut = has_map(maps, RT_MAP_OPACITY);
     if (is_cut || largest(opacity) < 1) alpha.set(AlphaKeys::blend, is_cut ? 1 : (opacity[0] + opacity[1] + opacity[2]) / 3);
-    for (const char* name : kLeftOut)
-        if (number(name, 0) > 0) left_out.emplace_back(name);
+    if (!is_cut && has_hue(opacity)) left_out.emplace_back("hue of opacity");
+    for (const LeftOut& row : kLeftOut) {
+        const Vec3* const value = number_of(row.name);
+        const auto differs = [&](double channel) { return std::abs(channel - row.neutral) > kNearlyNeutral; };
+        const bool counts = row.of[0] == 0 || number(row.of, 0) > 0;
+        if (value && counts && std::any_of(value->begin(), value->end(), differs)) left_out.emplace_back(row.name);
+    }
 }
 
 }  // namespace fbx_import

@@ -180,6 +180,7 @@ void Reader::statement(std::string_view word, std::string_view line) {
         if (!is_word(word, key)) continue;
         color(word, line, to);
         s.has_diffuse = s.has_diffuse || to == s.diffuse;
+        s.has_specular = s.has_specular || to == s.specular;
         s.has_filter = s.has_filter || to == s.filter;
         return;
     }

@@ -72,7 +72,14 @@ bool is_glass(const MtlStatements& s) {
 }
 
 bool is_clear(const MtlStatements& s) {
-    return !s.has_dissolve || s.dissolve >= 1;
+    return s.dissolve >= 1;
+}
+
+// What a surface of glTF has no place for, though the file states it. Blender writes a Ks of 0.5 for its plain surface.
+void name_ignored_by_pbr(const MtlStatements& s, std::vector<std::string>& left_out) {
+    if (s.has_specular && std::any_of(s.specular, s.specular + 3, [](float strength) { return strength != 0.5f; }))
+        left_out.emplace_back("Ks");
+    if (is_glass(s) && !s.has_filter && !is_there(s.filter_map) && is_clear(s)) left_out.emplace_back("illum");
 }
 
 // Wavefront's illumination models: 0 shows the colour as it is; 3, 5 and 8 (without ray tracing) mirror; 4, 6, 7 and 9 are
@@ -127,6 +134,12 @@ ObjMaterial to_material(const MtlStatements& s) {
     const bool has_hue = s.filter[0] != s.filter[1] || s.filter[1] != s.filter[2];
     if (has_hue && !is_there(s.filter_map) && (pbr || !is_glass(s) || !is_clear(s))) m.left_out.emplace_back("hue of Tf");
     if (is_there(s.filter_map) && !pbr) m.left_out.emplace_back("map_Tf");
+    if (pbr) name_ignored_by_pbr(s, m.left_out);
+    // What glass lets through is one number.
+    if (!pbr && is_glass(s) && is_there(s.dissolve_map)) {
+        importers::drop_map(m.maps, RT_MAP_OPACITY);
+        m.left_out.emplace_back("map_d");
+    }
     return m;
 }
 

@@ -31,7 +31,7 @@ inline constexpr size_t kPbrCount = sizeof kPbr / sizeof *kPbr;
 struct MtlStatements {
     float diffuse[3] = {0.8f, 0.8f, 0.8f}, specular[3] = {0, 0, 0}, emission[3] = {0, 0, 0}, filter[3] = {1, 1, 1};
     float exponent = 1, ior = 1, dissolve = 1;
-    bool has_diffuse = false, has_dissolve = false, has_filter = false;
+    bool has_diffuse = false, has_specular = false, has_dissolve = false, has_filter = false;
     int illumination = -1;
     ObjTexture texture, dissolve_map, specular_map, emission_map, normal_map, bump_map, filter_map;
     std::array<std::optional<float>, kPbrCount> pbr;

@@ -84,6 +84,13 @@ TEST(ColladaMaterials, AreAsTransparentAsTheySay) {
     EXPECT_FLOAT_EQ(values("A_ONE", "1 1 1 0.5", "0.5").opacity, 0.25f);
     EXPECT_EQ(values("RGB_ZERO", "0 0 0 1", "1").alpha, RT_ALPHA_OPAQUE);
     EXPECT_NEAR(values("RGB_ZERO", "0.5 0.5 0.5 1", "0.5").opacity, 0.75f, 1e-5);
+    const auto hued = [&](const std::string& opaque, const std::string& color) {
+        return clear(opaque, "<color>" + color + "</color>", "1").warnings;
+    };
+    ASSERT_EQ(hued("RGB_ZERO", "0.5 0.25 0.25 1").size(), 1u);
+    EXPECT_NE(hued("RGB_ONE", "0.5 0.25 0.25 1")[0].find("material 'm': left out the hue of the transparency"),
+              std::string::npos);
+    EXPECT_TRUE(hued("A_ONE", "0.5 0.25 0.25 0.5").empty()) << "its alpha alone counts";
     const Scene cut = clear("A_ONE", picture("dot"), "1");
     EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
     EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);

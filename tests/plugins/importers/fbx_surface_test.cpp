@@ -184,6 +184,16 @@ TEST_P(FbxSurface, WhatIsLeftOutIsOneWarning) {
         {"Maya|subsurfaceColor", "DisplacementColor"});
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_TRUE(warns_of(scene, "'M': left out Maya|subsurfaceColor, DisplacementColor, subsurface")) << scene.warnings[0];
+    const Scene coated =
+        square({property("Maya|baseColor", {1, 1, 1}), property("Maya|coat", {1}), property("Maya|coatColor", {1, 0.5, 0.5}),
+                property("Maya|coatIOR", {1.8}), property("Maya|opacity", {0.5, 1, 1})});
+    ASSERT_EQ(coated.warnings.size(), 1u);
+    EXPECT_TRUE(warns_of(coated, "'M': left out hue of opacity, coatcolor, coatior")) << coated.warnings[0];
+    const Scene plain = square({property("Maya|baseColor", {1, 1, 1}), property("Maya|coat", {0}),
+                                property("Maya|coatColor", {1, 0.5, 0.5}), property("Maya|coatIOR", {1.5})});
+    EXPECT_TRUE(plain.warnings.empty()) << plain.warnings.at(0);
+    const Scene red = square({property("TransparentColor", {0.5, 0, 0}), property("TransparencyFactor", {1})});
+    EXPECT_TRUE(warns_of(red, "'M': left out hue of TransparentColor"));
     EXPECT_TRUE(square({property("DiffuseColor", {1, 1, 1})}).warnings.empty());
 }
 

@@ -76,6 +76,9 @@ TEST_F(Mtl, SaysHowMuchIsThere) {
     EXPECT_FLOAT_EQ(values_of("Tr 0.75").opacity, 0.25f);
     EXPECT_EQ(values_of("illum 6\nNi 1.4\nd 0.25").alpha, RT_ALPHA_OPAQUE);
     EXPECT_FLOAT_EQ(values_of("illum 6\nNi 1.4\nd 0.25").refract, 0.75f);
+    EXPECT_FLOAT_EQ(values_of("illum 6\nNi 1.4\nTr 0.75").refract, 0.75f);
+    EXPECT_FLOAT_EQ(values_of("illum 6\nTr 0\nKd .1 .1 .1").refract, 0.9f) << "glass without an opacity is clear";
+    EXPECT_FLOAT_EQ(values_of("illum 6\nTr 0.1\nd 0.25").refract, 0.75f) << "d counts more";
     const Scene cut = square_of("map_Kd four.ppm\nmap_d four.ppm");
     EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
     EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
@@ -86,6 +89,9 @@ TEST_F(Mtl, SaysHowMuchIsThere) {
     EXPECT_EQ(other.materials.back().values.alpha, RT_ALPHA_BLEND);
     EXPECT_NE(other.materials.back().maps[RT_MAP_OPACITY], RT_NONE);
     EXPECT_EQ(cut.materials.back().maps[RT_MAP_OPACITY], RT_NONE) << "the alpha of the colour's picture";
+    const Scene glass = square_of("illum 6\nd .5\nmap_Kd four.ppm\nmap_d hole.ppm");
+    EXPECT_TRUE(warns(glass, "'a': left out map_d"));
+    EXPECT_EQ(glass.materials.back().maps[RT_MAP_OPACITY], RT_NONE);
 }
 
 TEST_F(Mtl, HasMapsOfOtherUses) {
@@ -178,6 +184,8 @@ TEST_F(Mtl, MapsOfPhysicallyBasedRendering) {
     }
     folder_.write("m.mtl", "");
     const Scene both = square_of("Pm 0\nmap_Pm four.ppm\nPr .2\nmap_Pr four.ppm");
+    EXPECT_TRUE(square_of("Pr .2\nKs .5 .5 .5").warnings.empty());
+    EXPECT_TRUE(warns(square_of("Pr .2\nKs 1 .5 .5\nillum 9"), "'a': left out Ks, illum"));
     EXPECT_EQ(both.materials.back().values.layers.metallic, 1);
     EXPECT_EQ(both.materials.back().values.roughness, 1);
     EXPECT_EQ(both.textures.size(), 1u) << "one picture";
