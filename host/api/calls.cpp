@@ -119,6 +119,10 @@ CLARITY_EXPORT void clarity_tracer_free(clarity_tracer* tracer) {
     if (!is_forked()) delete tracer;
 }
 
+CLARITY_EXPORT int32_t clarity_tracer_info(clarity_tracer* tracer, const char** json) {
+    return run_call([&] { not_null(json, "json") = not_null(tracer, "tracer").info(); });
+}
+
 CLARITY_EXPORT int32_t clarity_closest(clarity_tracer* tracer, const clarity_rays* rays, const clarity_hits* hits,
                                        const clarity_watch* watch) {
     return run_call([&] {
@@ -138,6 +142,31 @@ CLARITY_EXPORT int32_t clarity_pack(clarity_tracer* tracer, const clarity_rays* 
 
 CLARITY_EXPORT void clarity_packed_free(clarity_packed* packed) {
     if (!is_forked()) delete packed;
+}
+
+CLARITY_EXPORT int32_t clarity_kept_new(const clarity_tracer* tracer, int32_t brief, clarity_kept** kept) {
+    return run_call([&] { not_null(kept, "kept") = not_null(tracer, "tracer").new_kept(brief != 0).release(); });
+}
+
+CLARITY_EXPORT int32_t clarity_keep(clarity_tracer* tracer, const clarity_rays* rays, clarity_kept* kept,
+                                    const clarity_watch* watch) {
+    return run_call([&] {
+        Watched progress = watched(watch);
+        not_null(tracer, "tracer").keep(copy_of(rays, "clarity_rays"), not_null(kept, "kept"), progress);
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_kept_array(clarity_kept* kept, int32_t which, void** array) {
+    return run_call([&] {
+        void*& result = not_null(array, "array");
+        if (which < CLARITY_HIT_T || which > CLARITY_HIT_INSTANCE)
+            throw Error(Exit::usage, "hits have no array " + std::to_string(which) + ": CLARITY_HIT_T to CLARITY_HIT_INSTANCE");
+        result = not_null(kept, "kept").array(static_cast<AnswerArray>(which));
+    });
+}
+
+CLARITY_EXPORT void clarity_kept_free(clarity_kept* kept) {
+    if (!is_forked()) delete kept;
 }
 
 CLARITY_EXPORT int32_t clarity_any(clarity_tracer* tracer, const clarity_rays* rays, uint8_t* occluded,

@@ -31,11 +31,14 @@ enum {
     CLARITY_CANCELLED = 130
 };
 enum { CLARITY_FLOAT32 = 0, CLARITY_FLOAT64 = 1 };                                             /* types of numbers in arrays */
+/* Arrays of hits, as in clarity_hits. */
+enum { CLARITY_HIT_T = 0, CLARITY_HIT_PRIM = 1, CLARITY_HIT_UV = 2, CLARITY_HIT_INSTANCE = 3 };
 enum { CLARITY_LOG_DEBUG = 0, CLARITY_LOG_INFO = 1, CLARITY_LOG_WARNING = 2, CLARITY_LOG_ERROR = 3 };
 
 typedef struct clarity_scene clarity_scene;   /* what files or arrays describe */
 typedef struct clarity_tracer clarity_tracer; /* a scene in a structure on a device; keeps the scene alive */
 typedef struct clarity_packed clarity_packed; /* rays that lie on a device */
+typedef struct clarity_kept clarity_kept;     /* hits that lie on a device until they are read */
 
 /* Of long calls; NULL: nobody watches. */
 typedef struct clarity_watch {
@@ -158,11 +161,24 @@ int32_t clarity_scene_bounds(const clarity_scene *scene, double lo[3], double hi
 
 int32_t clarity_tracer_new(const clarity_scene *scene, const clarity_options *options, const clarity_watch *watch, clarity_tracer **tracer);
 void clarity_tracer_free(clarity_tracer *tracer);
+/* As JSON: its device and structure, as the keys of `clarity render --stats` say, and of its ray queries so far `rays`, `device_ms`, and
+ * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until the next call for this tracer or its end. */
+int32_t clarity_tracer_info(clarity_tracer *tracer, const char **json);
 int32_t clarity_closest(clarity_tracer *tracer, const clarity_rays *rays, const clarity_hits *hits, const clarity_watch *watch);
 /* Rays that are traced often: they are read from the arrays once, and stay on the tracer's device, 32 bytes each. They serve
  * clarity_closest() and clarity_any() of this tracer. */
 int32_t clarity_pack(clarity_tracer *tracer, const clarity_rays *rays, const clarity_watch *watch, clarity_packed **packed);
 void clarity_packed_free(clarity_packed *packed);
+/* Hits of a tracer that stay where they were found, so that only those arrays are copied that somebody asks for, and none on a CPU.
+ * brief: not 0 if only t and prim are wanted, which are found faster. They keep their device open, also after the tracer was freed.
+ * Where all kept hits of a tracer would take more than a quarter of the device's memory, clarity_keep() copies the new ones. */
+int32_t clarity_kept_new(const clarity_tracer *tracer, int32_t brief, clarity_kept **kept);
+void clarity_kept_free(clarity_kept *kept);
+/* Finds them, as clarity_closest(). Those of an earlier call are gone: arrays of them that were asked for have the new ones when this
+ * call returns, and so must be as many. After a call that failed there are none until the next one. */
+int32_t clarity_keep(clarity_tracer *tracer, const clarity_rays *rays, clarity_kept *kept, const clarity_watch *watch);
+/* One array, CLARITY_HIT_*, as in clarity_hits. The caller may write to it. It stays where it is until clarity_kept_free(). */
+int32_t clarity_kept_array(clarity_kept *kept, int32_t which, void **array);
 /* 1 for rays that hit anything between t_min and t_max, else 0. */
 int32_t clarity_any(clarity_tracer *tracer, const clarity_rays *rays, uint8_t *occluded, const clarity_watch *watch);
 /* Moves what this tracer traces; its scene stays as it is for others. The structure is refitted where it can follow, and built anew

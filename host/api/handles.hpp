@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/clarity.h"
+#include "api/kept.hpp"
 #include "api/library.hpp"
 #include "api/ray_arrays.hpp"
 #include "device/device.hpp"
@@ -53,6 +54,9 @@ struct clarity_tracer {
  public:
     clarity_tracer(const clarity_scene& scene, const clarity_options& options, clarity::Progress& progress);
     void closest(const clarity_rays& rays, const clarity_hits& hits, clarity::Progress& progress);
+    void keep(const clarity_rays& rays, clarity_kept& kept, clarity::Progress& progress);
+    std::unique_ptr<clarity_kept> new_kept(bool brief) const { return std::make_unique<clarity_kept>(keeping_, brief); }
+    const char* info();
     std::unique_ptr<clarity_packed> pack(const clarity_rays& rays, clarity::Progress& progress);
     void any(const clarity_rays& rays, uint8_t* occluded, clarity::Progress& progress);
     void move(const clarity_places& places, clarity::Progress& progress);
@@ -64,9 +68,14 @@ struct clarity_tracer {
  private:
     // The scene with these places. Throws Error(usage).
     clarity::Pose pose_of(const clarity_places& places) const;
-    // take: gets the number of a first ray, and hits of it and the next ones, on any thread.
     enum class Wanted { hits, nearest, occlusion };  // nearest: t and prim alone
-    void trace(const clarity_rays& rays, Wanted wanted, clarity::Progress& progress, const clarity::TakeHits& take);
+    // take: gets the number of a first ray, and answers of it and the next ones, which stay until it returns.
+    using TakeAnswers = std::function<void(size_t first, const clarity::Answers& answers)>;
+    void trace(const clarity_rays& rays, Wanted wanted, clarity::Progress& progress, const TakeAnswers& take);
+    // With the lock. all: where all answers go; null: to `take`.
+    void trace(const clarity_rays& rays, const clarity::RayQuery& query, const TakeAnswers& take, const clarity::Answers* all);
+    void check(const clarity_rays& rays) const;
+    clarity::RayQuery query_of(const clarity_rays& rays, Wanted wanted, clarity::Progress& progress) const;
     // Of the rays from `begin` on.
     clarity::ReadRays reader(const clarity_rays& rays, size_t begin) const;
     // take: gets the hits of some rays, and the number of the first one.
@@ -76,16 +85,20 @@ struct clarity_tracer {
     void trace_samples(const clarity::Prepared& prepared, const clarity::Settings& settings, const clarity::View& view,
                        clarity::Progress& progress);
 
-    std::mutex mutex_;
     std::shared_ptr<const clarity::Scene> imported_, placed_;
     clarity::Settings settings_;
     std::shared_ptr<clarity::Device> device_;
     clarity::Preparer preparer_;
     std::shared_ptr<const clarity::Prepared> prepared_;  // for ray queries
+    uint64_t prepared_id_ = 0;                           // another one for each
     clarity::RayQueries queries_;
+    const std::shared_ptr<clarity::api::KeepingDevice> keeping_;
     bool of_arrays_;  // the scene is one mesh of the caller's
     clarity::PoseFollower follower_;
     bool vertices_moved_ = false;
+    std::string info_;
+    uint64_t rays_ = 0;                     // that were traced
+    double device_ms_ = 0;                  // for them
     double traced_ms_ = 0;                  // since the last move
     uint64_t id_ = clarity::new_packing();  // of this tracer, and of rays that it packs for one call
     size_t batch_;                          // rays that are traced in one go

@@ -51,16 +51,6 @@ void read_rays(const clarity_rays& rays, size_t first, size_t count, const std::
     }
 }
 
-void write_hits(const rt_hit* hits, size_t count, const clarity_hits& to, size_t first) {
-    for (size_t i = 0; i < count; ++i) {
-        const rt_hit& hit = hits[i];
-        if (to.t) to.t[first + i] = hit.t;
-        if (to.prim) to.prim[first + i] = hit.prim;
-        if (to.instance) to.instance[first + i] = hit.instance;
-        if (to.uv) to.uv[2 * (first + i)] = hit.u, to.uv[2 * (first + i) + 1] = hit.v;
-    }
-}
-
 void append_hits(const AllHits& hits, HitArrays& to) {
     const auto begin = static_cast<int64_t>(to.t.size());
     for (size_t ray = 0; ray + 1 < hits.first.size(); ++ray) {

@@ -15,8 +15,6 @@ namespace clarity::api {
 void check_rays(const clarity_rays& rays);
 // Writes the rays [first, first + count) to `to`. origin: of the scene, subtracted in double precision.
 void read_rays(const clarity_rays& rays, size_t first, size_t count, const std::array<double, 3>& origin, rt_ray* to);
-// Writes hits to the elements from `first` on.
-void write_hits(const rt_hit* hits, size_t count, const clarity_hits& to, size_t first);
 
 // All hits, field by field.
 struct HitArrays {

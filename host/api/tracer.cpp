@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "api/handles.hpp"
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
+#include "device/cl_errors.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
 #include "render/tracers/rays/query_scene.hpp"
@@ -76,46 +78,89 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
       device_(open_device(text_of(options.device))),
       preparer_(plugins(), device_),
       queries_(device_),
+      keeping_(std::make_shared<KeepingDevice>(queries_.copies())),
       of_arrays_(scene.of_arrays),
       batch_(kFirstBatch) {
     const auto accel = preparer_.build(placed_, settings_, progress);
     prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
+    prepared_id_ = new_packing();
 }
 
-void clarity_tracer::trace(const clarity_rays& rays, Wanted wanted, Progress& progress, const TakeHits& take) {
+void clarity_tracer::check(const clarity_rays& rays) const {
     check_rays(rays);
     if (rays.packed && rays.packed->tracer != id_)
         throw Error(Exit::usage, "the packed rays are those of another tracer: pack them with this one");
     if (rays.packed && rays.packed->count != rays.count)
         throw Error(Exit::usage, "clarity_rays::count is " + std::to_string(rays.count) + ", and the packed rays are " +
                                      std::to_string(rays.packed->count));
-    const std::lock_guard<std::mutex> lock(mutex_);
-    progress.stage("tracing rays");
+}
+
+RayQuery clarity_tracer::query_of(const clarity_rays& rays, Wanted wanted, Progress& progress) const {
     RayQuery query;
     query.any_hit = wanted == Wanted::occlusion;
     query.brief = wanted == Wanted::nearest;
     query.mask = mask_of(rays);
     query.progress = &progress;
+    return query;
+}
+
+void clarity_tracer::trace(const clarity_rays& rays, const RayQuery& query, const TakeAnswers& take, const Answers* all) {
+    query.progress->stage("tracing rays");
     size_t first = 0;
     const auto trace_some = [&](RayArrays some) {
-        if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
-        some.take = [&](size_t i, size_t count, const rt_hit* hits) { take(first + i, count, hits); };
-        traced_ms_ += queries_.trace(*prepared_, some, query);
+        if (!query.progress->report(float(first) / float(rays.count))) throw Cancelled();
+        some.prepared = prepared_id_;
+        some.all = all;
+        some.first = first;
+        Answers answers;
+        const double ms = queries_.trace(*prepared_, some, query, answers);
+        traced_ms_ += ms;
+        device_ms_ += ms;
+        rays_ += some.count;
+        if (!all)
+            wrap_cl_errors(*device_, "reading hits", [&] {
+                take(first, answers);
+                return 0;
+            });
         first += some.count;
     };
     if (rays.packed) {
         for (const clarity_packed::Piece& piece : rays.packed->pieces)
-            trace_some({piece.count, piece.packing, piece.rays, {}, {}, room_for(piece.count)});
+            trace_some({piece.count, piece.packing, piece.rays, {}, room_for(piece.count)});
         return;
     }
     while (first < rays.count) {
         const auto begin = std::chrono::steady_clock::now();
         const size_t count = std::min(batch_, size_t(rays.count) - first);
-        trace_some({count, id_, {}, reader(rays, first), {}, room_for(rays.count)});
+        trace_some({count, id_, {}, reader(rays, first), room_for(rays.count)});
         const double ms = ms_since(begin);
         if (ms > 2 * kBatchMs) batch_ = std::max(batch_ / 2, kFirstBatch / 16);
         if (ms < kBatchMs / 2 && count == batch_) batch_ = std::min(batch_ * 2, kMostBatch);
     }
+}
+
+void clarity_tracer::trace(const clarity_rays& rays, Wanted wanted, Progress& progress, const TakeAnswers& take) {
+    check(rays);
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
+    trace(rays, query_of(rays, wanted, progress), take, nullptr);
+}
+
+void clarity_tracer::keep(const clarity_rays& rays, clarity_kept& kept, Progress& progress) {
+    check(rays);
+    if (!kept.of(*keeping_)) throw Error(Exit::usage, "the kept hits are those of another tracer: this one needs others");
+    const std::lock_guard<std::mutex> own(kept.own);
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
+    const RayQuery query = query_of(rays, kept.brief ? Wanted::nearest : Wanted::hits, progress);
+    const Answers& answers = kept.begin(rays.count, RayQueries::answer_fields(*prepared_, query));
+    if (answers.buffer()) {
+        trace(rays, query, {}, &answers);
+    } else {
+        const AnswersTo to = kept.host();
+        trace(
+            rays, query, [&](size_t first, const Answers& some) { read_answers(*queries_.copies(), some, to.from(first)); },
+            nullptr);
+    }
+    kept.end();
 }
 
 ReadRays clarity_tracer::reader(const clarity_rays& rays, size_t begin) const {
@@ -127,7 +172,7 @@ ReadRays clarity_tracer::reader(const clarity_rays& rays, size_t begin) const {
 std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, Progress& progress) {
     check_rays(rays);
     if (rays.packed) throw Error(Exit::usage, "the rays are packed already");
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
     progress.stage("packing rays");
     auto packed = std::make_unique<clarity_packed>(clarity_packed{id_, device_, {}, rays.count});
     for (size_t first = 0; first < rays.count; first += kMostBatch) {
@@ -139,17 +184,37 @@ std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, P
     return packed;
 }
 
+const char* clarity_tracer::info() {
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
+    const AccelData& accel = *prepared_->accel;
+    const HostCopies& copies = *queries_.copies();
+    nlohmann::ordered_json json = {{"device", device_->info().name},
+                                   {"device_id", device_->info().id()},
+                                   {"accel", accel.plugin->id},
+                                   {"lanes", prepared_->layout.lanes},
+                                   {"build_ms", accel.build_ms},
+                                   {"accel_bytes", accel.bytes},
+                                   {"accel_stats", nlohmann::ordered_json::object()},
+                                   {"rays", rays_},
+                                   {"device_ms", device_ms_},
+                                   {"bytes_to_device", copies.bytes_written()},
+                                   {"bytes_from_device", copies.bytes_read()}};
+    for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = value;
+    info_ = json.dump(2);
+    return info_.c_str();
+}
+
 void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {
     const Wanted wanted = hits.instance || hits.uv ? Wanted::hits : Wanted::nearest;
+    const AnswersTo to = {{hits.t, hits.prim, hits.uv, hits.instance}};
     trace(rays, wanted, progress,
-          [&](size_t first, size_t count, const rt_hit* some) { write_hits(some, count, hits, first); });
+          [&](size_t first, const Answers& some) { read_answers(*queries_.copies(), some, to.from(first)); });
 }
 
 void clarity_tracer::any(const clarity_rays& rays, uint8_t* occluded, Progress& progress) {
     if (rays.count > 0) not_null(occluded, "occluded");
-    trace(rays, Wanted::occlusion, progress, [&](size_t first, size_t count, const rt_hit* some) {
-        for (size_t i = 0; i < count; ++i) occluded[first + i] = some[i].t == 0;
-    });
+    trace(rays, Wanted::occlusion, progress,
+          [&](size_t first, const Answers& some) { read_occlusion(*queries_.copies(), some, occluded + first); });
 }
 
 template <class Take>
@@ -157,7 +222,7 @@ void clarity_tracer::trace_all(const clarity_rays& rays, bool count_only, Progre
     constexpr size_t kAtOnce = size_t{1} << 16;
     check_rays(rays);
     if (rays.packed) throw Error(Exit::usage, "packed rays serve clarity_closest() and clarity_any(): give the arrays");
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
     progress.stage(count_only ? "counting the hits of rays" : "tracing rays for all their hits");
     for (size_t first = 0; first < rays.count; first += kAtOnce) {
         if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
@@ -219,7 +284,7 @@ void clarity_tracer::render(const clarity_picture& asked, clarity_picture& pictu
     Settings& settings = words.settings;
     const unsigned channels = find_aov(settings.aov).value_channels();
     const uint64_t floats = uint64_t(settings.width) * uint64_t(settings.height) * channels;
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
     const View view = view_of(asked, words);
     if (asked.pixels) {
         if (asked.room < floats)

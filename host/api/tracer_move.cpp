@@ -70,7 +70,7 @@ Pose clarity_tracer::pose_of(const clarity_places& places) const {
 }
 
 void clarity_tracer::move(const clarity_places& places, Progress& progress) {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::lock_guard<std::mutex> lock(keeping_->calls);
     const Pose pose = pose_of(places);
     progress.stage("moving the scene");
     Scene moved = posed(*placed_, pose);
@@ -87,6 +87,7 @@ void clarity_tracer::move(const clarity_places& places, Progress& progress) {
         follower_.built(from, scene, pose, accel, std::make_unique<HostMover>(scene, accel));
     }
     prepared_ = prepare_queries(*device_, scene, accel, settings_, progress);
+    prepared_id_ = new_packing();
     placed_ = scene;
     vertices_moved_ |= places.positions != nullptr;
 }

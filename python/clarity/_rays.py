@@ -8,6 +8,7 @@ import weakref
 import numpy as np
 
 from ._binding import constants, header, library, struct
+from ._calls import check
 from ._errors import UsageError
 
 _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float64): constants["CLARITY_FLOAT64"]}
@@ -148,15 +149,45 @@ class Hit:
     uv        float32, two a ray: weights of a triangle's second and third corner
 
     brief: only t and prim, which are found faster; the others are None.
-    """
+
+    Hits of many rays stay on the device that found them. An array is copied when it is first read; on a CPU it is the memory that
+    the device wrote to. `out=` fills the arrays again that were read."""
 
     def __init__(self, shape, brief=False):
-        self.t = np.empty(shape, np.float32)
-        self.prim = np.empty(shape, np.int32)
-        self.instance = None if brief else np.empty(shape, np.int32)
-        self.uv = None if brief else np.empty(tuple(shape) + (2,), np.float32)
+        self._begin(shape, brief)
+        for number, (_, dtype, more) in enumerate(_ARRAYS[: _BRIEF if brief else None]):
+            self._arrays[number] = np.empty(self.shape + more, dtype)
+
+    @classmethod
+    def _on_device(cls, shape, brief, tracer):
+        hit = cls.__new__(cls)
+        hit._begin(shape, brief)
+        hit._kept = _Kept(brief, tracer)
+        return hit
+
+    def _begin(self, shape, brief):
+        self.shape, self.brief = tuple(shape), brief
+        self._arrays = [None] * len(_ARRAYS)
+        self._kept = None  # the hits on a device: arrays are None that nobody has read
         self._rays = None
         self._made = None
+
+    def _array(self, number):
+        array = self._arrays[number]
+        if array is None and self._kept is not None and (number < _BRIEF or not self.brief):
+            _, dtype, more = _ARRAYS[number]
+            array = self._arrays[number] = self._kept.array(number, self.shape + more, dtype)
+        return array
+
+    def _leave_device(self):
+        """From now on the arrays are arrays as any others."""
+        for number in range(len(_ARRAYS)):
+            self._array(number)
+        self._kept = None
+
+    def _set(self, number, array):
+        self._leave_device()
+        self._arrays[number] = array
 
     @property
     def mask(self):
@@ -168,30 +199,62 @@ class Hit:
         return self._rays.points(np.where(self.mask, self.t, np.nan).astype(np.float64)[..., None])
 
     def __len__(self):
-        return len(self.t)
+        return self.shape[0]
 
     def __repr__(self):
-        return f"<clarity.Hit: {np.count_nonzero(self.mask)} of {self.t.size} rays>"
+        return f"<clarity.Hit: {np.count_nonzero(self.mask)} of {self.mask.size} rays>"
 
-    def _check(self, shape):
-        for name, dtype in _OF_HIT.items():
-            if self.uv is None and name in ("instance", "uv"):
-                continue
-            check_out(getattr(self, name), shape + ((2,) if name == "uv" else ()), dtype, f"out.{name}")
+    def _check(self, shape, tracer):
+        """Whether hits of rays of this shape can be written here."""
+        if self._kept is not None:
+            if self._kept.tracer == tracer and self.shape == shape:
+                return
+            self._leave_device()
+        for number, (name, dtype, more) in enumerate(_ARRAYS):
+            if self._arrays[number] is not None or number < _BRIEF:
+                check_out(self._arrays[number], shape + more, dtype, f"out.{name}")
 
     def _struct_for(self, rays):
         """What the library is told. It is kept for these arrays: to make it is a third of a call with one ray."""
         self._rays = rays
-        t, prim, instance, uv = arrays = self.t, self.prim, self.instance, self.uv
+        t, prim, uv, instance = arrays = self._arrays
         made = self._made
-        if not made or made[0] is not t or made[1] is not prim or made[2] is not instance or made[3] is not uv:
-            places = [None if array is None else address_of(array) for array in arrays]
-            self._made = made = *arrays, header.structs["clarity_hits"](_HITS_BYTES, 0, *places)
+        if not made or made[0] is not t or made[1] is not prim or made[2] is not uv or made[3] is not instance:
+            t, prim, uv, instance = places = [None if array is None else address_of(array) for array in arrays]
+            self._made = made = *arrays, header.structs["clarity_hits"](_HITS_BYTES, 0, t, prim, instance, uv)
         return made[4]
 
 
-_OF_HIT = {"t": np.float32, "prim": np.int32, "instance": np.int32, "uv": np.float32}
+# In the order of the library's numbers; the first _BRIEF are those of brief hits.
+_ARRAYS = (("t", np.float32, ()), ("prim", np.int32, ()), ("uv", np.float32, (2,)), ("instance", np.int32, ()))
+_BRIEF = 2
 _HITS_BYTES = ctypes.sizeof(header.structs["clarity_hits"])
+
+for _number, (_name, _, _) in enumerate(_ARRAYS):
+    setattr(
+        Hit,
+        _name,
+        property(
+            lambda self, number=_number: self._arrays[number] if self._kept is None else self._array(number),
+            lambda self, array, number=_number: self._set(number, array),
+        ),
+    )
+
+
+class _Kept:
+    """Hits on the device of a tracer. Their arrays lie in memory of the library."""
+
+    def __init__(self, brief, tracer):
+        self.tracer = tracer
+        handle = ctypes.c_void_p()
+        check(library.clarity_kept_new(tracer, int(brief), ctypes.byref(handle)))
+        self.handle = handle.value
+        weakref.finalize(self, library.clarity_kept_free, self.handle)
+
+    def array(self, number, shape, dtype):
+        address = ctypes.c_void_p()
+        check(library.clarity_kept_array(self.handle, number, ctypes.byref(address)))
+        return array_at(address.value, dtype, shape, self)
 
 
 class AllHits:
@@ -238,13 +301,17 @@ class _Owner:
         weakref.finalize(self, library.clarity_all_hits_free, ctypes.byref(found))
 
     def array(self, address, dtype, count):
-        if not count:
-            return np.empty(0, dtype)
-        # numpy keeps an object with this attribute as the array's base.
-        view = _View()
-        view.owner = self
-        view.__array_interface__ = {"version": 3, "shape": (count,), "typestr": np.dtype(dtype).str, "data": (address, True)}
-        return np.asarray(view)
+        return array_at(address, dtype, (count,), self, frozen=True)
+
+
+def array_at(address, dtype, shape, owner, frozen=False):
+    if 0 in shape:
+        return np.empty(shape, dtype)
+    # numpy keeps an object with this attribute as the array's base.
+    view = _View()
+    view.owner = owner
+    view.__array_interface__ = {"version": 3, "shape": shape, "typestr": np.dtype(dtype).str, "data": (address, frozen)}
+    return np.asarray(view)
 
 
 class _View:

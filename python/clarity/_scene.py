@@ -135,17 +135,29 @@ class Tracer:
             short = rays.count * _SHORT_S / (time.perf_counter() - begin)
             self._few[name] = max(_FEW, min(int(short), 2 * few))
 
+    @property
+    def info(self):
+        """A dictionary: device, accel, accel_stats, ... as of `clarity render --stats`, and of the ray queries so far rays, device_ms,
+        bytes_to_device and bytes_from_device."""
+        text = ctypes.c_char_p()
+        check(library.clarity_tracer_info(self._handle, ctypes.byref(text)))
+        return json.loads(text.value.decode(errors="replace"))
+
     def closest(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, brief=False, out=None, progress=None):
         """The nearest hits of rays as a Hit. Rays of pack(), or arrays of float32 or float64 in any strides, broadcast against each other. mask: the
         rays hit only instances that share a bit of it with their mask. brief: only t and prim, faster. out: a Hit of the same
-        shape, which is filled and returned."""
+        shape, which is filled and returned. Hits of many rays stay on the device until they are read."""
         rays = rays_of(origins, directions, t_min, t_max, mask)
         if out is None:
-            hit = Hit(rays.shape, brief)
+            hit = Hit(rays.shape, brief) if rays.count < _FEW else Hit._on_device(rays.shape, brief, self._handle)
         else:
             hit = out
-            hit._check(rays.shape)
-        self._trace(library.clarity_closest, rays, ctypes.byref(hit._struct_for(rays)), progress)
+            hit._check(rays.shape, self._handle)
+        if hit._kept is None:
+            self._trace(library.clarity_closest, rays, ctypes.byref(hit._struct_for(rays)), progress)
+        else:
+            hit._rays = rays
+            self._trace(library.clarity_keep, rays, hit._kept.handle, progress)
         return hit
 
     def move(self, vertices=None, *, instances=None, progress=None):

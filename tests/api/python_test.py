@@ -1,4 +1,5 @@
 """The Python package, against the command line: hits and pictures have to be the same bits."""
+import gc
 import os
 import sys
 import tracemalloc
@@ -179,6 +180,62 @@ class Hits(Case):
         ):
             with self.subTest(words=words), self.assertRaisesRegex(clarity.UsageError, words):
                 wrong()
+
+    def test_of_many_rays_stay_on_the_device_until_they_are_read(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        origins, directions = some_rays(30000, 11)
+        arrays = {"t": 4, "prim": 4, "instance": 4, "uv": 8}
+        expected = clarity.Hit((30000,))
+        rt.closest(origins, directions, out=expected)
+        for name, bytes_of_ray in arrays.items():
+            before = rt.info["bytes_from_device"]
+            hit = rt.closest(origins.reshape(100, 300, 3), directions.reshape(100, 300, 3))
+            self.assertEqual(rt.info["bytes_from_device"], before)
+            array = getattr(hit, name)
+            self.assertIs(getattr(hit, name), array)
+            copied = rt.info["bytes_from_device"] - before
+            # A CPU wrote the array itself; of a scene without instances nobody wrote any.
+            self.assertIn(copied, (0, bytes_of_ray * 30000))
+            np.testing.assert_array_equal(array.reshape(getattr(expected, name).shape), getattr(expected, name))
+            self.assertIs(rt.closest(origins[::-1].reshape(100, 300, 3), directions[::-1].reshape(100, 300, 3), out=hit), hit)
+            np.testing.assert_array_equal(array.reshape(getattr(expected, name).shape)[::-1], getattr(expected, name), name)
+            self.assertEqual(rt.info["bytes_from_device"] - before, 2 * copied)
+        before = rt.info
+        rt.closest(origins, directions, out=expected)  # into arrays of the caller's own
+        after = rt.info
+        self.assertEqual(after["bytes_from_device"] - before["bytes_from_device"], 16 * 30000)
+        self.assertEqual(after["bytes_to_device"] - before["bytes_to_device"], 32 * 30000)
+        self.assertEqual((after["rays"] - before["rays"], after["accel"]), (30000, "bvh2"))
+
+    def test_on_a_device_outlive_their_tracer_and_leave_it_for_other_arrays(self):
+        scene = clarity.Scene(self.vertices, self.faces)
+        rt, other = scene.on(accel="bvh2"), scene.on(accel="bvh2")
+        origins, directions = some_rays(20000, 12)
+        hit = rt.closest(origins, directions)
+        expected = other.closest(origins, directions)
+        own = np.empty(20000, np.float32)
+        mixed = rt.closest(origins, directions)
+        prim = mixed.prim
+        mixed.t = own
+        rt.closest(origins, directions, out=mixed)
+        self.assertTrue(mixed.t is own and mixed.prim is prim)
+        self.equal(mixed, expected)
+        moved = rt.closest(origins[::-1], directions[::-1])
+        t = moved.t
+        self.assertIs(other.closest(origins, directions, out=moved).t, t)
+        self.equal(moved, expected)
+        with self.assertRaisesRegex(clarity.UsageError, r"out.t: expected .* \(7,\)"):
+            rt.closest(origins[:7], directions[:7], out=hit)
+        failed = rt.closest(origins, directions)
+        with self.assertRaises(clarity.Cancelled):
+            rt.closest(origins, directions, out=failed, progress=lambda stage, fraction: False)
+        with self.assertRaisesRegex(clarity.UsageError, "failed or was cancelled"):
+            failed.t
+        array = rt.closest(origins, directions).t  # of hits that nobody else holds
+        del rt, scene, moved
+        gc.collect()
+        self.equal(hit, expected)
+        np.testing.assert_array_equal(array, expected.t)
 
     def test_into_arrays_that_are_there_take_no_memory(self):
         rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")

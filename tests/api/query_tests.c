@@ -155,6 +155,97 @@ void test_rows(void) {
     CHECK(clarity_rows(words, on_row, &rows, &watch) == CLARITY_CANCELLED && rows == 1);
 }
 
+/* Hits that stay where they were found: those of clarity_closest(), also after their tracer is gone, and only what is read is copied. */
+void test_kept(const clarity_scene* scene, const char* lanes) {
+    enum { COUNT = 50001 };
+    const char* const settings[] = {lanes, NULL};
+    const clarity_options options = options_of("bvh2", settings);
+    clarity_tracer *tracer = NULL, *other = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    WORKS(clarity_tracer_new(scene, &options, NULL, &other));
+    float* const origins = malloc(3 * COUNT * sizeof(float));
+    float* const t = malloc(COUNT * sizeof(float));
+    float* const uv = malloc(2 * COUNT * sizeof(float));
+    int32_t* const prim = malloc(COUNT * sizeof(int32_t));
+    int32_t* const instance = malloc(COUNT * sizeof(int32_t));
+    const float direction[] = {0, 0, -2};
+    for (int i = 0; i < COUNT; ++i) {
+        origins[3 * i] = 1.5f * (float)i / COUNT;
+        origins[3 * i + 1] = (float)(i % 77) / 77;
+        origins[3 * i + 2] = 4 + (float)(i % 5);
+    }
+    clarity_rays query = {0};
+    query.struct_bytes = sizeof query;
+    query.count = COUNT;
+    query.origins = origins;
+    query.directions = direction;
+    query.origin_steps[0] = 3 * sizeof(float);
+    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
+    for (int32_t brief = 0; brief < 2; ++brief) {
+        clarity_kept* kept = NULL;
+        void *of_t = NULL, *of_prim = NULL, *of_uv = NULL, *of_instance = NULL, *again = NULL;
+        WORKS(clarity_kept_new(tracer, brief, &kept));
+        FAILS(clarity_kept_array(kept, CLARITY_HIT_T, &of_t), CLARITY_USAGE, "no hits");
+        FAILS(clarity_keep(other, &query, kept, NULL), CLARITY_USAGE, "another tracer");
+        for (int turn = 0; turn < 2; ++turn) {
+            const clarity_hits hits = hits_into(t, prim, instance, uv);
+            WORKS(clarity_closest(tracer, &query, &hits, NULL));
+            WORKS(clarity_keep(tracer, &query, kept, NULL));
+            if (turn == 0) { /* later they are filled without being asked for */
+                WORKS(clarity_kept_array(kept, CLARITY_HIT_T, &of_t));
+                WORKS(clarity_kept_array(kept, CLARITY_HIT_PRIM, &of_prim));
+                WORKS(clarity_kept_array(kept, CLARITY_HIT_UV, &of_uv));
+                WORKS(clarity_kept_array(kept, CLARITY_HIT_INSTANCE, &of_instance));
+            }
+            CHECK(memcmp(of_t, t, COUNT * sizeof *t) == 0 && memcmp(of_prim, prim, COUNT * sizeof *prim) == 0);
+            CHECK(memcmp(of_instance, instance, COUNT * sizeof *instance) == 0);
+            if (brief)
+                CHECK(((const float*)of_uv)[0] == 0 && ((const float*)of_uv)[2 * COUNT - 1] == 0);
+            else
+                CHECK(memcmp(of_uv, uv, 2 * COUNT * sizeof *uv) == 0);
+            for (int i = 0; i < COUNT; ++i) origins[3 * i + 2] += 1; /* of the second turn */
+        }
+        query.count = COUNT - 1;
+        FAILS(clarity_keep(tracer, &query, kept, NULL), CLARITY_USAGE, "arrays are in use");
+        query.count = COUNT;
+        int32_t cancel = 1;
+        clarity_watch watch = {0};
+        watch.struct_bytes = sizeof watch;
+        watch.cancel = &cancel;
+        CHECK(clarity_keep(tracer, &query, kept, &watch) == CLARITY_CANCELLED);
+        FAILS(clarity_kept_array(kept, CLARITY_HIT_T, &again), CLARITY_USAGE, "failed or was cancelled");
+        WORKS(clarity_keep(tracer, &query, kept, NULL));
+        WORKS(clarity_kept_array(kept, CLARITY_HIT_T, &again));
+        CHECK(again == of_t);
+        FAILS(clarity_kept_array(kept, 4, &again), CLARITY_USAGE, "no array 4");
+        FAILS(clarity_kept_array(NULL, CLARITY_HIT_T, &again), CLARITY_USAGE, "`kept` is null");
+        clarity_kept_free(kept);
+    }
+    clarity_kept *none = NULL, *late = NULL;
+    void* of_t = NULL;
+    WORKS(clarity_kept_new(tracer, 0, &none));
+    query.count = 0;
+    WORKS(clarity_keep(tracer, &query, none, NULL));
+    WORKS(clarity_kept_array(none, CLARITY_HIT_T, &of_t));
+    query.count = COUNT;
+    WORKS(clarity_kept_new(tracer, 1, &late));
+    WORKS(clarity_keep(tracer, &query, late, NULL));
+    const clarity_hits hits = hits_into(t, NULL, NULL, NULL);
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    clarity_tracer_free(tracer);
+    WORKS(clarity_kept_array(late, CLARITY_HIT_T, &of_t));
+    CHECK(memcmp(of_t, t, COUNT * sizeof *t) == 0);
+    clarity_kept_free(late);
+    clarity_kept_free(none);
+    clarity_kept_free(NULL);
+    clarity_tracer_free(other);
+    free(origins);
+    free(t);
+    free(uv);
+    free(prim);
+    free(instance);
+}
+
 /* Rays that lie on the device. */
 void test_packed(const clarity_scene* scene) {
     const clarity_options options = options_of("bvh2", NULL);

@@ -13,7 +13,8 @@
 /* Traces the rays [first, end). queue[parity]: the number of rays fetched in this launch; the other element, that of the next
  * launch, is cleared. share: the mean number of rays that a work-item of a warp fetches at a time. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_dynamic_fetch(const constant rt_frame *frame, const uint first, const uint end, const uint share, const uint fields,
+trace_dynamic_fetch(const constant rt_frame *frame, const uint first, const uint end, const uint share,
+                    const uint fields, const uint stride, const uint before,
              const global float *rays, global float *answers, volatile global uint *queue, const uint parity,
              RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
@@ -44,7 +45,7 @@ trace_dynamic_fetch(const constant rt_frame *frame, const uint first, const uint
             if (index != RT_NO_RAY) {
                 RT_COUNT_OVERFLOW(&hit)
                 hit.t = hit.prim >= 0 ? hit.t : INFINITY;
-                rt_store_hit_block(answers, index, fields, &hit);
+                rt_store_hit_block(answers, index, fields, stride, before, &hit);
             }
             index = next + popcount(idle_bits & before_me);
             if (index < next_end) {

@@ -4,15 +4,19 @@
  * load is one aligned vector. Gathering from one ray after the other would cost 15 to 20 clocks a ray. With one lane a block is
  * an rt_ray.
  *
- * Answers have the same form, with as many fields as the host asks for:
- *   RT_ANSWER_ALL        t, u, v, prim, instance, and three of no value; with one lane an rt_hit
- *   RT_ANSWER_COUNTED    programs that count: t, u, v, prim, instance, steps, leaf_tests, lane_steps, and the members of a RayWork
- *   RT_ANSWER_HIT        t, u, v, prim: half the bytes, for one lane and scenes without instances
- *   RT_ANSWER_NEAREST    t, prim
+ * Answers are arrays, one after the other, of `stride` numbers each, so that the host copies none but those that somebody reads. It
+ * asks for so many of them, and those of these rays lie behind those of `before` others:
  *   RT_ANSWER_OCCLUSION  t
- * The host fills the last block up with inactive rays. It packs and unpacks blocks in host/render/tracers/rays/ray_blocks.cpp. */
+ *   RT_ANSWER_NEAREST    t, prim
+ *   RT_ANSWER_HIT        t, prim, and u and v of each ray side by side, which take two places
+ *   RT_ANSWER_PLACED     these, and instance
+ *   programs that count: these, steps, leaf_tests, lane_steps, and the members of a RayWork
+ * The host fills the last block up with inactive rays. It packs rays and unpacks answers in
+ * host/render/tracers/rays/ray_blocks.cpp. */
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
+
+#define RT_ANSWER_PLACED 5u
 
 /* t_max of a block; negative in inactive lanes. */
 RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
@@ -67,42 +71,43 @@ RT_INLINE void rt_load_ray_block(const constant rt_frame *frame, const global fl
 #define RT_STORE_NONTEMPORAL(out, v) (*(out) = (v))
 #endif
 
-RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields, const rt_hits *hit)
+/* u and v of the first and of the second half of a block, side by side. */
+#if RT_LANES == 4
+#define RT_SIDE_BY_SIDE(u, v) (vfloat)((u).s0, (v).s0, (u).s1, (v).s1)
+#elif RT_LANES == 8
+#define RT_SIDE_BY_SIDE(u, v) (vfloat)((u).s0, (v).s0, (u).s1, (v).s1, (u).s2, (v).s2, (u).s3, (v).s3)
+#elif RT_LANES == 16
+#define RT_SIDE_BY_SIDE(u, v)                                                                                                     \
+    (vfloat)((u).s0, (v).s0, (u).s1, (v).s1, (u).s2, (v).s2, (u).s3, (v).s3, (u).s4, (v).s4, (u).s5, (v).s5, (u).s6, (v).s6,      \
+             (u).s7, (v).s7)
+#endif
+
+RT_INLINE void rt_store_weights(global float *to, uint block, const rt_hits *hit)
 {
 #if RT_LANES == 1
-    if (fields == RT_ANSWER_HIT) {
-        ((global float4 *)blocks)[block] = (float4)(hit->t, hit->u, hit->v, as_float(hit->prim));
-        return;
-    }
+    ((global float2 *)to)[block] = (float2)(hit->u, hit->v);
+#else
+    global vfloat *pairs = (global vfloat *)to + 2u * (size_t)block;
+    RT_STORE_NONTEMPORAL(pairs, RT_SIDE_BY_SIDE(hit->u.lo, hit->v.lo));
+    RT_STORE_NONTEMPORAL(pairs + 1, RT_SIDE_BY_SIDE(hit->u.hi, hit->v.hi));
 #endif
-    global vfloat *block_fields = (global vfloat *)blocks + fields * (size_t)block;
+}
+
+RT_INLINE void rt_store_hit_block(global float *answers, uint block, uint fields, uint stride, uint before, const rt_hits *hit)
+{
+#define RT_ANSWER_OF(field) ((global vfloat *)(answers + (field) * (size_t)stride + before) + block)
+    RT_STORE_NONTEMPORAL(RT_ANSWER_OF(0u), hit->t);
+    if (fields == RT_ANSWER_OCCLUSION) return;
+    RT_STORE_NONTEMPORAL(RT_ANSWER_OF(1u), rt_as_vfloat(hit->prim));
+    if (fields == RT_ANSWER_NEAREST) return;
+    rt_store_weights(answers + 2u * ((size_t)stride + before), block, hit);
+    if (fields == RT_ANSWER_HIT) return;
+    RT_STORE_NONTEMPORAL(RT_ANSWER_OF(4u), rt_as_vfloat(hit->instance));
 #ifdef RT_COUNT_STEPS
     const uint counts[7] = {hit->steps, hit->leaf_tests, hit->lane_steps, hit->boxes, hit->own_steps, hit->own_boxes, hit->own_tests};
-    block_fields[0] = hit->t;
-    block_fields[1] = hit->u;
-    block_fields[2] = hit->v;
-    block_fields[3] = rt_as_vfloat(hit->prim);
-    block_fields[4] = rt_as_vfloat(hit->instance);
-    for (uint i = 0; i < 7u; ++i) block_fields[5u + i] = rt_as_vfloat(rt_vint((int)counts[i]));
-#else
-    if (fields != RT_ANSWER_ALL) {
-        RT_STORE_NONTEMPORAL(block_fields, hit->t);
-        if (fields == RT_ANSWER_NEAREST) RT_STORE_NONTEMPORAL(block_fields + 1, rt_as_vfloat(hit->prim));
-        return;
-    }
-#if RT_LANES == 1
-    global float4 *out = (global float4 *)blocks + 2u * (size_t)block;
-    out[0] = (float4)(hit->t, hit->u, hit->v, as_float(hit->prim));
-    out[1] = (float4)(as_float(hit->instance), 0.0f, 0.0f, 0.0f);
-#else
-    global vfloat *out = block_fields;
-    out[0] = hit->t;
-    out[1] = hit->u;
-    out[2] = hit->v;
-    out[3] = rt_as_vfloat(hit->prim);
-    out[4] = rt_as_vfloat(hit->instance);
+    for (uint i = 0; i < 7u; ++i) *RT_ANSWER_OF(5u + i) = rt_as_vfloat(rt_vint((int)counts[i]));
 #endif
-#endif
+#undef RT_ANSWER_OF
 }
 
 #endif

@@ -1,7 +1,8 @@
 /* rays.cl -- traces the host's rays, a block of RT_LANES at a time, for queries, tests and benchmarks. ray_blocks.h has their
  * layout. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit, const uint fields,
+trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit,
+           const uint fields, const uint stride, const uint before,
            const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
@@ -52,14 +53,14 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                     rt_hits none;
                     rt_clear_hits(&none, active[b]);
                     none.t = RT_INFINITY;
-                    rt_store_hit_block(answers, base + b, fields, &none);
+                    rt_store_hit_block(answers, base + b, fields, stride, before, &none);
                     continue;
                 }
                 if (any_hit)
                     hit[b].t = rt_select(active[b] & RT_MASK(hit[b].t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
                 else
                     hit[b].t = rt_select(RT_MASK(hit[b].prim >= rt_vint(0)), hit[b].t, RT_INFINITY);
-                rt_store_hit_block(answers, base + b, fields, hit + b);
+                rt_store_hit_block(answers, base + b, fields, stride, before, hit + b);
             }
         }
     }

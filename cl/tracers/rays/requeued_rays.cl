@@ -9,7 +9,8 @@
  * list[parity]: the number of long rays of this launch; the other of its first two elements, that of the next launch, is
  * cleared. Then the indices of the rays. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_short(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit, const uint fields,
+trace_short(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit,
+            const uint fields, const uint stride, const uint before,
             const global float *rays, global float *answers, volatile global uint *list, const uint parity,
             RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
@@ -36,13 +37,14 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
         if (hit.step_budget < 0 && !(any_hit && hit.t == 0.0f)) list[2u + atomic_inc(list + parity)] = at;
     }
     RT_COUNT_OVERFLOW(&hit)
-    rt_store_hit_block(answers, at, fields, &hit);
+    rt_store_hit_block(answers, at, fields, stride, before, &hit);
 }
 
 #define RT_LONG_KERNEL kernel __attribute__((reqd_work_group_size(RT_REQUEUE_ITEMS, 1, 1))) void
 
 RT_LONG_KERNEL
-trace_long_closest(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
+trace_long_closest(const constant rt_frame *frame,
+                   const uint fields, const uint stride, const uint before, const global float *rays, global float *answers,
                    const global uint *list, const uint parity, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
@@ -58,9 +60,9 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
         rt_prepare(&ray, 1u);
         rt_clear_hits(&hit, -1);
         hit.step_budget = INT_MAX;
-        const float before = answers[at * (size_t)fields];
-        hit.t = fmin(t_max, before);
-        if (before < INFINITY) hit.prim = as_int(answers[at * (size_t)fields + (fields == RT_ANSWER_NEAREST ? 1u : 3u)]);
+        const float known = answers[before + at];
+        hit.t = fmin(t_max, known);
+        if (known < INFINITY) hit.prim = as_int(answers[stride + (size_t)before + at]);
         if (get_local_id(0) == 0) nearest = lowest = 0x7FFFFFFFu;
         rt_scene_long_closest(&ctx, frame->root, &ray, &hit, &scratch);
         RT_COUNT_OVERFLOW(&hit)
@@ -70,14 +72,15 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
         barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
         if (found && as_uint(hit.t) == nearest) atomic_min(&lowest, (uint)hit.prim);
         barrier(CLK_LOCAL_MEM_FENCE);
-        if (found && as_uint(hit.t) == nearest && (uint)hit.prim == lowest) rt_store_hit_block(answers, at, fields, &hit);
+        if (found && as_uint(hit.t) == nearest && (uint)hit.prim == lowest) rt_store_hit_block(answers, at, fields, stride, before, &hit);
         barrier(CLK_LOCAL_MEM_FENCE);
     }
 }
 
 /* A kernel of its own, because PoCL 3.1 loses work-items where there are barriers under a condition. */
 RT_LONG_KERNEL
-trace_long_any(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
+trace_long_any(const constant rt_frame *frame,
+               const uint fields, const uint stride, const uint before, const global float *rays, global float *answers,
                const global uint *list, const uint parity, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
@@ -93,7 +96,7 @@ trace_long_any(const constant rt_frame *frame, const uint fields, const global f
         RT_CLEAR_OVERFLOW(&hit)
         rt_scene_long_any(&ctx, frame->root, &ray, &hit, &scratch);
         RT_COUNT_OVERFLOW(&hit)
-        if (get_local_id(0) == 0 && scratch.nearest == 0u) answers[at * (size_t)fields] = 0.0f;
+        if (get_local_id(0) == 0 && scratch.nearest == 0u) answers[before + at] = 0.0f;
         barrier(CLK_LOCAL_MEM_FENCE);
     }
 }

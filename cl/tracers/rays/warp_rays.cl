@@ -47,7 +47,8 @@ RT_INLINE void rt_trace_warp(const rt_ctx *ctx, const constant rt_frame *frame, 
 }
 
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_warps(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit, const uint fields,
+trace_warps(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit,
+            const uint fields, const uint stride, const uint before,
             const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
@@ -81,6 +82,6 @@ trace_warps(const constant rt_frame *frame, const uint first_group, const uint c
             hit[i].t = active[i] && hit[i].t < 0.0f ? 0.0f : INFINITY;
         else
             hit[i].t = hit[i].prim >= 0 ? hit[i].t : INFINITY;
-        rt_store_hit_block(answers, at, fields, hit + i);
+        rt_store_hit_block(answers, at, fields, stride, before, hit + i);
     }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <iterator>
 
 #include "base/parallel_for.hpp"
 
@@ -12,8 +11,7 @@ namespace {
 
 constexpr size_t kChunk = 16384;  // rays in one task; a multiple of kAtOnce
 constexpr size_t kAtOnce = 256;   // rays that are read or written at once, 8 KB; a multiple of all lane counts
-static_assert(sizeof(rt_ray) == RT_RAY_FIELDS * sizeof(float) && sizeof(rt_hit) == RT_ANSWER_ALL * sizeof(float),
-              "rays and hits are fields of four bytes");
+static_assert(sizeof(rt_ray) == RT_RAY_FIELDS * sizeof(float), "rays are fields of four bytes");
 
 template <class Work>
 void for_chunks(size_t count, const Work& work) {
@@ -23,20 +21,10 @@ void for_chunks(size_t count, const Work& work) {
     });
 }
 
-rt_hit answer_at(const float* block, unsigned lanes, rt_u32 fields) {
-    rt_hit hit{*block, 0, 0, -1, -1, 0, 0, 0};
-    if (fields == RT_ANSWER_HIT) {
-        hit.u = block[1], hit.v = block[2];
-        std::memcpy(&hit.prim, block + 3, sizeof hit.prim);
-    } else if (fields == RT_ANSWER_NEAREST) {
-        std::memcpy(&hit.prim, block + lanes, sizeof hit.prim);
-    } else if (fields >= RT_ANSWER_ALL) {
-        float all[RT_ANSWER_ALL];
-        for (size_t k = 0; k < RT_ANSWER_ALL; ++k) all[k] = block[k * lanes];
-        std::memcpy(&hit, all, sizeof hit);
-        if (fields != kAnswerCounted) hit.steps = hit.leaf_tests = hit.lane_steps = 0;
-    }
-    return hit;
+template <class Number>
+void read_number(const float* from, Number& to) {
+    static_assert(sizeof to == sizeof *from, "numbers of an answer have four bytes");
+    std::memcpy(&to, from, sizeof to);
 }
 
 }  // namespace
@@ -71,23 +59,31 @@ RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes)
         [&](size_t first, size_t count, rt_ray* to) { std::memcpy(to, &rays[first], count * sizeof(rt_ray)); }, floats_.data());
 }
 
-void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, const TakeHits& take) {
+void unpack_hits(const float* answers, size_t ray_count, size_t stride, rt_u32 fields, const TakeHits& take) {
     for_chunks(ray_count, [&](size_t first, size_t end) {
         rt_hit hits[kAtOnce];
-        for (size_t i = first; i < end; ++i)
-            hits[i - first] = answer_at(&answers[i / lanes * lanes * fields] + i % lanes, lanes, fields);
+        for (size_t i = first; i < end; ++i) {
+            rt_hit& hit = hits[i - first];
+            hit = {answers[i], 0, 0, -1, -1, 0, 0, 0};
+            if (fields >= RT_ANSWER_NEAREST) read_number(answers + stride + i, hit.prim);
+            if (fields >= RT_ANSWER_HIT) hit.u = answers[2 * stride + 2 * i], hit.v = answers[2 * stride + 2 * i + 1];
+            if (fields >= kAnswerPlaced) read_number(answers + 4 * stride + i, hit.instance);
+            if (fields < kAnswerCounted) continue;
+            read_number(answers + 5 * stride + i, hit.steps);
+            read_number(answers + 6 * stride + i, hit.leaf_tests);
+            read_number(answers + 7 * stride + i, hit.lane_steps);
+        }
         take(first, end - first, hits);
     });
 }
 
-std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, unsigned lanes) {
+std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, size_t stride) {
     std::vector<RayWork> work(ray_count);
     for (size_t i = 0; i < ray_count; ++i) {
-        const float* const more = &answers[i / lanes * lanes * kAnswerCounted] + RT_ANSWER_ALL * lanes + i % lanes;
-        float numbers[kAnswerCounted - RT_ANSWER_ALL];
-        for (size_t k = 0; k < std::size(numbers); ++k) numbers[k] = more[k * lanes];
-        static_assert(sizeof numbers == sizeof(RayWork), "the counters of an answer");
-        std::memcpy(&work[i], numbers, sizeof numbers);
+        read_number(answers + 8 * stride + i, work[i].boxes);
+        read_number(answers + 9 * stride + i, work[i].own_steps);
+        read_number(answers + 10 * stride + i, work[i].own_boxes);
+        read_number(answers + 11 * stride + i, work[i].own_tests);
     }
     return work;
 }

@@ -1,5 +1,5 @@
-// ray_blocks.hpp -- the layout in which kernels read rays of ray queries and write answers: blocks of `lanes` rays, field by
-// field within a block, as in cl/tracers/rays/ray_blocks.h.
+// ray_blocks.hpp -- the layout in which kernels read rays of ray queries, blocks of `lanes` rays, field by field within a
+// block, and in which they write answers, array by array, as in cl/tracers/rays/ray_blocks.h.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -45,13 +45,15 @@ class RayBlocks {
     std::vector<float> floats_;
 };
 
-// Numbers of an answer that contains counters: those of an rt_hit, and a RayWork.
-constexpr rt_u32 kAnswerCounted = 12;
-// Reads answers on all threads.
-// answers: of all blocks, `fields` numbers a ray (RT_ANSWER_*, kAnswerCounted). Members of rt_hit that they do not contain
-// become 0, and -1 for numbers.
-void unpack_hits(const float* answers, size_t ray_count, unsigned lanes, rt_u32 fields, const TakeHits& take);
+// Numbers of an answer, beside RT_ANSWER_*: with the instance; with counters too, those of an rt_hit and a RayWork.
+constexpr rt_u32 kAnswerPlaced = 5, kAnswerCounted = 12;
+// How far the arrays of answers lie apart: they begin at cache lines, and have room for the last block of any number of lanes.
+inline size_t answer_stride(size_t ray_count) {
+    return (ray_count + 63) / 64 * 64;
+}
+// Reads answers on all threads. Members of rt_hit that they do not contain become 0, and -1 for numbers.
+void unpack_hits(const float* answers, size_t ray_count, size_t stride, rt_u32 fields, const TakeHits& take);
 // The rest of answers of kAnswerCounted numbers.
-std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, unsigned lanes);
+std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, size_t stride);
 
 }  // namespace clarity

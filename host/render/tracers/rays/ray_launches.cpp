@@ -27,9 +27,14 @@ void RayQueries::Counted::take(Queue& queue, const std::function<void(cl_uint pa
     parity.take([&](cl_uint) { queue.enqueueFillBuffer(buffer.get(), cl_uint(0), 0, 2 * sizeof(cl_uint)); }, enqueue);
 }
 
-KernelArguments RayQueries::kernel_of(const Launch& launch, const char* entry) const {
-    KernelArguments kernel = launch.program.kernel(entry);
-    kernel.set("fields", launch.fields).set("rays", launch.in).set("answers", launch.out);
+KernelArguments& RayQueries::kernel_of(const Launch& launch, const char* entry) {
+    const auto [found, fresh] = looked_up_.kernels.try_emplace({&launch.program, entry ? entry : ""});
+    KernelArguments& kernel = found->second;
+    if (fresh) kernel = launch.program.kernel(entry);
+    kernel.set("fields", launch.answers.fields)
+        .set("stride", cl_uint(launch.answers.stride))
+        .set("before", cl_uint(launch.answers.before));
+    kernel.set("rays", launch.in).set("answers", launch.answers.buffer);
     if (kernel.has("any_hit")) kernel.set("any_hit", cl_uint(launch.any_hit));
     overflows_.bind(kernel);
     view_.bind(*launch.prepared.on_device, kernel);
@@ -46,7 +51,7 @@ LaunchTimes RayQueries::trace(const Launch& launch) {
 LaunchTimes RayQueries::trace_at_once(const Launch& launch) {
     const Layout& layout = launch.prepared.layout;
     const unsigned each = launch.program.row.rays_per_item;
-    KernelArguments kernel = kernel_of(launch);
+    KernelArguments& kernel = kernel_of(launch);
     kernel.set(each ? "count" : "blocks", cl_uint(launch.blocks));
     const unsigned in_group = each ? layout.local_size() * each : layout.group_packets() * layout.blocks();
     return launchers_[&launch.program.row].run(*device_, device_->queue(), kernel, (launch.blocks + in_group - 1) / in_group,
@@ -56,8 +61,8 @@ LaunchTimes RayQueries::trace_at_once(const Launch& launch) {
 LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
     Queue& queue = device_->queue();
     const cl::Buffer& list = long_rays_.fit(device_->context(), launch.blocks);
-    KernelArguments first = kernel_of(launch),
-                    rest = kernel_of(launch, launch.any_hit ? "trace_long_any" : "trace_long_closest");
+    KernelArguments& first = kernel_of(launch);
+    KernelArguments& rest = kernel_of(launch, launch.any_hit ? "trace_long_any" : "trace_long_closest");
     first.set("count", cl_uint(launch.blocks)).set("list", list);
     rest.set("list", list);
     const size_t long_items = size_t(std::max(1u, device_->info().compute_units)) * kLongGroupsPerUnit * kRequeueItems;
@@ -81,7 +86,7 @@ LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
 LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
     Queue& queue = device_->queue();
     const unsigned most = std::max(1u, device_->info().compute_units) * kFetchGroupsPerUnit;
-    KernelArguments kernel = kernel_of(launch);
+    KernelArguments& kernel = kernel_of(launch);
     kernel.set("share", cl_uint(launch.blocks / (most * kGroup) >= kManyEach ? 2 : 1));
     kernel.set("queue", fetched_.fit(device_->context(), 0));
     const auto enqueue = [&](unsigned begin, unsigned count) {

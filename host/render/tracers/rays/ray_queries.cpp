@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
+#include "device/kernel_files.hpp"
 #include "render/launch/frame_constants.hpp"
 #include "render/tracers/rays/ray_kernels.hpp"
 #include "render/trial/trial.hpp"
@@ -36,20 +37,32 @@ std::vector<const KernelRow*> kernels_for(const rt_plugin& accel, const Layout& 
 
 }  // namespace
 
-double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQuery& query,
-                         const std::function<void(const cl::Buffer&, cl_uint)>& answered) {
+cl_uint RayQueries::answer_fields(const Prepared& prepared, const RayQuery& query) {
+    return query.count                               ? kAnswerCounted
+           : query.any_hit                           ? RT_ANSWER_OCCLUSION
+           : query.brief                             ? RT_ANSWER_NEAREST
+           : prepared.accel->scene.instances.empty() ? RT_ANSWER_HIT
+                                                     : kAnswerPlaced;
+}
+
+TraceProgram& RayQueries::program_of(const Prepared& prepared, uint64_t number, const KernelRow& row, Progress& progress) {
+    const uint64_t revision = kernel_text_revision();
+    if (number == 0 || number != looked_up_.prepared || revision != looked_up_.text_revision)
+        looked_up_ = {number, revision, {}, {}};
+    std::shared_ptr<TraceProgram>& program = looked_up_.programs[&row];
+    if (!program) program = tried_program(programs_, prepared, row, progress);
+    return *program;
+}
+
+double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQuery& query, Answers& answers) {
     tuning_ = {};
+    answers.count = rays.count;
+    answers.fields = answer_fields(prepared, query);
     if (rays.count == 0) return 0;
     const Layout& layout = prepared.layout;
     if (rays.lanes != layout.lanes)
         throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes) + " lanes and the program has " +
                                       std::to_string(layout.lanes) + ": pack them again");
-    const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
-    const cl_uint fields = query.count     ? kAnswerCounted
-                           : query.any_hit ? RT_ANSWER_OCCLUSION
-                           : query.brief   ? RT_ANSWER_NEAREST
-                           : unplaced      ? RT_ANSWER_HIT
-                                           : RT_ANSWER_ALL;
     const size_t blocks = (rays.count + layout.lanes - 1) / layout.lanes;
     const Asked asked{prepared.on_device, prepared.program, blocks, query.any_hit, query.count, query.brief};
     if (!(asked == last_)) {
@@ -65,25 +78,28 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
     }
     const KernelRow& row = few ? plain_rays() : *kernels_[autotuner_.variant()];
     Progress never_cancelled;
-    const auto program = tried_program(programs_, prepared, row, query.progress ? *query.progress : never_cancelled);
+    const TraceProgram& program = program_of(prepared, rays.prepared, row, query.progress ? *query.progress : never_cancelled);
     if (!few) tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
     Queue& queue = device_->queue();
     rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
     frame.ray_mask = query.mask;
     view_.write(queue, *prepared.scene, *prepared.on_device, {frame}, View());
-    const cl::Buffer& out = out_.fit(device_->context(), std::max(blocks * layout.lanes, rays.room) * fields * sizeof(float));
+    if (!answers.buffer()) {
+        answers.stride = answer_stride(rays.count);
+        answers.buffer =
+            out_.fit(device_->context(), std::max(answers.stride, answer_stride(rays.room)) * answers.fields * sizeof(float));
+    }
     const cl::Buffer in = rays.upload();
     const bool debug = prepared.settings.debug;
     if (debug) overflows_.clear(queue);
     const LaunchTimes times =
-        trace({prepared, *program, static_cast<unsigned>(blocks), query.any_hit, fields, in, out, query.progress});
+        trace({prepared, program, static_cast<unsigned>(blocks), query.any_hit, in, answers, query.progress});
     overflowed_ = debug ? overflows_.read(queue) : 0;
     if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
     if (!few) {
         autotuner_.took(times.device_ms / double(blocks));  // pieces of one packing may differ in size
         tuning_.settled = autotuner_.settled();
     }
-    answered(out, fields);
     return times.device_ms;
 }
 
@@ -97,19 +113,26 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
             device_->queue().enqueueWriteBuffer(in, CL_TRUE, 0, bytes, rays.floats().data());
             return in;
         };
-        const auto take = [&](size_t first, size_t count, const rt_hit* some) {
-            std::memcpy(&(*hits)[first], some, count * sizeof *some);
-        };
-        return trace(prepared, {rays.ray_count(), 0, rays.lanes(), rays.packing(), upload}, query,
-                     [&](const cl::Buffer& out, cl_uint fields) {
-                         if (hits) read_answers(out, rays.ray_count(), rays.lanes(), fields, take, query.work);
-                     });
+        Answers answers;
+        const double ms = trace(prepared, {rays.ray_count(), 0, rays.lanes(), rays.packing(), 0, upload}, query, answers);
+        if (!hits || hits->empty()) return ms;
+        const Queue& queue = device_->queue();
+        void* const mapped = queue.enqueueMapBuffer(answers.buffer, CL_TRUE, CL_MAP_READ, 0, answers.bytes());
+        const auto* numbers = static_cast<const float*>(mapped);
+        unpack_hits(
+            numbers, answers.count, answers.stride, answers.fields,
+            [&](size_t first, size_t count, const rt_hit* some) { std::memcpy(&(*hits)[first], some, count * sizeof *some); });
+        if (query.work && query.count) *query.work = unpack_work(numbers, answers.count, answers.stride);
+        queue.enqueueUnmapMemObject(answers.buffer, mapped);
+        return ms;
     });
 }
 
-double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQuery query) {
+double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQuery query, Answers& answers) {
     return wrap_cl_errors(*device_, "tracing rays", [&] {
         const unsigned lanes = prepared.layout.lanes;
+        answers = rays.all ? *rays.all : Answers();
+        answers.before = rays.all ? rays.first : 0;
         const auto upload = [&] {
             if (rays.packed()) return rays.packed;
             const size_t room = std::max(rays.count, rays.room);
@@ -117,10 +140,7 @@ double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQue
             write_rays(in, rays.count, lanes, rays.read);
             return in;
         };
-        return trace(prepared, {rays.count, rays.room, lanes, rays.packing, upload}, query,
-                     [&](const cl::Buffer& out, cl_uint fields) {
-                         read_answers(out, rays.count, lanes, fields, rays.take, query.work);
-                     });
+        return trace(prepared, {rays.count, rays.room, lanes, rays.packing, rays.prepared, upload}, query, answers);
     });
 }
 
@@ -133,23 +153,13 @@ cl::Buffer RayQueries::pack_on_device(size_t count, unsigned lanes, const ReadRa
     });
 }
 
-// What is mapped lies in the device's memory if that is the host's.
 void RayQueries::write_rays(const cl::Buffer& in, size_t count, unsigned lanes, const ReadRays& read) {
-    const Queue& queue = device_->queue();
-    void* const mapped =
-        queue.enqueueMapBuffer(in, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, block_floats(count, lanes) * sizeof(float));
-    pack_rays(count, lanes, read, static_cast<float*>(mapped));
-    queue.enqueueUnmapMemObject(in, mapped);
-}
-
-void RayQueries::read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, const TakeHits& take,
-                              std::vector<RayWork>* work) {
-    const Queue& queue = device_->queue();
-    void* const mapped =
-        queue.enqueueMapBuffer(out, CL_TRUE, CL_MAP_READ, 0, (count + lanes - 1) / lanes * lanes * fields * sizeof(float));
-    unpack_hits(static_cast<const float*>(mapped), count, lanes, fields, take);
-    if (work && fields == kAnswerCounted) *work = unpack_work(static_cast<const float*>(mapped), count, lanes);
-    queue.enqueueUnmapMemObject(out, mapped);
+    constexpr size_t kRayBytes = RT_RAY_FIELDS * sizeof(float);
+    copies_->write(in, block_floats(count, lanes) * sizeof(float), [&](void* piece, size_t before, size_t bytes) {
+        const size_t begin = before / kRayBytes, some = std::min(bytes / kRayBytes, count - begin);
+        pack_rays(
+            some, lanes, [&](size_t first, size_t n, rt_ray* to) { read(begin + first, n, to); }, static_cast<float*>(piece));
+    });
 }
 
 std::vector<rt_hit> RayQueries::trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query) {

@@ -14,31 +14,39 @@
 #include "render/launch/prepared.hpp"
 #include "render/launch/view_buffers.hpp"
 #include "render/tracers/rays/autotuner.hpp"
+#include "render/tracers/rays/host_copies.hpp"
 #include "render/tracers/rays/ray_blocks.hpp"
 #include "render/tracers/rays/ray_query.hpp"
 
 namespace clarity {
 
-// Rays and hits that lie in arrays of the caller's own.
+// Rays that lie in arrays of the caller's own, or on the device.
 struct RayArrays {
     size_t count = 0;
     uint64_t packing = 0;  // as RayBlocks::packing(). Pieces of one set of rays may have one number
     cl::Buffer packed;     // by pack_on_device(); without it `read` gives the rays
     ReadRays read;
-    TakeHits take;
-    size_t room = 0;  // the buffers are made for so many rays, or for `count` if that is more
+    size_t room = 0;        // the buffers are made for so many rays, or for `count` if that is more
+    uint64_t prepared = 0;  // a number that each Prepared has for itself; 0: not known. Kernels are looked up once for it
+    // Of a larger set of rays these are those from `first` on, a multiple of the lanes, and all answers lie in `all`, which has
+    // answer_fields() numbers. Without `all`, answers lie in a buffer of the queries until the next one.
+    const Answers* all = nullptr;
+    size_t first = 0;
 };
 
 // Ray queries on one device, and the choice of the fastest kernel for them. Used from one thread.
 class RayQueries {
  public:
-    explicit RayQueries(std::shared_ptr<Device> device) : device_(device), programs_(device) {}
+    explicit RayQueries(std::shared_ptr<Device> device)
+        : device_(device), copies_(std::make_shared<HostCopies>(device)), programs_(device) {}
     // Traces the rays and returns the kernel's time, ms by the device's clock. If `hits` is null, the answers stay on the
     // device. Throws Error(failed) if the rays were packed for another number of lanes. If traversal stacks of a debug program
     // were full, this is logged as an error.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
-    // The same with arrays of the caller's own, of which one pass is made each way: between them and the device's buffers.
-    double trace(const Prepared& prepared, const RayArrays& rays, RayQuery query);
+    // The same with arrays of the caller's own, of which one pass is made. The answers stay on the device: read_answers().
+    double trace(const Prepared& prepared, const RayArrays& rays, RayQuery query, Answers& answers);
+    static cl_uint answer_fields(const Prepared& prepared, const RayQuery& query);
+    const std::shared_ptr<HostCopies>& copies() const { return copies_; }
     // Rays that stay on the device.
     cl::Buffer pack_on_device(size_t count, unsigned lanes, const ReadRays& read);
     // As the first, and packs the rays. Rays that are traced repeatedly are better packed once.
@@ -58,23 +66,27 @@ class RayQueries {
     struct Given {
         size_t count, room;
         unsigned lanes;
-        uint64_t packing;
+        uint64_t packing, prepared;
         std::function<cl::Buffer()> upload;
     };
-    // answered: gets the buffer of the answers, and how many numbers a ray has.
-    double trace(const Prepared& prepared, const Given& rays, const RayQuery& query,
-                 const std::function<void(const cl::Buffer&, cl_uint fields)>& answered);
+    // answers: gets those of this query. If it has a buffer already, they are written there.
+    double trace(const Prepared& prepared, const Given& rays, const RayQuery& query, Answers& answers);
     void write_rays(const cl::Buffer& in, size_t count, unsigned lanes, const ReadRays& read);
-    void read_answers(const cl::Buffer& out, size_t count, unsigned lanes, cl_uint fields, const TakeHits& take,
-                      std::vector<RayWork>* work);
-    // One launch of a query. The answers have `fields` numbers a ray (RT_ANSWER_*).
+    // To make a kernel's text and to find its program by it takes longer than to trace a million rays.
+    struct LookedUp {
+        uint64_t prepared = 0, text_revision = 0;
+        std::map<const KernelRow*, std::shared_ptr<TraceProgram>> programs;
+        std::map<std::pair<const TraceProgram*, std::string>, KernelArguments> kernels;  // by their entries
+    };
+    TraceProgram& program_of(const Prepared& prepared, uint64_t number, const KernelRow& row, Progress& progress);
+    // One launch of a query.
     struct Launch {
         const Prepared& prepared;
         const TraceProgram& program;
         unsigned blocks;
         bool any_hit;
-        cl_uint fields;
-        const cl::Buffer &in, &out;
+        const cl::Buffer& in;
+        const Answers& answers;
         const Progress* progress;
         void go_on() const {
             if (progress && progress->cancelled()) throw Cancelled();
@@ -87,7 +99,7 @@ class RayQueries {
         const cl::Buffer& fit(const cl::Context& context, size_t rays);
         void take(Queue& queue, const std::function<void(cl_uint parity)>& enqueue);
     };
-    KernelArguments kernel_of(const Launch& launch, const char* entry = nullptr) const;
+    KernelArguments& kernel_of(const Launch& launch, const char* entry = nullptr);
     // One launch for all hits behind those that are known. Returns the lists of all blocks (cl/tracers/rays/all_hits.cl).
     std::vector<float> list_hits(const Prepared& prepared, const TraceProgram& program, const RayBlocks& rays,
                                  const std::vector<float>& after);
@@ -101,7 +113,9 @@ class RayQueries {
     LaunchTimes trace_fetching(const Launch& launch);
 
     std::shared_ptr<Device> device_;
+    std::shared_ptr<HostCopies> copies_;
     ProgramCache programs_;  // of all kernels for ray queries
+    LookedUp looked_up_;
     ViewBuffers view_;
     std::map<const KernelRow*, Launcher> launchers_;
     Counted long_rays_, fetched_;

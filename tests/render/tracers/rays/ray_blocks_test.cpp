@@ -48,9 +48,9 @@ std::vector<rt_hit> traced(unsigned lanes, const std::vector<rt_ray>& rays, RayQ
     return Workbench::get().rays(ball(), make_settings({{"accel", "bvh2"}, {"lanes", std::to_string(lanes)}}), rays, query);
 }
 
-std::vector<rt_hit> unpacked(const std::vector<float>& answers, size_t count, unsigned lanes, rt_u32 fields) {
+std::vector<rt_hit> unpacked(const std::vector<float>& answers, size_t count, rt_u32 fields) {
     std::vector<rt_hit> hits(count);
-    unpack_hits(answers.data(), count, lanes, fields,
+    unpack_hits(answers.data(), count, answer_stride(count), fields,
                 [&](size_t first, size_t some, const rt_hit* from) { std::copy(from, from + some, &hits[first]); });
     return hits;
 }
@@ -76,62 +76,49 @@ TEST(RayBlocks, StoreRaysFieldByField) {
     EXPECT_TRUE(RayBlocks({}, 16).floats().empty());
 }
 
-// With one lane, rays and answers have the layout of the structs.
-TEST(RayBlocks, WithOneLaneHaveTheLayoutOfTheStructs) {
+// With one lane, rays have the layout of the struct.
+TEST(RayBlocks, WithOneLaneHaveTheLayoutOfTheStruct) {
     const std::vector<rt_ray> rays = numbered_rays(5);
     const RayBlocks blocks(rays, 1);
     EXPECT_EQ(std::memcmp(blocks.floats().data(), rays.data(), sizeof(rt_ray) * rays.size()), 0);
-    std::vector<rt_hit> hits(3);
-    for (rt_u32 i = 0; i < 3; ++i) hits[i] = {1.5f + float(i), .25f, .5f, rt_i32(i), -1, i + 1, i + 2, i + 3};
-    std::vector<float> answers(kAnswerCounted * hits.size());
-    for (rt_u32 i = 0; i < 3; ++i) {
-        const RayWork more{i + 4, i + 5, i + 6, i + 7};
-        std::memcpy(&answers[kAnswerCounted * i], &hits[i], sizeof hits[i]);
-        std::memcpy(&answers[kAnswerCounted * i + RT_ANSWER_ALL], &more, sizeof more);
-    }
-    const std::vector<rt_hit> back = unpacked(answers, hits.size(), 1, kAnswerCounted);
-    EXPECT_EQ(std::memcmp(back.data(), hits.data(), sizeof(rt_hit) * hits.size()), 0);
-    EXPECT_EQ(unpack_work(answers.data(), 3, 1)[2].own_tests, 9u);
 }
 
-TEST(RayBlocks, HitsAreInTheOrderOfTheRays) {
-    for (const unsigned lanes : kLanes)
-        for (const size_t count : kCounts) {
-            const size_t slots = (count + lanes - 1) / lanes * lanes;
-            std::vector<float> answers(slots * 8, -77), with_counts(slots * kAnswerCounted, -77), distances(slots, -77);
-            for (size_t i = 0; i < count; ++i) {
-                const rt_hit hit = {float(i) + .5f, .25f, .125f, rt_i32(3 * i), rt_i32(i % 5) - 1, rt_u32(i), 2 * rt_u32(i), 7};
-                float fields[8];
-                std::memcpy(fields, &hit, sizeof fields);
-                for (size_t k = 0; k < 8; ++k) {
-                    answers[(i / lanes * 8 + k) * lanes + i % lanes] = fields[k];
-                    with_counts[(i / lanes * kAnswerCounted + k) * lanes + i % lanes] = fields[k];
-                }
-                const rt_u32 boxes = 3 * rt_u32(i);
-                std::memcpy(&with_counts[(i / lanes * kAnswerCounted + 8) * lanes + i % lanes], &boxes, sizeof boxes);
-                distances[i] = float(i);
-            }
-            const auto counted = unpacked(with_counts, count, lanes, kAnswerCounted),
-                       plain = unpacked(answers, count, lanes, RT_ANSWER_ALL),
-                       occlusion = unpacked(distances, count, lanes, RT_ANSWER_OCCLUSION);
-            const std::vector<RayWork> work = unpack_work(with_counts.data(), count, lanes);
-            for (size_t i = 0; i < count; ++i) {
-                for (const rt_hit& hit : {counted[i], plain[i]}) {
-                    ASSERT_EQ(hit.t, float(i) + .5f);
-                    ASSERT_EQ(hit.u, .25f);
-                    ASSERT_EQ(hit.v, .125f);
-                    ASSERT_EQ(hit.prim, rt_i32(3 * i));
-                    ASSERT_EQ(hit.instance, rt_i32(i % 5) - 1);
-                }
-                ASSERT_EQ(counted[i].steps, i);
-                ASSERT_EQ(counted[i].leaf_tests, 2 * i);
-                ASSERT_EQ(counted[i].lane_steps, 7u);
-                ASSERT_EQ(work[i].boxes, 3 * i);
-                ASSERT_EQ(plain[i].steps + plain[i].leaf_tests + plain[i].lane_steps, 0u);
-                ASSERT_EQ(occlusion[i].t, float(i));
-                ASSERT_EQ(occlusion[i].prim, -1);
-            }
+TEST(RayBlocks, AnswersAreArraysOneAfterTheOther) {
+    for (const size_t count : kCounts) {
+        const size_t stride = answer_stride(count);
+        ASSERT_TRUE(stride >= count && stride % 64 == 0);
+        std::vector<float> answers(stride * kAnswerCounted, -77);
+        const auto put = [&](size_t field, size_t i, auto number) {
+            std::memcpy(&answers[field * stride + i], &number, sizeof number);
+        };
+        for (size_t i = 0; i < count; ++i) {
+            const auto n = rt_u32(i);
+            put(0, i, float(i) + .5f);
+            put(1, i, rt_i32(3 * i));
+            put(2, 2 * i, float(i) + .25f);
+            put(2, 2 * i + 1, float(i) + .125f);
+            put(4, i, rt_i32(i % 5) - 1);
+            for (const rt_u32 k : {5u, 6u, 7u, 8u, 9u, 10u, 11u}) put(k, i, k * n);
         }
+        const auto counted = unpacked(answers, count, kAnswerCounted), placed = unpacked(answers, count, kAnswerPlaced),
+                   plain = unpacked(answers, count, RT_ANSWER_HIT), nearest = unpacked(answers, count, RT_ANSWER_NEAREST),
+                   occlusion = unpacked(answers, count, RT_ANSWER_OCCLUSION);
+        const std::vector<RayWork> work = unpack_work(answers.data(), count, stride);
+        for (size_t i = 0; i < count; ++i) {
+            const auto n = rt_u32(i);
+            for (const rt_hit& hit : {counted[i], placed[i], plain[i], nearest[i], occlusion[i]})
+                ASSERT_EQ(hit.t, float(i) + .5f);
+            for (const rt_hit& hit : {counted[i], placed[i], plain[i], nearest[i]}) ASSERT_EQ(hit.prim, rt_i32(3 * i));
+            for (const rt_hit& hit : {counted[i], placed[i], plain[i]})
+                ASSERT_TRUE(hit.u == float(i) + .25f && hit.v == float(i) + .125f) << i;
+            for (const rt_hit& hit : {counted[i], placed[i]}) ASSERT_EQ(hit.instance, rt_i32(i % 5) - 1);
+            ASSERT_TRUE(counted[i].steps == 5 * n && counted[i].leaf_tests == 6 * n && counted[i].lane_steps == 7 * n);
+            ASSERT_TRUE(work[i].boxes == 8 * n && work[i].own_steps == 9 * n && work[i].own_boxes == 10 * n &&
+                        work[i].own_tests == 11 * n);
+            ASSERT_EQ(placed[i].steps + placed[i].leaf_tests + placed[i].lane_steps, 0u);
+            ASSERT_TRUE(plain[i].instance == -1 && nearest[i].u == 0 && occlusion[i].prim == -1);
+        }
+    }
 }
 
 // On the device: answers do not depend on the lane count, on blocks being full, or on counting.
