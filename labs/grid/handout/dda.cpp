@@ -9,7 +9,7 @@
 
 namespace {
 
-constexpr double kCellsOfPrimitive = 3, kMostCells = 64;  // along an axis
+constexpr double kCellsOfPrimitive = 2, kMostCells = 64;  // along an axis
 // A primitive is in each cell that its box comes as near to, in cells. So a ray may be taken for one of the cell beside it, where
 // it is that close to an edge, and loses nothing.
 constexpr double kSlack = 0.01;
