@@ -1,7 +1,10 @@
 // lab_command_test.cpp -- what `clarity lab` does besides marking: handouts, copies, nights, the page of marks, refusals.
 #include <gtest/gtest.h>
 
+#include <seccomp.h>
+
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -13,6 +16,7 @@
 #include "lab/grade.hpp"
 #include "lab_sdk.hpp"
 #include "support/scratch.hpp"
+#include "worker/child.hpp"
 
 namespace {
 
@@ -139,6 +143,49 @@ TEST(Lab, TheBoardRanksByWork) {
     EXPECT_EQ(page.find("<wrong>"), std::string::npos);
     EXPECT_NE(page.find("&lt;wrong&gt;"), std::string::npos);
     EXPECT_THROW(clarity::lab::read_board(scratch.path("none")), clarity::Error);
+}
+
+// Grades a submission that includes the hidden cases, on a system without bubblewrap; without Landlock, too, if `landlock` is
+// false. What the program prints goes to the file `to`.
+void grade_without_bubblewrap(const Scratch& scratch, bool landlock, const std::string& to) {
+    if (!landlock) {
+        const scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+        if (seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(landlock_create_ruleset), 0) != 0 ||
+            seccomp_load(filter) != 0)
+            return;
+    }
+    RunOptions options;
+    options.environment["PATH"] = scratch.path("bin") + ":" + std::getenv("PATH");
+    const ProgramResult result =
+        run_program({"lab", "grade", kLabs + "/median", scratch.path("curious"), "--sdk", kSdk, "--counts-only"}, options);
+    scratch.write(to, result.out + result.err);
+}
+
+// Each sandbox is said, and none shows what a submission includes of the teacher's. The reference solution is built in it.
+TEST(Lab, WithoutBubblewrapAndLandlockCompilersAreStillShutIn) {
+    install_sdk();
+    const Scratch scratch;
+    scratch.write("bin/bwrap", "#!/bin/sh\nexit 1\n");
+    fs::permissions(scratch.path("bin/bwrap"), fs::perms::owner_all);
+    scratch.write("curious/median.cpp", "#include \"" + kLabs + "/median/hidden/cases.json\"\n");
+    for (const bool landlock : {true, false}) {
+        // A filter of system calls stays for the rest of a process.
+        const pid_t child = fork();
+        if (child == 0) {
+            grade_without_bubblewrap(scratch, landlock, "said");
+            _exit(0);
+        }
+        waitpid(child, nullptr, 0);
+        const std::string said = scratch.read("said");
+        const bool by_landlock = landlock && clarity::worker::restricts_files();
+        EXPECT_NE(said.find(by_landlock ? "sandbox: a worker's limits (Landlock" : "sandbox: resource limits alone"),
+                  std::string::npos)
+            << said;
+        EXPECT_NE(said.find("it does not compile"), std::string::npos) << said;
+        EXPECT_EQ(said.find("the reference solution"), std::string::npos) << said;
+        for (const char* secret : {"7301", "hidden-1", "teapots"}) EXPECT_EQ(said.find(secret), std::string::npos) << said;
+        fs::remove(scratch.path("said"));
+    }
 }
 
 // Before grading has come to its end there is a score of 0; a lab that cannot be graded keeps it.
