@@ -47,7 +47,8 @@ class Desk {
         options.device = command.device;
         options.only = command.only;
         options.times = !command.counts_only;
-        options.sdk = command.sdk.empty() ? program_file().parent_path().parent_path().string() : command.sdk;
+        options.sdk =
+            command.sdk.empty() ? program_file().parent_path().parent_path().string() : fs::absolute(command.sdk).string();
         if (!fs::exists(options.sdk + "/include/clarity/rt_plugin.h"))
             throw Error(Exit::usage,
                         options.sdk +

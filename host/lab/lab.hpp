@@ -14,25 +14,27 @@ struct Case {
     std::string name, scene;  // scene: a row of kGenerators
     unsigned triangles = 0, rays = 0;
     uint64_t seed = 0;
+    unsigned poses = 1;  // more than 1: each pose is a mesh, with as many of the rays
     bool hidden = false;
     double reference = 0;  // work a ray of the reference solution, where students have no reference; 0: not known
 };
 
 struct Lab {
     std::string folder, title;
-    // The plugin. layout: of a builder of trees, the structure that packs and traces them; "": the plugin's host code is the
-    // teacher's, and students write kernels.
+    // The plugin. layout: of a builder of trees, the structure that packs and traces them; "": the plugin has slots and kernels
+    // of its own.
     std::string id, layout;
     struct File {
         std::string name;
         uint64_t most_bytes = 0;
+        bool is_kernel() const;  // not C++: OpenCL C, which is compiled into the teacher's kernels
     };
     std::vector<File> files;             // that students hand in
     std::vector<std::string> shared;     // files of the folder `shared` beside the labs, which belong to the handout
-    std::vector<std::string> forbidden;  // what must not stand in them
+    std::vector<std::string> forbidden;  // what must not stand in those that are kernels
     std::vector<std::string> checks;     // of `clarity check`, or their beginnings
     int lanes = 1;                       // of all kernels: counts do not depend on the machine
-    double points_checks = 50, points_counts = 35, points_speed = 15;
+    double points_checks = 50, points_answers = 0, points_counts = 35, points_speed = 15;
     // Counts: all points at `full` times the work of the reference, none at `none` times.
     double full = 1.1, none = 8;
     double compile_s = 120, build_s = 2;  // for the compiler, of the clock; for one build of a structure, of the processor
@@ -40,6 +42,8 @@ struct Lab {
     std::string visibility = "visible", hidden_visibility = "visible";  // of lines, in Gradescope's words
     std::vector<Case> cases;
 
+    // Whether students write a builder, which only workers behind closed doors open.
+    bool has_builder() const;
     // The folder from which a plugin is built, but for the files of students.
     std::string handout() const;
     // All files of the handout, with the shared ones. Throws Error(usage) if one of these is nowhere.

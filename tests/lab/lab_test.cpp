@@ -2,37 +2,20 @@
 // table.
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
-#include "lab/board.hpp"
-#include "lab/build.hpp"
-#include "lab/grade.hpp"
+#include "lab_sdk.hpp"
 #include "support/scratch.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-const std::string kLabs = std::string(CLARITY_SOURCE_DIR) + "/labs";
-const std::string kSdk = std::string(CLARITY_BUILD_DIR) + "/tests/lab/sdk";
-
-// The SDK as it is installed: plugins of submissions are built against it.
-void install_sdk() {
-    static const bool done = [] {
-        const std::string command =
-            "cmake --install '" CLARITY_BUILD_DIR "' --component sdk --prefix '" + kSdk + "' >/dev/null";
-        return std::system(command.c_str()) == 0;
-    }();
-    ASSERT_TRUE(done) << kSdk;
-}
 
 // A submission is our solution with one edit. Its mark, of 100 without times: 50 of checks and 50 of counts.
 constexpr const char* kStarter = "starter";
@@ -114,6 +97,42 @@ const Submission kBinned[] = {
      0, 0, ""},
 };
 
+const Submission kGrid[] = {
+    {"right", "", "", 100, 100, "1.00 times the work", true},
+    {"starter", kStarter, "", 50, 50, "times the work", true},
+    {"slow_to_the_end", "if (!(walk->next[k] <= nearest)) return 0;", "", 51, 90, "times the work"},
+    // It stops at any surface, also one that lies in a later cell.
+    {"wrong_stops_early", "if (!(walk->next[k] <= nearest))", "if (nearest < 1e30f)", 0, 20, ""},
+    {"wrong_next_plane", "walk->cell[k] + 1);", "walk->cell[k]);", 0, 25, ""},
+    {"stays", "walk->cell[k] += walk->step[k];", "walk->cell[k] += 0;", 0, 20, ""},
+};
+
+const Submission kWidePack[] = {
+    {"right", "", "", 100, 100, "1.00 times the work", true},
+    {"starter_of_one", "node.lo[i][axis] = static_cast<unsigned char>(lo), node.hi[i][axis] = static_cast<unsigned char>(hi);",
+     "node.lo[i][axis] = 0, node.hi[i][axis] = 255;", 50, 50, "times the work"},
+    {"wrong_to_the_nearest", "static_cast<unsigned char>(lo), node.hi[i][axis] = static_cast<unsigned char>(hi);",
+     "static_cast<unsigned char>((boxes[i].lo[axis] - origin) / step + 0.5f),\n"
+     "node.hi[i][axis] = static_cast<unsigned char>((boxes[i].hi[axis] - origin) / step + 0.5f);",
+     10, 30, "", true},
+    {"reads_files", "    for (int axis = 0; axis < 3; ++axis) {\n        const float origin",
+     "    if (std::FILE* file = std::fopen(\"HIDDEN\", \"r\")) std::fclose(file);\n    else\n        throw std::bad_alloc();\n"
+     "    for (int axis = 0; axis < 3; ++axis) {\n        const float origin",
+     0, 0, ""},
+};
+const Submission kWideUnpack[] = {
+    {"starter_alone", kStarter, "", 0, 20, ""},
+    {"counts_falsely", "float wide_low(", "float rt_enter_bounds(", 0, 0, "does not allow"},
+};
+
+const Submission kRefit[] = {
+    {"right", "", "", 100, 100, "1.00 times the work", true},
+    {"starter", kStarter, "", 50, 50, "times the work", true},
+    {"never_builds", "return debt < price;", "return true;", 50, 90, "times the work"},
+    {"wrong_keeps_boxes", "std::copy(box.lo, box.lo + 3, node.lo), std::copy(box.hi, box.hi + 3, node.hi);", "", 0, 30, "",
+     true},
+};
+
 // Kernels that test boxes by themselves, of a lab in which students write all of the traversal.
 #define OWN_SLABS                                                                                                \
     "#include \"ordered_visit.h\"\n"                                                                             \
@@ -164,6 +183,9 @@ std::map<std::string, json> grade(const std::string& folder, const std::string& 
                 "<cstring>\n#include <functional>\n" +
                 text;
         }
+        // Its other files are ours.
+        fs::create_directories(scratch.path(lab));
+        fs::copy(folder + "/reference", scratch.path(lab + "/" + one.name));
         scratch.write(lab + "/" + one.name + "/" + file, text);
         words.push_back(scratch.path(lab + "/" + one.name));
     }
@@ -199,6 +221,9 @@ void expect_marks(const std::string& folder, const std::string& file, const Subm
     for (const Submission& one : all)
         if (one.quick || !is_quick()) chosen.push_back(one);
     const auto records = grade(folder, file, chosen);
+    std::vector<std::string> secrets;
+    if (std::ifstream hidden(folder + "/hidden/cases.json"); hidden)
+        for (const json& one : json::parse(hidden)) secrets.push_back(one["seed"].dump());
     for (const Submission& one : chosen) {
         const json& record = records.at(one.name);
         ASSERT_TRUE(record.is_object()) << one.name;
@@ -212,7 +237,7 @@ void expect_marks(const std::string& folder, const std::string& file, const Subm
             if (line["hidden"] == true) {
                 EXPECT_EQ(text.find("probe"), std::string::npos) << "a hidden line quotes the submission";
             }
-            for (const char* secret : {"7301", "4117", "9241", "5003", "6133", "3907"})
+            for (const std::string& secret : secrets)
                 EXPECT_EQ(text.find(secret), std::string::npos) << one.name << " shows a hidden seed: " << text;
         }
         EXPECT_TRUE(found) << one.name << ": no line has '" << one.found << "'" << record.dump(1);
@@ -227,6 +252,16 @@ TEST(LabSubmissions, OfOrderedChildren) {
     expect_marks(kLabs + "/ordered", "ordered_visit.h", kOrdered);
 }
 
+TEST(LabSubmissions, OfWalksThroughAGrid) {
+    expect_marks(kLabs + "/grid", "dda_walk.h", kGrid);
+}
+TEST(LabSubmissions, OfWideNodes) {
+    expect_marks(kLabs + "/wide", "wide_pack.hpp", kWidePack);
+    if (!is_quick()) expect_marks(kLabs + "/wide", "wide_unpack.h", kWideUnpack);
+}
+TEST(LabSubmissions, OfRefits) {
+    expect_marks(kLabs + "/refit", "refit.cpp", kRefit);
+}
 TEST(LabSubmissions, OfBinnedBuilds) {
     expect_marks(kLabs + "/binned", "binned.cpp", kBinned);
 }
@@ -244,142 +279,6 @@ TEST(LabSubmissions, BoxesThatNobodyCountsAreRefused) {
     lab["cases"] = {{{"name", "city"}, {"scene", "city"}, {"triangles", 500}, {"rays", 200}}};
     scratch.write("whole/lab.json", lab.dump());
     expect_marks(folder, "ordered.cl", kWholeTraversal);
-}
-
-// A shared file that is nowhere, and a name that leads elsewhere, are refused.
-TEST(Lab, SharedFilesComeWithTheHandoutAndWithACopy) {
-    const Scratch scratch;
-    const auto has = [&](const std::string& file) { return fs::exists(scratch.path(file)); };
-    clarity::lab::copy_lab(kLabs + "/binned", scratch.path("copy"));
-    EXPECT_TRUE(has("copy/handout/lab_tree.hpp"));
-    clarity::lab::write_handout(clarity::lab::read_lab(scratch.path("copy"), true), scratch.path("mine"), {});
-    for (const char* file : {"mine/lab_tree.hpp", "mine/binned.cpp", "mine/page.md", "mine/lab.json", "mine/CMakeLists.txt"})
-        EXPECT_TRUE(has(file)) << file;
-    EXPECT_FALSE(has("mine/reference") || has("mine/hidden"));
-    fs::remove(scratch.path("copy/handout/lab_tree.hpp"));
-    EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true).given(), clarity::Error);
-    json lab = json::parse(scratch.read("copy/lab.json"));
-    lab["shared"] = {"../lab.json"};
-    scratch.write("copy/lab.json", lab.dump());
-    EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true), clarity::Error);
-}
-
-TEST(Lab, LinksAndLargeFilesAreRefused) {
-    const Scratch scratch;
-    const clarity::lab::Lab lab = clarity::lab::read_lab(kLabs + "/median", true);
-    scratch.write("large/median.cpp", std::string(70000, ' '));
-    fs::create_directories(scratch.path("link"));
-    fs::create_symlink(kLabs + "/median/hidden/cases.json", scratch.path("link/median.cpp"));
-    fs::create_directories(scratch.path("none"));
-    for (const char* name : {"large", "link", "none"})
-        EXPECT_THROW(clarity::lab::collect(lab, scratch.path(name), scratch.path("to")), clarity::lab::Refused) << name;
-}
-
-TEST(Lab, ForbiddenWordsAreNamedWithTheirLine) {
-    using clarity::lab::forbidden_word;
-    EXPECT_EQ(forbidden_word("int a;\nint b = rt_bits(c);", {"rt_"}), "line 2 has `rt_`");
-    EXPECT_EQ(forbidden_word("int start_rt;", {"rt_"}), "");
-    EXPECT_EQ(forbidden_word("int hits;", {"hit"}), "");
-    EXPECT_EQ(forbidden_word("/* hit */ int a; // hit\n", {"hit"}), "");
-    EXPECT_EQ(forbidden_word("/* */ hit /* */", {"hit"}), "line 1 has `hit`");
-    EXPECT_EQ(forbidden_word("a \\\n b", {"\\"}), "line 1 has `\\`");
-}
-
-TEST(Lab, PointsOfCountsAreOnALogScale) {
-    clarity::lab::Lab lab;
-    lab.full = 1, lab.none = 4;
-    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 0.5), 1);
-    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 2), 0.5);
-    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 5), 0);
-    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 0), 0);
-}
-
-// What students get has no reference, but its figures; they see the public lines of the grader, and each says how to see it
-// alone.
-TEST(Lab, AHandoutIsCheckedByTheGradersCode) {
-    install_sdk();
-    const Scratch scratch;
-    const std::string folder = scratch.path("mine"), work = std::string(CLARITY_BUILD_DIR) + "/tests/lab/work_median";
-    const ProgramResult made = run_program({"lab", "handout", kLabs + "/median", folder, "--sdk", kSdk, "--work", work});
-    ASSERT_EQ(made.exit_code, 0) << made.err;
-    EXPECT_FALSE(fs::exists(folder + "/hidden")) << "students have the hidden cases";
-    EXPECT_FALSE(fs::exists(folder + "/reference"));
-    const ProgramResult starter = run_program({"lab", "check", folder, "--sdk", kSdk, "--work", work, "--only", "city"});
-    EXPECT_EQ(starter.exit_code, 1);
-    EXPECT_NE(starter.out.find("the builder is not written yet"), std::string::npos) << starter.out;
-    EXPECT_NE(starter.out.find("alone: clarity lab check . --only city"), std::string::npos) << starter.out;
-    fs::copy(kLabs + "/median/reference/median.cpp", folder + "/median.cpp", fs::copy_options::overwrite_existing);
-    const ProgramResult solved = run_program({"lab", "check", folder, "--sdk", kSdk, "--work", work, "--only", "city"});
-    EXPECT_EQ(solved.exit_code, 0) << solved.out << solved.err;
-    EXPECT_NE(solved.out.find("1.00 times the work of the reference"), std::string::npos) << solved.out;
-}
-
-// Two processes share a night. One is killed in it; when the other has come to its end, no record is missing and none was made
-// twice.
-TEST(Lab, ANightIsSharedAndSurvives) {
-    install_sdk();
-    const Scratch scratch;
-    std::vector<std::string> words = {"lab", "night", kLabs + "/median"};
-    for (const char* name : {"a", "b", "c"}) {
-        fs::create_directories(scratch.path(name));
-        fs::copy(kLabs + "/median/handout/median.cpp", scratch.path(std::string(name) + "/median.cpp"));
-        words.push_back(scratch.path(name));
-    }
-    words.insert(words.end(), {"-o", scratch.path("marks"), "--sdk", kSdk, "--counts-only"});
-    RunOptions killed;
-    killed.signal = SIGKILL;
-    killed.signal_when_made = scratch.path("marks/a.json");
-    ProgramResult first, second;
-    std::thread other([&] { first = run_program(words, killed); });
-    second = run_program(words);
-    other.join();
-    ProgramResult last = second;
-    for (int tries = 0; last.exit_code != 0 && tries < 100; ++tries) last = run_program(words);
-    EXPECT_EQ(last.exit_code, 0) << last.err;
-    for (const char* name : {"a", "b", "c"}) {
-        EXPECT_TRUE(json::parse(scratch.read(std::string("marks/") + name + ".json"), nullptr, false).is_object()) << name;
-        const std::string line = std::string(name) + "  0.0\n";
-        const size_t at = second.out.find(line);
-        EXPECT_TRUE(at == std::string::npos || first.out.find(line) == std::string::npos) << name << " was graded twice";
-    }
-    const ProgramResult again = run_program(words);
-    EXPECT_EQ(again.out, "") << "what has a record is graded again";
-    scratch.write("a/median.cpp", "another one\n");
-    EXPECT_EQ(run_program(words).out, "a  0.0\n") << "what was handed in again is not graded again";
-}
-
-TEST(Lab, TheBoardRanksByWork) {
-    const Scratch scratch;
-    const auto record = [&](const std::string& name, double work, double total) {
-        scratch.write(name + ".json", json{{"submission", name}, {"work", work}, {"total", total}}.dump());
-    };
-    record("slow", 2, 70), record("best", 1, 100), record("alike", 1.015, 99), record("third", 1.03, 98),
-        record("<wrong>", 0, 20);
-    const auto rows = clarity::lab::read_board(scratch.path(""));
-    const std::pair<const char*, unsigned> expected[] = {{"best", 1}, {"alike", 1}, {"third", 3}, {"slow", 4}, {"<wrong>", 0}};
-    ASSERT_EQ(rows.size(), 5u);
-    for (size_t i = 0; i < rows.size(); ++i) {
-        EXPECT_EQ(rows[i].name, expected[i].first);
-        EXPECT_EQ(rows[i].rank, expected[i].second) << rows[i].name;
-    }
-    const std::string page = clarity::lab::board_html("A lab", rows);
-    EXPECT_EQ(page.find("<wrong>"), std::string::npos);
-    EXPECT_NE(page.find("&lt;wrong&gt;"), std::string::npos);
-    EXPECT_THROW(clarity::lab::read_board(scratch.path("none")), clarity::Error);
-}
-
-// Before grading has come to its end there is a score of 0; a lab that cannot be graded keeps it.
-TEST(Lab, ATimeLimitIsNoOtherScore) {
-    install_sdk();
-    const Scratch scratch;
-    fs::copy(kLabs + "/median", scratch.path("lab"), fs::copy_options::recursive);
-    scratch.write("lab/reference/median.cpp", "no C++\n");
-    const ProgramResult result = run_program({"lab", "grade", scratch.path("lab"), kLabs + "/median/reference", "--sdk", kSdk,
-                                              "--gradescope", scratch.path("results.json"), "--autolab"});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_NE(result.err.find("the reference solution: it does not compile"), std::string::npos) << result.err;
-    EXPECT_EQ(json::parse(scratch.read("results.json"))["score"], 0);
-    EXPECT_NE(result.out.find("{\"scores\":{\"checks\":0.0,"), std::string::npos) << result.out;
 }
 
 }  // namespace
