@@ -178,6 +178,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
         BenchOptions options;
         options.devices = choose_devices(command.device);
         options.rules.max_spread = command.max_spread;
+        options.rules.by_processor = command.by_processor;
         options.import = command.import;
         if (rows) options.on_row = [&](const BenchReport& so_far) { rows->add(so_far); };
         ProgressBar bar(command.quiet);

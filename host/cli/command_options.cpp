@@ -254,6 +254,9 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->transform(percent())
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
+    app.add_flag("--processor-time", bench.by_processor,
+                 "Time rays on CPUs, and builds, by what processors spent on them, all threads together: steady on a busy "
+                 "machine, where clocks are not");
     single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suites scale, large and zoo"))
         ->type_name("N")
         ->capture_default_str();

@@ -150,6 +150,7 @@ struct BenchCommand {
     std::vector<std::string> join_files;  // files of --json of earlier runs
     bool list = false, no_baselines = false, quiet = false;
     double time_limit_s = 0, max_spread = 0.1;
+    bool by_processor = false;
     std::vector<std::string> only;
     uint64_t max_triangles = 10'000'000;
     std::vector<unsigned> ranks;    // of suite mpi; empty: the suite's own

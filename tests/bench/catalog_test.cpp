@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "bench/run/bench.hpp"
+#include "bench/suites/ray_sets.hpp"
 #include "bench/suites/shape_meshes.hpp"
 #include "bench/suites/zoo_scenes.hpp"
 #include "support/scenes.hpp"
@@ -181,6 +182,24 @@ TEST(Shapes, AreTheSameAsTheirMeshes) {
         }
         EXPECT_GT(one, 40u) << kind.name;
         EXPECT_GT(both, 0.93 * double(one)) << kind.name;
+        // Both scatter rays alike: shapes have no normals on the host, so they are found by rays.
+        constexpr int kSize = 48;
+        const RaySet primary = camera_rays(make_view(*scenes[0], 1).camera, kSize, kSize);
+        std::vector<RaySet> scattered[2];
+        for (int i = 0; i < 2; ++i)
+            scattered[i] =
+                secondary_rays(*scenes[i], whitted_light(RT_LIGHT_POINT, {6, 9, 7}, {1, 1, 1}), primary, kSize, kSize,
+                               [&](const auto& some) { return Workbench::get().rays(scenes[i], settings, some, RayQuery{}); });
+        size_t alike = 0, active = 0;
+        for (size_t i = 0; i < primary.rays.size(); ++i) {
+            const rt_ray &a = scattered[0][2].rays[i], &b = scattered[1][2].rays[i];
+            if (!is_active(a) || !is_active(b)) continue;
+            ++active;
+            alike +=
+                a.direction[0] * b.direction[0] + a.direction[1] * b.direction[1] + a.direction[2] * b.direction[2] > 0.99f;
+        }
+        EXPECT_GT(active, 200u) << kind.name;
+        EXPECT_GT(alike, 0.95 * double(active)) << kind.name;
     }
 }
 

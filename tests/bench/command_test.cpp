@@ -157,6 +157,23 @@ TEST_F(BenchCommand, DevicesShareAPicture) {
     EXPECT_NE(result.out.find("x the first"), std::string::npos) << result.out;
 }
 
+// On a CPU: rays in a second of one processor.
+TEST_F(BenchCommand, TimesAreOfProcessorsIfAskedFor) {
+    const ProgramResult result = quick({file("tetrahedron.obj"), "--device", "cpu", "--accel", "bvh2", "--no-peers", "--only",
+                                        "/primary", "--only", "/build", "--processor-time", "--json", file("a.json")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json list = records("a.json");
+    ASSERT_EQ(list.size(), 2u);
+    for (const Json& record : list) {
+        EXPECT_EQ(record["clock"], "processor") << record.dump();
+        EXPECT_TRUE(record["wall_ms"].is_null());
+        EXPECT_GT(record["time_ms"]["p50"], 0);
+    }
+    const double ms = list[1]["time_ms"]["p50"], rays = list[1]["rays"]["primary"];
+    EXPECT_NEAR(list[1]["mrays_per_s"].get<double>() * ms * 1000 / rays, 1, 1e-3);
+    EXPECT_NE(result.out.find("times by processors"), std::string::npos) << result.out;
+}
+
 TEST_F(BenchCommand, UnsteadyRowsAreRefusedWithAMessage) {
     const ProgramResult result = bench({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--size", "64x48",
                                         "--time-limit", "60", "--max-spread", "0", "--json", file("a.json")});

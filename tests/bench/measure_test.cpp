@@ -113,6 +113,29 @@ TEST(Measure, BusyProcessorsAreCounted) {
     EXPECT_GT(results[1].processors, 0);
 }
 
+// By processors, clocks do not count: neither for the figure nor for refusing a row. What does not know its processors keeps
+// its clock.
+TEST(Measure, TimesAreOfProcessorsIfAskedFor) {
+    const auto at = std::make_shared<int>(0);
+    const Contender disturbed{"disturbed", [=] {
+                                  const double clock_ms = 10.0 * (1 + ++*at % 5);
+                                  return Sample{clock_ms, clock_ms, 3};
+                              }};
+    Progress progress;
+    MeasureRules rules;
+    for (const bool by_processor : {true, false}) {
+        rules.by_processor = by_processor;
+        const auto measured = measure_interleaved({disturbed, fake("by its clock", {7})}, rules, progress);
+        EXPECT_EQ(measured[0].status, by_processor ? RowStatus::ok : RowStatus::refused);
+        EXPECT_EQ(measured[0].by_processor, by_processor);
+        EXPECT_EQ(measured[0].time_ms.median == 3, by_processor);
+        EXPECT_EQ(measured[0].wall_ms.n == 0, by_processor);
+        EXPECT_FALSE(measured[1].by_processor);
+        EXPECT_DOUBLE_EQ(measured[1].time_ms.median, 7);
+        EXPECT_DOUBLE_EQ(measured[1].wall_ms.median, 8);
+    }
+}
+
 TEST(Measure, OnlyTheUnsteadyContenderIsRefused) {
     MeasureRules rules;
     rules.max_rounds = 20;

@@ -123,11 +123,14 @@ struct Floor {
             hits.push_back(hit);
         }
     }
+    std::vector<RaySet> secondary() const {
+        return secondary_rays(scene, light, primary, kSize, kSize, [&](const auto&) { return hits; });
+    }
 };
 
 TEST(SecondaryRays, StartAboveTheSurfaceInTheRightDirection) {
     const Floor floor;
-    const auto sets = secondary_rays(floor.scene, floor.light, floor.primary, floor.hits, Floor::kSize, Floor::kSize);
+    const auto sets = floor.secondary();
     ASSERT_EQ(sets.size(), 3u);
     uint64_t hit_count = 0;
     for (const rt_hit& hit : floor.hits) hit_count += hit.prim >= 0;
@@ -161,7 +164,7 @@ TEST(SecondaryRays, StartAboveTheSurfaceInTheRightDirection) {
 
 TEST(SecondaryRays, InactiveRaysResembleTheirNeighbours) {
     const Floor floor;
-    for (const RaySet& set : secondary_rays(floor.scene, floor.light, floor.primary, floor.hits, Floor::kSize, Floor::kSize))
+    for (const RaySet& set : floor.secondary())
         for (size_t first = 0; first < set.rays.size(); first += 16) {
             std::set<std::array<float, 3>> directions;
             for (size_t i = first; i < first + 16; ++i)
@@ -269,10 +272,9 @@ TEST(Baselines, GiveTheSameHitsAsOurs) {
     ASSERT_EQ(baselines_cannot(*scene), "");
     const View view = view_from({0.5f, 4, 5}, {0, 0, 0}, 45);
     const RaySet primary = camera_rays(view.camera, 96, 96);
-    const auto hits = Workbench::get().rays(scene, Settings(), primary.rays, false);
-    const auto sets =
-        secondary_rays(*scene, view.lights.empty() ? whitted_light(RT_LIGHT_POINT, {3, 5, 2}, {1, 1, 1}) : view.lights[0],
-                       primary, hits, 96, 96);
+    const auto sets = secondary_rays(
+        *scene, view.lights.empty() ? whitted_light(RT_LIGHT_POINT, {3, 5, 2}, {1, 1, 1}) : view.lights[0], primary, 96, 96,
+        [&](const auto& rays) { return Workbench::get().rays(scene, Settings(), rays, false); });
     std::vector<const RaySet*> all = {&primary};
     for (const RaySet& set : sets) all.push_back(&set);
     const BaselineMesh mesh = make_baseline_mesh(*scene);

@@ -5,6 +5,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/processor_time.hpp"
 #include "bench/cases/own_entries.hpp"
 #include "bench/run/failure.hpp"
 
@@ -25,9 +26,10 @@ void add_baseline_build(CaseState& state, const BaselineKind& kind) {
     const unsigned threads = state.fixture.baseline_threads();
     entry.once = [=, &mesh] {
         const auto begin = std::chrono::steady_clock::now();
+        const double used_ms = processor_ms();
         const auto scene = kind.build(mesh, kind.quality, threads);
         *bytes = scene->bytes();
-        return Sample{scene->build_ms(), ms_since(begin)};
+        return Sample{scene->build_ms(), ms_since(begin), processor_ms() - used_ms};
     };
     entry.finish = [=](BenchRecord& row) {
         row.build_ms = row.time_ms.median;
@@ -87,7 +89,9 @@ void add_baseline_rays(CaseState& state, const BaselineKind& kind, BaselineScene
     const auto hits = std::make_shared<BaselineArray<BaselineHit>>(set->rays.size());
     entry.once = [=, &scene] {
         Sample sample;
+        const double used_ms = processor_ms();
         sample.time_ms = scene.trace_ms(mode, *hits);
+        sample.processor_ms = processor_ms() - used_ms;
         return sample;
     };
     entry.finish = [=, &scene, &state](BenchRecord& row) {

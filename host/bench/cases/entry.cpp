@@ -55,6 +55,7 @@ void set_result(BenchRecord& row, const Measured& measured) {
     row.time_ms = measured.time_ms;
     row.wall_ms = measured.wall_ms;
     row.processors = measured.processors;
+    if (measured.by_processor) row.clock = "processor";
 }
 
 void set_rates(BenchRecord& row) {

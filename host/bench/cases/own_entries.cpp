@@ -9,6 +9,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/processor_time.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/analysis.hpp"
 #include "bench/run/measure.hpp"
@@ -109,10 +110,12 @@ void add_build(Entry& entry, std::function<AccelData()> build) {
     entry.once = [last, faults, build = std::move(build)] {
         const long before = minor_page_faults();
         const auto begin = std::chrono::steady_clock::now();
+        const double used_ms = processor_ms();
         const AccelData built = build();
+        const double processors_ms = processor_ms() - used_ms;
         faults->push_back(double(minor_page_faults() - before));
         describe(*last, built);
-        return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
+        return Sample{built.build_ms + built.pack_ms, ms_since(begin), processors_ms};
     };
     entry.finish = [=](BenchRecord& row) {
         row.page_faults = faults->empty() ? -1 : summarize(*faults).median;
@@ -129,10 +132,12 @@ void time_rays(CaseState& state, Entry& entry, const Fixture::Held& held, const 
     const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
     std::shared_ptr<const RayBlocks>& packed = state.packed[lanes];
     if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
+    const bool cpu = held.prepared->layout.cpu;
     entry.once = [=, &set, blocks = packed] {
         Sample sample;
         sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
         const RayTuning tuning = held.queries->tuning();
+        if (cpu) sample.processor_ms = tuning.processor_ms;
         sample.trial = tuning.trial;
         sample.settled = tuning.settled;
         sample.variant = tuning.variant;

@@ -230,11 +230,11 @@ class MotionCase : CaseRun {
         const View& view = fixture.view();
         rays_ = camera_rays(view.camera, settings.width, settings.height);
         if (definition.measure == rays_.kind) return;
-        const std::vector<rt_hit> hits = held.queries->trace(*held.prepared, rays_.rays);
+        const auto trace = [&](const std::vector<rt_ray>& rays) { return held.queries->trace(*held.prepared, rays); };
         const RaySet primary = std::move(rays_);
         rays_ = {};
         if (view.lights.empty()) throw Error(Exit::usage, "no " + definition.measure + " rays: the scene has no light");
-        for (RaySet& set : secondary_rays(*moved_.back(), view.lights[0], primary, hits, settings.width, settings.height))
+        for (RaySet& set : secondary_rays(*moved_.back(), view.lights[0], primary, settings.width, settings.height, trace))
             if (set.kind == definition.measure) rays_ = std::move(set);
     }
 

@@ -204,6 +204,15 @@ std::string analysis_table(const BenchReport& report) {
                                (marked ? "*: the structure tests boxes by itself, and reports how many\n" : "") + "\n";
 }
 
+// What times mean, where they are by no clock.
+std::string note_on_clock(const BenchReport& report) {
+    for (const BenchRecord& r : report.records)
+        if (!r.clock.empty())
+            return "times by processors (--processor-time): ms are of all threads together, and Mrays/s are rays in a second "
+                   "of one processor\n\n";
+    return {};
+}
+
 // Joins the parts with commas, and breaks lines to fit a terminal of 120 columns.
 std::string wrapped(std::string line, const std::vector<std::string>& parts) {
     std::string text;
@@ -263,8 +272,8 @@ std::string left_out(const BenchReport& report) {
 std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
            accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + speedup_table(report) +
-           light_table(report) + threads_table(report) + row_tables(report) + shapes_table(report) + analysis_table(report) +
-           dropped_table(report) + left_out(report);
+           light_table(report) + threads_table(report) + row_tables(report) + shapes_table(report) + note_on_clock(report) +
+           analysis_table(report) + dropped_table(report) + left_out(report);
 }
 
 }  // namespace clarity::bench

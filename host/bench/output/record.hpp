@@ -95,6 +95,7 @@ struct BenchRecord {
     std::string why;  // unless ok: the reason, and what to do
 
     // ---- figures; withheld if the row is refused
+    std::string clock;      // "processor": time_ms is that of processors, of all threads of this process; "": by a clock
     Summary time_ms;        // by the device's clock: kernels only. build: builder and packing
     Summary wall_ms;        // by the host's clock. frame: from the call to pixels in host memory; else: time of the call
     double processors = 0;  // that this process kept busy during a repetition, median; 0: not known

@@ -256,6 +256,7 @@ const Fields<BenchRecord>& record_fields() {
         plain("primitives", &R::primitives),
         {"status", status_json, read_status},
         unless_empty("why", &R::why),
+        unless_empty("clock", &R::clock),
         times("time_ms", &R::time_ms),
         times("wall_ms", &R::wall_ms),
         {"frame_ms", [](const R& r) { return r.measure == "frame" ? summary_json(r, r.time_ms) : Json(); }, {}},

@@ -33,6 +33,23 @@ std::string error_text(double error) {
     return error > 0 ? text : "";
 }
 
+bool is_mesh_of(const ShapeRow& mesh, const ShapeRow& shape) {
+    const BenchRecord &a = *shape.record, &b = *mesh.record;
+    return mesh.parts > 0 && mesh.kind == shape.kind && a.measure == b.measure && a.variant == b.variant &&
+           a.device == b.device;
+}
+
+// Camera rays that hit the shape and not its mesh, in percent of those that hit the shape. Meshes of these shapes lie within
+// them, nearly; what bulges out at a waist counts against it. "" of the shape itself and of other rays, which begin elsewhere.
+std::string misses(const ShapeRow& mesh, const std::vector<ShapeRow>& rows) {
+    for (const ShapeRow& shape : rows)
+        if (shape.parts == 0 && mesh.record->measure == "primary" && is_mesh_of(mesh, shape) && shape.record->hits > 0) {
+            const double all = double(shape.record->hits);
+            return short_number(100 * (all - double(mesh.record->hits)) / all);
+        }
+    return {};
+}
+
 // What a row costs, in some measure; 0: not known.
 struct Cost {
     const char* name;
@@ -50,11 +67,7 @@ std::string crossing(const ShapeRow& shape, const std::vector<ShapeRow>& rows, c
     const double own = cost.of(*shape.record);
     if (!(own > 0)) return {};
     for (const ShapeRow& mesh : rows) {
-        const BenchRecord &a = *shape.record, &b = *mesh.record;
-        if (mesh.parts == 0 || mesh.kind != shape.kind || a.measure != b.measure || a.variant != b.variant ||
-            a.device != b.device)
-            continue;
-        if (cost.of(b) > own) return mesh.error > 0 ? error_text(mesh.error) : "any";
+        if (is_mesh_of(mesh, shape) && cost.of(*mesh.record) > own) return mesh.error > 0 ? error_text(mesh.error) : "any";
     }
     return "none";
 }
@@ -65,13 +78,14 @@ std::string shapes_table(const BenchReport& report) {
     std::vector<ShapeRow> rows;
     for (const BenchRecord& r : report.records)
         if (r.suite == "shapes" && r.status == RowStatus::ok) rows.push_back(row_of_shape(r));
-    TextTable all({"shape or mesh", "rays", "structure", "error", "triangles", "bytes", "nodes", "tests", "Mrays/s"}, 3);
+    TextTable all(
+        {"shape or mesh", "rays", "structure", "error", "misses %", "triangles", "bytes", "nodes", "tests", "Mrays/s"}, 3);
     std::vector<std::string> head = {"shape", "rays", "structure"};
     for (const Cost& cost : kCosts) head.emplace_back(cost.name);
     TextTable crossings(head, 3);
     for (const ShapeRow& row : rows) {
         const BenchRecord& r = *row.record;
-        all.add({r.scene, r.measure, r.name(), error_text(row.error), std::to_string(r.triangles),
+        all.add({r.scene, r.measure, r.name(), error_text(row.error), misses(row, rows), std::to_string(r.triangles),
                  std::to_string(r.accel_bytes), short_number(r.analysis.nodes_per_ray),
                  short_number(r.analysis.leaf_tests_per_ray), short_number(r.mrays_per_s)});
         if (row.parts > 0) continue;

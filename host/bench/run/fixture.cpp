@@ -116,9 +116,9 @@ std::shared_ptr<const MultiPrepared> Fixture::prepare_all(const Settings& settin
 const RaySet& Fixture::rays(const std::string& kind, const Held& held) {
     if (rays_.empty()) {
         rays_.push_back(camera_rays(loaded_.view.camera, width_, height_));
-        const std::vector<rt_hit> hits = held.queries->trace(*held.prepared, rays_[0].rays);
+        const auto trace = [&](const std::vector<rt_ray>& rays) { return held.queries->trace(*held.prepared, rays); };
         if (!loaded_.view.lights.empty())
-            for (RaySet& set : secondary_rays(*loaded_.scene, loaded_.view.lights[0], rays_[0], hits, width_, height_))
+            for (RaySet& set : secondary_rays(*loaded_.scene, loaded_.view.lights[0], rays_[0], width_, height_, trace))
                 rays_.push_back(std::move(set));
     }
     const auto found = std::find_if(rays_.begin(), rays_.end(), [&](const RaySet& set) { return set.kind == kind; });

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/processor_time.hpp"
 #include "bench/run/failure.hpp"
 
 namespace clarity::bench {
@@ -45,13 +45,6 @@ bool run_once(Runner& runner, Sample& result) {
     }
 }
 
-// Of all threads of this process, in ms.
-double processor_ms() {
-    timespec used{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-    return 1e3 * double(used.tv_sec) + 1e-6 * double(used.tv_nsec);
-}
-
 // Runs each contender at least twice: the first repetition compiles, loads pages and wakes threads, the second tells how long
 // one takes. A contender that tunes itself goes on until its variant is chosen and confirmed, or a quarter of the budget is
 // used up.
@@ -86,7 +79,7 @@ bool all_steady(const std::vector<Runner>& runners, double spread) {
 
 // Adds one sample. Trials of a contender that tunes itself are run but not counted. If its tuning has chosen another variant
 // than before, the samples of the old variant are dropped.
-void take_sample(Runner& runner) {
+void take_sample(Runner& runner, bool by_processor) {
     Sample sample;
     double processors = 0;
     for (unsigned i = 0; i < kMostTrials; ++i) {
@@ -100,8 +93,9 @@ void take_sample(Runner& runner) {
         runner.forget();
         runner.variant = sample.variant;
     }
-    runner.time_ms.push_back(sample.time_ms);
-    runner.wall_ms.push_back(sample.wall_ms);
+    runner.result.by_processor = by_processor && sample.processor_ms > 0;
+    runner.time_ms.push_back(runner.result.by_processor ? sample.processor_ms : sample.time_ms);
+    if (!runner.result.by_processor) runner.wall_ms.push_back(sample.wall_ms);
     runner.processors.push_back(processors);
 }
 
@@ -123,7 +117,7 @@ void take_rounds(std::vector<Runner>& runners, const MeasureRules& rules, double
         for (Runner& runner : runners) {
             if (!runner.running()) continue;
             if (!progress.report(float(round) / rules.max_rounds)) throw Cancelled();
-            take_sample(runner);
+            take_sample(runner, rules.by_processor);
         }
     }
 }

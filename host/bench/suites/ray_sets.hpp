@@ -1,6 +1,7 @@
 // ray_sets.hpp -- the rays of the ray benchmarks. They are made once on the host, so that all structures, settings, devices and
 // baselines trace the same rays.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,13 +31,17 @@ std::vector<rt_u32> ray_order(int width, int height);
 // One ray through the centre of each pixel.
 RaySet camera_rays(const Camera& camera, int width, int height);
 
-// Makes the secondary rays of the camera rays' hits. `hits` has one entry per ray of `primary`. Origins lie eps above the
-// surface, along the geometric normal which faces the viewer. eps is 1e-4 of the diagonal of the scene's bounds.
+// Traces rays on a device, for their nearest hits.
+using TraceRays = std::function<std::vector<rt_hit>(const std::vector<rt_ray>&)>;
+
+// Makes the secondary rays of the camera rays' hits. Normals of shapes, which only kernels know, are found by further rays.
+// Origins lie eps above the surface, along the geometric normal which faces the viewer. eps is 1e-4 of the diagonal of the
+// scene's bounds.
 //   shadow      to the light's position (or along a directional light), unit direction; t_max is the distance
 //   reflection  the mirror direction by the geometric normal
 //   diffuse     one direction, cosine-weighted; its random numbers are lowbias32(2 pixel + 1) and lowbias32(2 pixel + 2)
-std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, const RaySet& primary,
-                                   const std::vector<rt_hit>& hits, int width, int height);
+std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, const RaySet& primary, int width, int height,
+                                   const TraceRays& trace);
 
 // Geometric normals by the index which rt_hit.prim holds: triangles of all instances, then spheres, polygons and planes. Keeps
 // a reference to the scene.
@@ -45,6 +50,8 @@ class SurfaceNormals {
     explicit SurfaceNormals(const Scene& scene);
     // Unit normal at a point of the primitive, on either side of it; (0, 1, 0) for a primitive without area.
     Vec3 at(rt_i32 prim, const Vec3& point) const;
+    // Shapes come behind all others, and have no normal here.
+    bool is_shape(rt_i32 prim) const;
 
  private:
     const Scene& scene_;

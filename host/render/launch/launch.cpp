@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/elapsed.hpp"
+#include "base/processor_time.hpp"
 #include "device/cl_errors.hpp"
 #include "device/launch_limit.hpp"
 
@@ -18,6 +19,7 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_cou
         go_on();
         const unsigned count = pace_.next(group_count - first, most);
         const auto start = std::chrono::steady_clock::now();
+        const double used_ms = processor_ms();
         const Piece piece = enqueue(first, count);
         cl::Event last;
         if (side_work.behind && first + count == group_count) last = side_work.behind();
@@ -35,6 +37,7 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_cou
         if (last()) wall = std::max(traced, wall - std::max(0.0, span_ms(piece.first, last, traced) - traced));
         times.wall_ms += wall;
         times.device_ms += traced;
+        times.processor_ms += processor_ms() - used_ms;
         ++times.launches;
         pace_.took(count, wall);
     }

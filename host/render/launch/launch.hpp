@@ -10,9 +10,10 @@
 
 namespace clarity {
 
-// Times in ms by the device's and the host's clock, and the number of launches.
+// Times in ms by the device's and the host's clock, and the number of launches. processor_ms: of all threads of this process
+// meanwhile; of a CPU it is what the kernels took, however busy the machine is.
 struct LaunchTimes {
-    double device_ms = 0, wall_ms = 0;
+    double device_ms = 0, wall_ms = 0, processor_ms = 0;
     unsigned launches = 0;
 };
 

@@ -29,6 +29,13 @@ std::vector<std::exception_ptr> DeviceThreads::run(const std::function<void(size
     return thrown_;
 }
 
+std::vector<std::exception_ptr> DeviceThreads::run(const std::function<void(size_t)>& work, size_t only) {
+    thrown_.assign(thrown_.size(), nullptr);
+    work_ = &work;
+    call(only);
+    return thrown_;
+}
+
 void DeviceThreads::call(size_t index) {
     thrown_[index] = nullptr;
     try {

@@ -20,6 +20,8 @@ class DeviceThreads {
 
     // Calls work(i) for each i below the count, in parallel. Returns when all are done, with the exception of each; null: none.
     std::vector<std::exception_ptr> run(const std::function<void(size_t)>& work);
+    // Calls work(only) alone, on the caller's thread: no other one has to wake.
+    std::vector<std::exception_ptr> run(const std::function<void(size_t)>& work, size_t only);
 
  private:
     void serve(size_t index);

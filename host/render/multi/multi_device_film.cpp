@@ -71,6 +71,8 @@ void MultiDeviceFilm::fail(Member& member, const Error& error) {
     member.frames.reset();
     member.tiles.clear();
     member.rows = {};
+    team_ = {};
+    alone_.reset();
     if (working() > 0)
         log(LogLevel::warning, "device " + member.device->info().id() + " takes no further part: " + error.what() +
                                    "; the other devices go on without it");
@@ -79,9 +81,10 @@ void MultiDeviceFilm::fail(Member& member, const Error& error) {
 // Calls work(i) in parallel for each device that takes part. A device that fails takes no further part. Throws Cancelled, and
 // errors that are no failure of a device.
 void MultiDeviceFilm::on_all(const std::function<void(size_t)>& work) {
-    const auto thrown = threads_->run([&](size_t i) {
+    const auto on_one = [&](size_t i) {
         if (members_[i].works()) work(i);
-    });
+    };
+    const auto thrown = alone_ ? threads_->run(on_one, *alone_) : threads_->run(on_one);
     bool cancelled = false;
     for (size_t i = 0; i < thrown.size(); ++i) {
         if (!thrown[i]) continue;
@@ -146,7 +149,28 @@ void MultiDeviceFilm::cut() {
         member.rows_in_picture = divided_up(height, row);
     }
     take_tiles();
-    scheduler_->begin(tiles_, takes_part, alike);
+    choose_alone();
+    if (!alone_) scheduler_->begin(tiles_, takes_part, alike);  // else it keeps what it knows of the speeds
+}
+
+// The share of the fastest device in the work, by the speeds that are known.
+double MultiDeviceFilm::greatest_share() const {
+    double greatest = 0;
+    for (size_t i = 0; i < members_.size(); ++i) greatest = std::max(greatest, scheduler_->share(i));
+    return greatest;
+}
+
+// Ranks have to agree on tiles, and samples of motion blur are lost with their device.
+bool MultiDeviceFilm::may_be_alone() const {
+    return working() > 1 && !ranks_ && !start_.sums && !blurs(settings_);
+}
+
+// Decides whether the fastest device traces the picture that begins alone.
+void MultiDeviceFilm::choose_alone() {
+    alone_.reset();
+    if (!team_.alone() || !may_be_alone()) return;
+    for (size_t i = 0; i < members_.size(); ++i)
+        if (members_[i].works() && scheduler_->share(i) == greatest_share()) alone_ = i;
 }
 
 void MultiDeviceFilm::take_tiles() {
@@ -240,12 +264,14 @@ void MultiDeviceFilm::trace_part(size_t index, const Batch& batch, bool count_ra
     const auto complete = [&](unsigned done) {
         member.samples = done;
         // Only the caller's thread, which is device 0's, reports progress.
-        return done == end ||
-               (index == 0 ? progress.report(float(done - sample) / float(end - sample)) : !progress.cancelled());
+        return done == end || (index == alone_.value_or(0) ? progress.report(float(done - sample) / float(end - sample))
+                                                           : !progress.cancelled());
     };
     unsigned first = sample;
     auto since = batch.begin;  // start time shared by all devices: a device that starts late gets fewer tiles
-    if (batch.fresh && scheduler_->dynamic()) {
+    if (batch.fresh && alone_) {
+        give(member, tiles_);
+    } else if (batch.fresh && scheduler_->dynamic()) {
         for (auto tiles = scheduler_->next(index); !tiles.empty(); tiles = scheduler_->next(index)) {
             give(member, tiles);
             put_start(member);
@@ -266,7 +292,7 @@ void MultiDeviceFilm::trace_part(size_t index, const Batch& batch, bool count_ra
     if (first < end) {
         trace_rows(member, {first, end - first, complete}, count_rays, progress, batch.display);
         member.displayed = batch.display != nullptr;
-        scheduler_->took(index, member.tiles.size() * (end - first), ms_since(since));
+        if (!alone_) scheduler_->took(index, member.tiles.size() * (end - first), ms_since(since));
     }
     member.samples = end;
     member.wall_ms = ms_since(woken);
@@ -279,6 +305,7 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
     for (Member& member : members_) member.displayed = false;
     if (sample == 0) start_ = {};
     const bool fresh = sample == 0 || std::exchange(start_.is_new, false) || !goes_on(*prepared, settings);
+    if (settings.width != settings_.width || settings.height != settings_.height) team_ = {};
     prepared_ = prepared;
     settings_ = settings;
     view_ = view;
@@ -291,6 +318,8 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
         member.stats = {};
         member.wall_ms = 0;
     }
+    for (size_t i = 0; alone_ && i < members_.size(); ++i)
+        if (i != *alone_) members_[i].samples = end;  // of no tiles
     on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
     recover(progress);
     if (ranks_ && fresh && sample == 0 && deal_by_speed(end, gathered(0).device_ms)) {
@@ -302,7 +331,9 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
         on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
         recover(progress);
     }
-    return gathered(ms_since(begin));
+    const double ms = ms_since(begin);
+    if (fresh && may_be_alone()) team_.took(ms / (end - sample), greatest_share());
+    return gathered(ms);
 }
 
 // Distributes the tiles of devices that failed. All lists are empty if there are none.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "base/error.hpp"
@@ -11,6 +12,7 @@
 #include "render/multi/device_threads.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/multi/ranks.hpp"
+#include "render/multi/team_choice.hpp"
 #include "render/multi/tile_scheduler.hpp"
 
 namespace clarity {
@@ -84,6 +86,9 @@ class MultiDeviceFilm {
     };
     void cut();
     void take_tiles();
+    bool may_be_alone() const;
+    void choose_alone();
+    double greatest_share() const;
     bool deal_by_speed(unsigned end, double device_ms);
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& tiles);
@@ -99,6 +104,8 @@ class MultiDeviceFilm {
 
     std::vector<Member> members_;
     std::unique_ptr<TileScheduler> scheduler_;
+    TeamChoice team_;
+    std::optional<size_t> alone_;  // the device that traces the picture without the others
     // The picture in the films.
     std::shared_ptr<const MultiPrepared> prepared_;
     Settings settings_;

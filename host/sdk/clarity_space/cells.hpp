@@ -5,6 +5,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "clarity_space/primitives.hpp"
@@ -92,11 +93,12 @@ class CellFinder {
         return range;
     }
 
-    // Calls body with the number of each cell that primitive i meets. Huge ones are in a cell of their own behind all others.
+    // Calls body(cell, meets) for cells near primitive i: their numbers, and whether the primitive meets them. Huge ones are in
+    // a cell of their own behind all others. `meets` is no branch here, because nobody can predict it.
     template <class Body>
     void each(const Prims& of, rt_u32 i, const Body& body) const {
         const rt_prim& p = of.prims[i];
-        if (is_huge(p)) return body(cells_);
+        if (is_huge(p)) return body(cells_, true);
         const CellRange r = range(p);
         const bool flat =
             (r.hi[0] > r.lo[0]) + (r.hi[1] > r.lo[1]) + (r.hi[2] > r.lo[2]) < 2;  // then its plane hardly misses a cell
@@ -138,7 +140,7 @@ class CellFinder {
                 const Row row = row_of(y, z);
                 const size_t first = (size_t(z) * head_.cells[1] + size_t(y)) * head_.cells[0];
                 for (int x = r.lo[0]; x <= r.hi[0]; ++x)
-                    if (!(std::fabs(row.height + (x - r.lo[0]) * row.step) > row.reach)) body(first + size_t(x));
+                    body(first + size_t(x), !(std::fabs(row.height + (x - r.lo[0]) * row.step) > row.reach));
             }
     }
 };
@@ -216,13 +218,20 @@ class CellSort {
         template <class Number>
         void fill(const CellSort& sort, const Prims& prims, rt_u32 begin, rt_u32 end, const Number& number) {
             std::vector<Pair> found;
-            found.reserve(2 * size_t{end - begin});
-            ends.assign(sort.parts_ + 1, 0);
+            found.reserve(4 * size_t{end - begin});
+            Pair some[256];
+            size_t count = 0;
             for (rt_u32 i = begin; i < end; ++i)
-                sort.finder_.each(prims, number(i), [&](size_t cell) {
-                    found.push_back({rt_u32(cell), number(i)});
-                    ++ends[(cell >> sort.shift_) + 1];
+                sort.finder_.each(prims, number(i), [&](size_t cell, bool meets) {
+                    some[count] = {rt_u32(cell), number(i)};
+                    count += meets;
+                    if (count < std::size(some)) return;
+                    found.insert(found.end(), some, some + count);
+                    count = 0;
                 });
+            found.insert(found.end(), some, some + count);
+            ends.assign(sort.parts_ + 1, 0);
+            for (const Pair& pair : found) ++ends[(pair.cell >> sort.shift_) + 1];
             if (sort.parts_ == 1 || found.size() > 0xFFFFFFF0u) return pairs.swap(found);  // so many are refused later
             for (rt_u32 p = 0; p < sort.parts_; ++p) ends[p + 1] += ends[p];
             std::vector<rt_u32> at(ends.begin(), ends.end() - 1);

@@ -94,6 +94,7 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
     if (debug) overflows_.clear(queue);
     const LaunchTimes times =
         trace({prepared, program, static_cast<unsigned>(blocks), query.any_hit, in, answers, query.progress});
+    tuning_.processor_ms = times.processor_ms;
     overflowed_ = debug ? overflows_.read(queue) : 0;
     if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
     if (!few) {

@@ -50,9 +50,10 @@ struct AllHits {
 
 // How the last RayQueries::trace() ran. The autotuner (autotuner.hpp) tries several variants for each set of rays.
 struct RayTuning {
-    unsigned variant = 0;  // number of the variant; 0 is the plain kernel
-    bool trial = false;    // this run tried a variant that may be slow: do not use its time as a measurement
-    bool settled = true;   // the variant is chosen, and one more run has confirmed the choice
+    unsigned variant = 0;     // number of the variant; 0 is the plain kernel
+    bool trial = false;       // this run tried a variant that may be slow: do not use its time as a measurement
+    bool settled = true;      // the variant is chosen, and one more run has confirmed the choice
+    double processor_ms = 0;  // LaunchTimes::processor_ms
 };
 
 }  // namespace clarity
