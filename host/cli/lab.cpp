@@ -47,7 +47,8 @@ class Desk {
         options.device = command.device;
         options.only = command.only;
         options.times = !command.counts_only;
-        options.sdk = command.sdk.empty() ? program_file().parent_path().parent_path().string() : command.sdk;
+        options.sdk =
+            command.sdk.empty() ? program_file().parent_path().parent_path().string() : fs::absolute(command.sdk).string();
         if (!fs::exists(options.sdk + "/include/clarity/rt_plugin.h"))
             throw Error(Exit::usage,
                         options.sdk +
@@ -138,7 +139,7 @@ int hand_out(const PluginRegistry& plugins, const LabCommand& command, Progress&
     expect_words(command, 2, 2, "handout LAB DIR");
     // The reference's figures of the public cases: students have no reference to measure.
     Desk desk(plugins, command, lab::read_lab(lab_folder(command.words[0]), false), progress);
-    lab::write_handout(desk.grader().lab(), command.words[1], desk.grader().reference_work(progress));
+    lab::write_handout(desk.grader().lab(), command.words[1], desk.grader().known_cases(progress));
     print_text("%s is what students get; they begin with page.md\n", command.words[1].c_str());
     return static_cast<int>(Exit::done);
 }
