@@ -56,12 +56,55 @@ void crowds(Maker& make, unsigned triangles) {
     }
 }
 
+// How far a point has come at a time from 0 to 1.
+using Move = Point (*)(const Point& at, float time, float chance);
+Point turned(const Point& at, float angle) {
+    const float c = std::cos(angle), s = std::sin(angle);
+    return {c * at[0] + s * at[2], at[1], c * at[2] - s * at[0]};
+}
+// Turns, faster near the axis: neighbours part, a little in each pose.
+Point swirl(const Point& at, float time, float) {
+    return turned(at, 5 * time / (0.3f + at[0] * at[0] + at[2] * at[2]));
+}
+// Bends to and fro: neighbours stay neighbours.
+Point sway(const Point& at, float time, float) {
+    return {at[0] + 0.3f * std::sin(6 * time) * at[1], at[1], at[2]};
+}
+// At rest, and in one moment thrown about.
+Point burst(const Point& at, float time, float chance) {
+    return time < 0.45f ? sway(at, 0.2f * time, 0) : turned({at[0], at[1] * (0.3f + chance), at[2]}, 40 * chance);
+}
+
 struct Generator {
     const char* name;
     void (*make)(Maker&, unsigned triangles);
+    Move move = nullptr;  // of scenes that move
 };
-constexpr Generator kGenerators[] = {
-    {"city", city}, {"soup", soup}, {"needles", needles}, {"teapots", teapots}, {"crowds", crowds}};
+constexpr Generator kGenerators[] = {{"city", city},     {"soup", soup},         {"needles", needles}, {"teapots", teapots},
+                                     {"crowds", crowds}, {"swirl", soup, swirl}, {"sway", soup, sway}, {"burst", soup, burst}};
+
+// The triangles of `make` in each pose: a mesh each, far from the others, so that a ray sees its own pose alone.
+constexpr float kApart = 8;
+Scene posed(const Maker& rest, Move move, unsigned poses, uint64_t seed) {
+    Maker make(seed);
+    for (unsigned pose = 0; pose < poses; ++pose) {
+        Maker chances(seed);  // the same in each pose
+        const float time = float(pose) / float(poses);
+        for (size_t i = 0; i + 8 < rest.scene.positions.size(); i += 9) {
+            const float chance = chances.random();
+            const auto corner = [&](size_t k) {
+                const float* const p = rest.scene.positions.data() + i + 3 * k;
+                return move({p[0], p[1], p[2]}, time, chance);
+            };
+            make.triangle(corner(0), corner(1), corner(2));
+        }
+        Affine at = kIdentity;
+        at[11] = kApart * float(pose);
+        make.place(make.mesh(), at);
+        make.scene.instances.back().apart = true;
+    }
+    return std::move(make.scene);
+}
 
 }  // namespace
 
@@ -75,9 +118,16 @@ MadeCase make_case(const Case& of) {
     }
     Maker make(of.seed);
     generator->make(make, of.triangles);
-    make.place(make.mesh());
+    if ((of.poses > 1) != (generator->move != nullptr))
+        throw Error(Exit::usage,
+                    "case " + of.name + ": `poses` is for the scenes that move, swirl, sway and burst, and they need it");
     MadeCase made;
-    made.scene = std::move(make.scene);
+    if (generator->move) {
+        made.scene = posed(make, generator->move, of.poses, of.seed);
+    } else {
+        make.place(make.mesh());
+        made.scene = std::move(make.scene);
+    }
     // Half of the rays come from a camera and agree in their directions; the others leave points in any direction.
     check::RayMaker rays(71, of.seed);
     const check::Region region{"", {0, 0, 0}, 1};
@@ -88,6 +138,10 @@ MadeCase make_case(const Case& of) {
             made.rays.push_back(check::RayMaker::from_to(from, rays.within(region, 0.9f)));
         else
             made.rays.push_back(rays.into(region, 1.5f));
+        if (!generator->move) continue;
+        // Rays and poses in turns, so that each pose has rays of both kinds.
+        made.rays.back().origin[2] += kApart * float(i % of.poses);
+        made.rays.back().t_max = kApart / 2;
     }
     return made;
 }

@@ -63,7 +63,8 @@ std::string without_secrets(const std::string& found) {
 std::string tried_text(const Case& one, bool is_surface) {
     if (one.hidden) return is_surface ? "a hidden material" : "a hidden scene";
     if (!is_surface)
-        return one.scene + ", " + std::to_string(one.triangles) + " triangles, " + std::to_string(one.rays) + " rays";
+        return one.scene + ", " + std::to_string(one.triangles) + " triangles, " + std::to_string(one.rays) + " rays" +
+               (one.poses > 1 ? ", " + std::to_string(one.poses) + " poses" : "");
     std::string text = "color";
     for (const float c : one.color) text += " " + text_of(double(c));
     for (const auto& [key, value] : one.keys) text += ", " + key + " " + text_of(value[0]);
@@ -116,8 +117,26 @@ bool Grader::is_wanted(const std::string& name) const {
     return options_.only.empty() || std::count(options_.only.begin(), options_.only.end(), name);
 }
 
-ClosedBuilder Grader::closed(const std::string& library) const {
-    return {library, lab_.id, lab_.layout, lab_.build_s, lab_.memory_bytes};
+ClosedBuilder Grader::closed(const Libraries& libraries) const {
+    return {libraries.own, lab_.id, lab_.layout, libraries.table, lab_.build_s, lab_.memory_bytes};
+}
+
+Grader::Libraries Grader::build(const std::string& submission, Progress& progress) const {
+    const std::string work = options_.work + "/submission";
+    collect(lab_, submission, work + "/sources");
+    Libraries made{compile(lab_, work + "/sources", work + "/build", options_.sdk, sandbox_, progress), ""};
+    if (!lab_.layout.empty() || !lab_.has_builder()) return made;
+    made.table = made.own;
+    // Without a reference this is the student's own machine.
+    if (lab_.reference().empty()) return made;
+    Lab kernels = lab_;
+    kernels.files.clear();
+    for (const Lab::File& file : lab_.files)
+        if (file.is_kernel()) kernels.files.push_back(file);
+    const std::string table = options_.work + "/table";
+    collect(kernels, submission, table + "/sources");
+    made.table = compile(kernels, table + "/sources", table + "/build", options_.sdk, sandbox_, progress);
+    return made;
 }
 
 std::string Grader::digest(const std::string& submission) const {
@@ -128,11 +147,11 @@ std::string Grader::digest(const std::string& submission) const {
     return digest.hex();
 }
 
-MeasureJob Grader::job_for(const std::string& library) const {
+MeasureJob Grader::job_for(const Libraries& libraries) const {
     MeasureJob job;
-    job.library = library, job.reference = reference_, job.layout = layout_;
-    if (!lab_.layout.empty()) job.closed.push_back(closed(library));
-    job.device = options_.device, job.lanes = lab_.lanes, job.times = options_.times;
+    job.library = libraries.own, job.reference = reference_, job.layout = layout_;
+    if (lab_.has_builder()) job.closed.push_back(closed(libraries));
+    job.device = options_.device, job.lanes = lab_.lanes, job.times = options_.times && lab_.points_speed > 0;
     for (size_t i = 0; i < lab_.cases.size(); ++i) {
         if (!is_wanted(lab_.cases[i].name)) continue;
         if (lab_.is_surface) {
@@ -141,6 +160,7 @@ MeasureJob Grader::job_for(const std::string& library) const {
         }
         job.scenes.push_back({cases_[i].scene});
         job.rays.push_back(cases_[i].rays);
+        job.poses.push_back(lab_.cases[i].poses);
     }
     return job;
 }
@@ -148,9 +168,8 @@ MeasureJob Grader::job_for(const std::string& library) const {
 std::vector<Case> Grader::known_cases(Progress& progress) {
     if (reference_.empty())
         throw Error(Exit::usage, lab_.folder + ": has no folder reference/, so nobody knows what a good solution costs");
-    MeasureJob job = job_for(reference_);
+    MeasureJob job = job_for({reference_, lab_.layout.empty() ? reference_ : ""});
     job.times = false;
-    if (!job.closed.empty()) job.closed.front().library = reference_;
     std::vector<Case> known = lab_.cases;
     const std::vector<CaseFigures> all = measure(job, progress);
     for (size_t i = 0; i < all.size(); ++i) {
@@ -165,27 +184,26 @@ Marks Grader::grade(const std::string& submission, Progress& progress) {
     marks.sandbox = sandbox_text(sandbox_);
     Line build = line_of("build", "build", 0, "your files in the lab's folder, compiled");
     build.alone = "cmake -S . -B build && cmake --build build";
-    std::string library;
+    Libraries libraries;
     try {
-        const std::string sources = options_.work + "/submission/sources";
-        collect(lab_, submission, sources);
-        library = compile(lab_, sources, options_.work + "/submission/build", options_.sdk, sandbox_, progress);
+        libraries = this->build(submission, progress);
         build.found = "it builds";
     } catch (const Refused& e) {
         build.found = std::string(e.what()) + (e.details().empty() ? "" : "\n" + e.details());
     }
     marks.lines.push_back(build);
-    if (library.empty()) return marks;
-    if (mark_checks(library, marks, progress)) {
-        mark_cases(library, marks, progress);
+    if (libraries.own.empty()) return marks;
+    if (mark_checks(libraries, marks, progress)) {
+        mark_cases(libraries, marks, progress);
     } else {
-        marks.lines.push_back(line_of("counts", "counts and speed", lab_.points_counts + lab_.points_speed, "all cases"));
+        marks.lines.push_back(
+            line_of("counts", "counts and speed", lab_.points_answers + lab_.points_counts + lab_.points_speed, "all cases"));
         marks.lines.back().found = "not measured, because a check above failed";
     }
     return marks;
 }
 
-bool Grader::mark_checks(const std::string& library, Marks& marks, Progress& progress) {
+bool Grader::mark_checks(const Libraries& libraries, Marks& marks, Progress& progress) {
     check::CheckOptions options;
     options.quick = true;
     options.lanes = {lab_.lanes};
@@ -195,15 +213,15 @@ bool Grader::mark_checks(const std::string& library, Marks& marks, Progress& pro
     if (options.only.empty()) return true;
     PluginRecord record;
     std::vector<std::string> beside;
-    if (lab_.layout.empty()) {
-        record = load_plugin(library);
-        if (!record.plugin) throw Error(Exit::failed, library + ": " + record.why);
+    if (!lab_.has_builder()) {
+        record = load_plugin(libraries.own);
+        if (!record.plugin) throw Error(Exit::failed, libraries.own + ": " + record.why);
     } else {
-        options.closed.push_back(closed(library));
+        options.closed.push_back(closed(libraries));
         record.plugin = take_closed_builder(options.closed.front());
-        beside.push_back(layout_);
+        if (!layout_.empty()) beside.push_back(layout_);
     }
-    record.path = library;
+    record.path = libraries.own;
     // A wrong hit, or anything that is wrong of a surface, leaves no points for counts.
     const auto leaves_out_counts = [](const std::string& name) {
         return name.rfind("hits", 0) == 0 || name.rfind("surface", 0) == 0;
@@ -240,12 +258,12 @@ bool Grader::mark_checks(const std::string& library, Marks& marks, Progress& pro
     return right;
 }
 
-void Grader::mark_cases(const std::string& library, Marks& marks, Progress& progress) {
+void Grader::mark_cases(const Libraries& libraries, Marks& marks, Progress& progress) {
     std::vector<const Case*> cases;
     for (const Case& one : lab_.cases)
         if (is_wanted(one.name)) cases.push_back(&one);
     if (cases.empty()) return;
-    std::vector<CaseFigures> all = measure(job_for(library), progress);
+    std::vector<CaseFigures> all = measure(job_for(libraries), progress);
     const bool right = std::all_of(all.begin(), all.end(), [](const CaseFigures& one) { return one.wrong.empty(); });
     const bool with_speed = options_.times && !reference_.empty() && lab_.points_speed > 0;
     // Where no times are taken, on machines that are not worth it, their points belong to the counts.
@@ -274,6 +292,14 @@ void Grader::mark_cases(const std::string& library, Marks& marks, Progress& prog
                 line.found += "; no points, because " + std::string(lab_.is_surface ? "another case" : "a hit") + " is wrong";
         }
         all_known &= figures.wrong.empty() && reference > 0;
+        if (lab_.points_answers > 0) {
+            Line answers = line_of("checks", "hits of " + cases[i]->name, lab_.points_answers / double(lab_.cases.size()),
+                                   "hits and misses in " + line.tried);
+            answers.hidden = line.hidden, answers.alone = line.alone;
+            answers.found = figures.wrong.empty() ? "all are right" : line.found;
+            answers.points = figures.wrong.empty() ? answers.most : 0;
+            marks.lines.push_back(answers);
+        }
         marks.lines.push_back(line);
     }
     if (all_known) marks.work = std::exp(work / double(cases.size()));

@@ -51,11 +51,17 @@ class Grader {
     const Lab& lab() const { return lab_; }
 
  private:
+    // What is made of a submission. table: the same kernels with the teacher's host code, where students write a builder beside
+    // kernels; "": not needed.
+    struct Libraries {
+        std::string own, table;
+    };
+    Libraries build(const std::string& submission, Progress& progress) const;
     // Returns whether all hits that were checked are right.
-    bool mark_checks(const std::string& library, Marks& marks, Progress& progress);
-    void mark_cases(const std::string& library, Marks& marks, Progress& progress);
-    MeasureJob job_for(const std::string& library) const;
-    ClosedBuilder closed(const std::string& library) const;
+    bool mark_checks(const Libraries& libraries, Marks& marks, Progress& progress);
+    void mark_cases(const Libraries& libraries, Marks& marks, Progress& progress);
+    MeasureJob job_for(const Libraries& libraries) const;
+    ClosedBuilder closed(const Libraries& libraries) const;
     bool is_wanted(const std::string& name) const;
 
     const Lab lab_;

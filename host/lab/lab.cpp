@@ -53,6 +53,7 @@ std::vector<Case> read_cases(const ordered_json& list, bool hidden, const std::s
         one.name = needed(json, "name", file), one.scene = needed(json, "scene", file);
         one.triangles = value(json, "triangles", 4000u, file), one.rays = value(json, "rays", 1000u, file);
         one.seed = value(json, "seed", uint64_t(0), file);
+        one.poses = value(json, "poses", 1u, file);
         one.reference = value(json, "reference", 0.0, file);
         one.truth = value(json, "truth", std::vector<double>{}, file);
         one.color = value(json, "color", one.color, file);
@@ -68,10 +69,18 @@ std::vector<Case> read_cases(const ordered_json& list, bool hidden, const std::s
         one.hidden = hidden;
         if (one.triangles < 1 || one.triangles > 1'000'000 || one.rays < 1 || one.rays > 1'000'000)
             refuse(file, "case " + one.name + ": `triangles` and `rays` are from 1 to a million");
+        if (one.poses < 1 || one.poses > 100 || one.rays % one.poses != 0)
+            refuse(file, "case " + one.name + ": `poses` is from 1 to 100, and each has as many of the rays");
         cases.push_back(one);
     }
     return cases;
 }
+
+// What leads out of a function of OpenCL C, to rays, hits, nodes and the host's counts.
+const std::vector<std::string> kKernelWords = {
+    "#",      "\"",    "'",       "\\",       "%:",        "??",     "asm",       "__asm",        "__asm__",
+    "printf", "rt_",   "RT_",     "hit",      "ctx",       "ray",    "global",    "__global",     "constant",
+    "void",   "union", "typedef", "intptr_t", "uintptr_t", "size_t", "ptrdiff_t", "__attribute__"};
 
 // A name without a folder.
 bool is_plain_name(const std::string& name) {
@@ -80,6 +89,13 @@ bool is_plain_name(const std::string& name) {
 
 }  // namespace
 
+bool Lab::File::is_kernel() const {
+    const std::string kind = fs::path(name).extension().string();
+    return kind == ".h" || kind == ".cl";
+}
+bool Lab::has_builder() const {
+    return std::any_of(files.begin(), files.end(), [](const File& file) { return !file.is_kernel(); });
+}
 std::string Lab::handout() const {
     return fs::is_directory(folder + "/handout") ? folder + "/handout" : folder;
 }
@@ -126,12 +142,14 @@ Lab read_lab(const std::string& folder, bool with_hidden) {
     lab.shared = value(json, "shared", std::vector<std::string>{}, file);
     for (const std::string& name : lab.shared)
         if (!is_plain_name(name)) refuse(file, "`shared`: '" + name + "' is no plain name");
-    lab.forbidden = value(json, "forbidden", std::vector<std::string>{}, file);
+    lab.forbidden = json.value("forbidden", ordered_json()) == "kernels"
+                        ? kKernelWords
+                        : value(json, "forbidden", std::vector<std::string>{}, file);
     lab.checks = value(json, "checks", std::vector<std::string>{}, file);
     lab.lanes = value(json, "lanes", 1, file);
     const ordered_json points = value(json, "points", ordered_json::object(), file);
-    lab.points_checks = value(points, "checks", 50.0, file), lab.points_counts = value(points, "counts", 35.0, file);
-    lab.points_speed = value(points, "speed", 15.0, file);
+    lab.points_checks = value(points, "checks", 50.0, file), lab.points_answers = value(points, "answers", 0.0, file);
+    lab.points_counts = value(points, "counts", 35.0, file), lab.points_speed = value(points, "speed", 15.0, file);
     lab.full = value(json, "full", 1.1, file), lab.none = value(json, "none", 8.0, file);
     if (!(lab.full > 0 && lab.none > lab.full)) refuse(file, "`none` must be larger than `full`, and both larger than 0");
     lab.compile_s = value(json, "compile_s", 120.0, file), lab.build_s = value(json, "build_s", 2.0, file);

@@ -15,6 +15,7 @@ struct Case {
     std::string name, scene;  // scene: a row of kGenerators; of models of surfaces one of kLights
     unsigned triangles = 0, rays = 0;
     uint64_t seed = 0;
+    unsigned poses = 1;  // more than 1: each pose is a mesh, with as many of the rays
     bool hidden = false;
     // Of models of surfaces: a material.
     std::array<float, 3> color{1, 1, 1};
@@ -25,27 +26,28 @@ struct Case {
     std::vector<double> truth;
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.name, self.scene, self.triangles, self.rays, self.seed, self.hidden, self.color, self.keys, self.reference,
-               self.truth);
+        parcel(self.name, self.scene, self.triangles, self.rays, self.poses, self.seed, self.hidden, self.color, self.keys,
+               self.reference, self.truth);
     }
 };
 
 struct Lab {
     std::string folder, title;
-    // The plugin. layout: of a builder of trees, the structure that packs and traces them; "": the plugin's host code is the
-    // teacher's, and students write kernels. is_surface: the plugin is a model of surfaces.
+    // The plugin. layout: of a builder of trees, the structure that packs and traces them; "": the plugin has slots and kernels
+    // of its own. is_surface: the plugin is a model of surfaces.
     std::string id, layout;
     bool is_surface = false;
     struct File {
         std::string name;
         uint64_t most_bytes = 0;
+        bool is_kernel() const;  // not C++: OpenCL C, which is compiled into the teacher's kernels
     };
     std::vector<File> files;             // that students hand in
     std::vector<std::string> shared;     // files of the folder `shared` beside the labs, which belong to the handout
-    std::vector<std::string> forbidden;  // what must not stand in them
+    std::vector<std::string> forbidden;  // what must not stand in those that are kernels
     std::vector<std::string> checks;     // of `clarity check`, or their beginnings
     int lanes = 1;                       // of all kernels: counts do not depend on the machine
-    double points_checks = 50, points_counts = 35, points_speed = 15;
+    double points_checks = 50, points_answers = 0, points_counts = 35, points_speed = 15;
     // Counts: all points at `full` times the work of the reference, none at `none` times.
     double full = 1.1, none = 8;
     double compile_s = 120, build_s = 2;  // for the compiler, of the clock; for one build of a structure, of the processor
@@ -53,6 +55,8 @@ struct Lab {
     std::string visibility = "visible", hidden_visibility = "visible";  // of lines, in Gradescope's words
     std::vector<Case> cases;
 
+    // Whether students write a builder, which only workers behind closed doors open.
+    bool has_builder() const;
     // The folder from which a plugin is built, but for the files of students.
     std::string handout() const;
     // All files of the handout, with the shared ones. Throws Error(usage) if one of these is nowhere.

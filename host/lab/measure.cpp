@@ -11,6 +11,7 @@
 #include "check/hits/judge.hpp"
 #include "device/device.hpp"
 #include "lab/measure_materials.hpp"
+#include "lab/motion.hpp"
 #include "plugin/registry.hpp"
 #include "worker/child.hpp"
 
@@ -24,6 +25,9 @@ constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;
 constexpr size_t kJudged = 600;     // rays of a case that are compared with every primitive
 constexpr double kCompile_s = 120;  // processor time of the first launch, which compiles
 constexpr double kTimes_s = 3;      // for the times of a case
+// Of a ray and a box, see work_of(). A primitive that is sorted into a child costs a builder as much, and so does a box that is
+// fitted: these are the same six numbers.
+constexpr double kBoxWork = 0.2;
 
 const rt_plugin* open_library(const std::string& path) {
     if (path.empty()) return nullptr;
@@ -91,10 +95,15 @@ void report_case(const nlohmann::json& report) {
 }
 
 // "30.42 nodes of 64 bytes, 60.85 boxes and 5.84 tests a ray"
-std::string text_of(const RayCosts& costs) {
-    char text[120];
-    std::snprintf(text, sizeof text, "%.2f nodes of %.3g bytes, %.2f boxes and %.2f tests a ray", costs.nodes, costs.node_bytes,
-                  costs.boxes, costs.tests);
+std::string text_of(const RayCosts& costs, bool moves) {
+    char text[240];
+    int length = std::snprintf(text, sizeof text, "%.2f nodes of %.3g bytes, %.2f boxes and %.2f tests a ray", costs.nodes,
+                               costs.node_bytes, costs.boxes, costs.tests);
+    if (moves)
+        std::snprintf(
+            text + length, sizeof text - size_t(length),
+            "; from pose to pose %.0f %% of the nodes are new, and building and fitting adds %.2f to the work of a ray",
+            100 * costs.fresh, costs.following);
     return text;
 }
 
@@ -115,13 +124,24 @@ void measure_job(ParcelReader& arguments) {
     };
     for (size_t c = 0; c < job.scenes.size(); ++c) {
         const std::vector<rt_ray>& rays = job.rays[c];
+        const auto costs_of = [&](const rt_plugin& plugin, RayCosts costs) {
+            if (job.poses[c] > 1) {
+                const MotionCosts motion = motion_costs(plugin, job.scenes[c].scene);
+                costs.following = kBoxWork * (motion.nodes + motion.sorted) / double(rays.size());
+                costs.fresh = motion.fresh / std::max(motion.nodes, 1.0);
+            }
+            return costs;
+        };
+        // Each pose is a group of its own; a scene that was sent does not say so.
+        if (job.poses[c] > 1)
+            for (Instance& instance : job.scenes[c].scene.instances) instance.apart = true;
         nlohmann::json report;
         std::unique_ptr<CheckedScene> theirs;
         double reference_work = 0;
         if (reference) {
             worker::say_step("tracing the reference", kCompile_s);
             theirs = std::make_unique<CheckedScene>(*reference, layout_for(*reference), job.scenes[c].scene, device);
-            reference_work = work_of(count(*theirs, variant, rays, node_bytes(*reference)).costs);
+            reference_work = work_of(costs_of(*reference, count(*theirs, variant, rays, node_bytes(*reference)).costs));
         }
         report["reference_work"] = reference_work;
         try {
@@ -135,8 +155,8 @@ void measure_job(ParcelReader& arguments) {
             Counted counted = count(own, variant, rays, node_bytes(*student));
             worker::say_step("comparing hits", 60 + job.limit_s);
             report["wrong"] = fault_of(own, variant, rays, std::move(counted.hits));
-            const RayCosts& costs = counted.costs;
-            report["found"] = text_of(costs), report["work"] = work_of(costs);
+            const RayCosts costs = costs_of(*student, counted.costs);
+            report["found"] = text_of(costs, job.poses[c] > 1), report["work"] = work_of(costs);
             if (job.times && theirs && report["wrong"] == "") {
                 worker::say_step("measuring times", 20 * kTimes_s);
                 const RayBlocks blocks(rays, static_cast<unsigned>(job.lanes));
@@ -197,8 +217,9 @@ class Run : public worker::Job {
 // the rest of a step, so that a node of 64 bytes with two boxes is 0.8 + 2 * 0.2 = 1.2 tests. Larger nodes are more lines, and
 // cost in proportion. They are not fitted to times: those depend on the machine, and have points of their own.
 double work_of(const RayCosts& costs) {
-    constexpr double kLine = 0.8, kLineBytes = 64, kBox = 0.2;
-    return costs.nodes * kLine * std::max(1.0, costs.node_bytes / kLineBytes) + costs.boxes * kBox + costs.tests;
+    constexpr double kLine = 0.8, kTest = 1, kLineBytes = 64;
+    return costs.nodes * kLine * std::max(1.0, costs.node_bytes / kLineBytes) + costs.boxes * kBoxWork + costs.tests * kTest +
+           costs.following;
 }
 
 std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress) {

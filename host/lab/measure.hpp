@@ -22,11 +22,12 @@ struct MeasureJob {
     double limit_s = 10;  // of a step
     std::vector<import::SentScene> scenes;
     std::vector<std::vector<rt_ray>> rays;  // of each scene
-    std::vector<Case> materials;            // of a model of surfaces, in the place of scenes
+    std::vector<unsigned> poses;
+    std::vector<Case> materials;  // of a model of surfaces, in the place of scenes
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
         parcel(self.library, self.closed, self.reference, self.layout, self.device, self.lanes, self.times, self.limit_s,
-               self.scenes, self.rays, self.materials);
+               self.scenes, self.rays, self.poses, self.materials);
     }
 };
 
@@ -34,6 +35,8 @@ struct MeasureJob {
 struct RayCosts {
     double nodes = 0, boxes = 0, tests = 0;
     double node_bytes = 0;  // of an element of the structure's first slot
+    double following = 0;   // scenes that move: what builds and refits of all poses cost, by the number of rays
+    double fresh = 0;       // the share of all nodes that are new in their pose
 };
 
 // Work a ray that is graded, in tests of a triangle. One place, for all labs.

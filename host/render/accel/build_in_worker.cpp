@@ -233,25 +233,12 @@ class ClosedBuild : public worker::Job {
 
 ClosedBuilder closed_builder;
 
-int32_t build_closed(const rt_host* host, const rt_build_input* input, const rt_topology_output* to) {
-    rt_build_output out{};
-    out.struct_bytes = sizeof out;
-    out.ctx = const_cast<rt_topology_output*>(to);
-    const auto of = [](void* ctx) -> const rt_topology_output& { return *static_cast<const rt_topology_output*>(ctx); };
-    static constexpr auto output = +of;
-    out.alloc = [](void* ctx, rt_u32, uint64_t count) -> void* { return output(ctx).nodes(output(ctx).ctx, count); };
-    out.leaves = [](void* ctx, uint64_t count) { return output(ctx).refs(output(ctx).ctx, count); };
-    out.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(output(ctx).ctx, group, node); };
-    out.stat = [](void* ctx, const char* label, double value) { output(ctx).stat(output(ctx).ctx, label, value); };
-    out.define = [](void*, const char*, rt_u32) {};
+// Builds, and hands over what was built. slots: those of the output.
+int32_t build_closed(const rt_host* host, const rt_build_input* input, const rt_accel& slots, const rt_build_output& out) {
     BuildJob work(closed_builder.library, *input, prim_count_of(*input), 0, nullptr);
     work.memory_bytes = closed_builder.memory_bytes;
     work.cpu_s = ClosedBuild::cpu_s_of(closed_builder);
-    rt_accel slots{};
-    slots.topology = build_closed;
-    rt_plugin plugin{};
-    plugin.accel = &slots;
-    BuildReplay replay{built_slots(plugin), input->group_count, out};
+    BuildReplay replay{slots, input->group_count, out};
     Progress progress;
     ClosedBuild job(closed_builder);
     job.subject = closed_builder.library;
@@ -263,15 +250,50 @@ int32_t build_closed(const rt_host* host, const rt_build_input* input, const rt_
     return RT_OK;
 }
 
+int32_t build_closed_tree(const rt_host* host, const rt_build_input* input, const rt_topology_output* to) {
+    rt_build_output out{};
+    out.struct_bytes = sizeof out;
+    out.ctx = const_cast<rt_topology_output*>(to);
+    const auto of = [](void* ctx) -> const rt_topology_output& { return *static_cast<const rt_topology_output*>(ctx); };
+    static constexpr auto output = +of;
+    out.alloc = [](void* ctx, rt_u32, uint64_t count) -> void* { return output(ctx).nodes(output(ctx).ctx, count); };
+    out.leaves = [](void* ctx, uint64_t count) { return output(ctx).refs(output(ctx).ctx, count); };
+    out.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(output(ctx).ctx, group, node); };
+    out.stat = [](void* ctx, const char* label, double value) { output(ctx).stat(output(ctx).ctx, label, value); };
+    out.define = [](void*, const char*, rt_u32) {};
+    rt_accel slots{};
+    slots.topology = build_closed_tree;
+    rt_plugin plugin{};
+    plugin.accel = &slots;
+    return build_closed(host, input, built_slots(plugin), out);
+}
+
+rt_accel closed_accel{};  // of take_closed_builder()
+
+int32_t build_closed_slots(const rt_host* host, const rt_build_input* input, const rt_build_output* to) {
+    rt_build_output out = *to;
+    out.define = [](void*, const char*, rt_u32) {};  // a define could change what kernels count
+    return build_closed(host, input, closed_accel, out);
+}
+
 }  // namespace
 
 const rt_plugin* take_closed_builder(const ClosedBuilder& builder) {
-    static rt_accel accel{};
     static rt_plugin plugin{};
+    rt_accel& accel = closed_accel;
     closed_builder = builder;
+    if (!builder.table.empty()) {
+        const PluginRecord record = load_plugin(builder.table);
+        if (!record.plugin || !record.plugin->accel || !record.plugin->accel->build)
+            throw Error(Exit::failed, builder.table + ": is no structure with slots: " + record.why);
+        plugin = *record.plugin, accel = *record.plugin->accel;
+        accel.build = build_closed_slots;
+        plugin.accel = &accel;
+        return &plugin;
+    }
     accel.struct_bytes = sizeof accel;
     accel.layout = closed_builder.layout.c_str();
-    accel.topology = build_closed;
+    accel.topology = build_closed_tree;
     plugin.abi_version = RT_ABI_VERSION;
     plugin.struct_bytes = sizeof plugin;
     plugin.id = plugin.name = closed_builder.id.c_str();

@@ -21,15 +21,17 @@ enum class BuildPlace {
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
                      const rt_topology* tree, const rt_build_output* out, Progress& progress);
 
-// A library that builds topologies, behind closed doors: no process but a worker for each build ever opens it, and that one has
-// no files, no network and no other programs from its first instruction on. For graders.
+// A library that builds, behind closed doors: no process but a worker for each build ever opens it, and that one has no files,
+// no network and no other programs from its first instruction on. For graders.
 struct ClosedBuilder {
     std::string library, id, layout;  // id and layout: what the library must be; what it says of itself is not asked
-    double limit_s = 10;              // processor time of a build
+    std::string
+        table;  // a library that is trusted, whose slots and kernels count; "": `library` builds topologies for `layout`
+    double limit_s = 10;  // processor time of a build
     uint64_t memory_bytes = uint64_t(1) << 30;
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.library, self.id, self.layout, self.limit_s, self.memory_bytes);
+        parcel(self.library, self.id, self.layout, self.table, self.limit_s, self.memory_bytes);
     }
 };
 // The plugin that stands for it in this process, also if this is a worker. One a process.

@@ -1,0 +1,205 @@
+// lab_command_test.cpp -- what `clarity lab` does besides marking: handouts, copies, nights, the page of marks, refusals.
+#include <gtest/gtest.h>
+
+#include <seccomp.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "lab/board.hpp"
+#include "lab/build.hpp"
+#include "lab/grade.hpp"
+#include "lab_sdk.hpp"
+#include "support/scratch.hpp"
+#include "worker/child.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A shared file that is nowhere, and a name that leads elsewhere, are refused.
+TEST(Lab, SharedFilesComeWithTheHandoutAndWithACopy) {
+    const Scratch scratch;
+    const auto has = [&](const std::string& file) { return fs::exists(scratch.path(file)); };
+    clarity::lab::copy_lab(kLabs + "/binned", scratch.path("copy"));
+    EXPECT_TRUE(has("copy/handout/lab_tree.hpp"));
+    clarity::lab::write_handout(clarity::lab::read_lab(scratch.path("copy"), true), scratch.path("mine"), {});
+    for (const char* file : {"mine/lab_tree.hpp", "mine/binned.cpp", "mine/page.md", "mine/lab.json", "mine/CMakeLists.txt"})
+        EXPECT_TRUE(has(file)) << file;
+    EXPECT_FALSE(has("mine/reference") || has("mine/hidden"));
+    fs::remove(scratch.path("copy/handout/lab_tree.hpp"));
+    EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true).given(), clarity::Error);
+    json lab = json::parse(scratch.read("copy/lab.json"));
+    lab["shared"] = {"../lab.json"};
+    scratch.write("copy/lab.json", lab.dump());
+    EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true), clarity::Error);
+}
+
+TEST(Lab, LinksAndLargeFilesAreRefused) {
+    const Scratch scratch;
+    const clarity::lab::Lab lab = clarity::lab::read_lab(kLabs + "/median", true);
+    scratch.write("large/median.cpp", std::string(70000, ' '));
+    fs::create_directories(scratch.path("link"));
+    fs::create_symlink(kLabs + "/median/hidden/cases.json", scratch.path("link/median.cpp"));
+    fs::create_directories(scratch.path("none"));
+    for (const char* name : {"large", "link", "none"})
+        EXPECT_THROW(clarity::lab::collect(lab, scratch.path(name), scratch.path("to")), clarity::lab::Refused) << name;
+}
+
+TEST(Lab, ForbiddenWordsAreNamedWithTheirLine) {
+    using clarity::lab::forbidden_word;
+    EXPECT_EQ(forbidden_word("int a;\nint b = rt_bits(c);", {"rt_"}), "line 2 has `rt_`");
+    EXPECT_EQ(forbidden_word("int start_rt;", {"rt_"}), "");
+    EXPECT_EQ(forbidden_word("int hits;", {"hit"}), "");
+    EXPECT_EQ(forbidden_word("/* hit */ int a; // hit\n", {"hit"}), "");
+    EXPECT_EQ(forbidden_word("/* */ hit /* */", {"hit"}), "line 1 has `hit`");
+    EXPECT_EQ(forbidden_word("a \\\n b", {"\\"}), "line 1 has `\\`");
+}
+
+TEST(Lab, PointsOfCountsAreOnALogScale) {
+    clarity::lab::Lab lab;
+    lab.full = 1, lab.none = 4;
+    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 0.5), 1);
+    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 2), 0.5);
+    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 5), 0);
+    EXPECT_DOUBLE_EQ(clarity::lab::counts_points(lab, 0), 0);
+}
+
+// What students get has no reference, but its figures; they see the public lines of the grader, and each says how to see it
+// alone.
+TEST(Lab, AHandoutIsCheckedByTheGradersCode) {
+    install_sdk();
+    const Scratch scratch;
+    const std::string folder = scratch.path("mine"), work = std::string(CLARITY_BUILD_DIR) + "/tests/lab/work_median";
+    const ProgramResult made = run_program({"lab", "handout", kLabs + "/median", folder, "--sdk", kSdk, "--work", work});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_FALSE(fs::exists(folder + "/hidden")) << "students have the hidden cases";
+    EXPECT_FALSE(fs::exists(folder + "/reference"));
+    const ProgramResult starter = run_program({"lab", "check", folder, "--sdk", kSdk, "--work", work, "--only", "city"});
+    EXPECT_EQ(starter.exit_code, 1);
+    EXPECT_NE(starter.out.find("the builder is not written yet"), std::string::npos) << starter.out;
+    EXPECT_NE(starter.out.find("alone: clarity lab check . --only city"), std::string::npos) << starter.out;
+    fs::copy(kLabs + "/median/reference/median.cpp", folder + "/median.cpp", fs::copy_options::overwrite_existing);
+    const ProgramResult solved = run_program({"lab", "check", folder, "--sdk", kSdk, "--work", work, "--only", "city"});
+    EXPECT_EQ(solved.exit_code, 0) << solved.out << solved.err;
+    EXPECT_NE(solved.out.find("1.00 times the work of the reference"), std::string::npos) << solved.out;
+}
+
+// Two processes share a night. One is killed in it; when the other has come to its end, no record is missing and none was made
+// twice.
+TEST(Lab, ANightIsSharedAndSurvives) {
+    install_sdk();
+    const Scratch scratch;
+    std::vector<std::string> words = {"lab", "night", kLabs + "/median"};
+    for (const char* name : {"a", "b", "c"}) {
+        fs::create_directories(scratch.path(name));
+        fs::copy(kLabs + "/median/handout/median.cpp", scratch.path(std::string(name) + "/median.cpp"));
+        words.push_back(scratch.path(name));
+    }
+    words.insert(words.end(), {"-o", scratch.path("marks"), "--sdk", kSdk, "--counts-only"});
+    RunOptions killed;
+    killed.signal = SIGKILL;
+    killed.signal_when_made = scratch.path("marks/a.json");
+    ProgramResult first, second;
+    std::thread other([&] { first = run_program(words, killed); });
+    second = run_program(words);
+    other.join();
+    ProgramResult last = second;
+    for (int tries = 0; last.exit_code != 0 && tries < 100; ++tries) last = run_program(words);
+    EXPECT_EQ(last.exit_code, 0) << last.err;
+    for (const char* name : {"a", "b", "c"}) {
+        EXPECT_TRUE(json::parse(scratch.read(std::string("marks/") + name + ".json"), nullptr, false).is_object()) << name;
+        const std::string line = std::string(name) + "  0.0\n";
+        const size_t at = second.out.find(line);
+        EXPECT_TRUE(at == std::string::npos || first.out.find(line) == std::string::npos) << name << " was graded twice";
+    }
+    const ProgramResult again = run_program(words);
+    EXPECT_EQ(again.out, "") << "what has a record is graded again";
+    scratch.write("a/median.cpp", "another one\n");
+    EXPECT_EQ(run_program(words).out, "a  0.0\n") << "what was handed in again is not graded again";
+}
+
+TEST(Lab, TheBoardRanksByWork) {
+    const Scratch scratch;
+    const auto record = [&](const std::string& name, double work, double total) {
+        scratch.write(name + ".json", json{{"submission", name}, {"work", work}, {"total", total}}.dump());
+    };
+    record("slow", 2, 70), record("best", 1, 100), record("alike", 1.015, 99), record("third", 1.03, 98),
+        record("<wrong>", 0, 20);
+    const auto rows = clarity::lab::read_board(scratch.path(""));
+    const std::pair<const char*, unsigned> expected[] = {{"best", 1}, {"alike", 1}, {"third", 3}, {"slow", 4}, {"<wrong>", 0}};
+    ASSERT_EQ(rows.size(), 5u);
+    for (size_t i = 0; i < rows.size(); ++i) {
+        EXPECT_EQ(rows[i].name, expected[i].first);
+        EXPECT_EQ(rows[i].rank, expected[i].second) << rows[i].name;
+    }
+    const std::string page = clarity::lab::board_html("A lab", rows);
+    EXPECT_EQ(page.find("<wrong>"), std::string::npos);
+    EXPECT_NE(page.find("&lt;wrong&gt;"), std::string::npos);
+    EXPECT_THROW(clarity::lab::read_board(scratch.path("none")), clarity::Error);
+}
+
+// Grades a submission that includes the hidden cases, on a system without bubblewrap; without Landlock, too, if `landlock` is
+// false. What the program prints goes to the file `to`.
+void grade_without_bubblewrap(const Scratch& scratch, bool landlock, const std::string& to) {
+    if (!landlock) {
+        const scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+        if (seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(landlock_create_ruleset), 0) != 0 ||
+            seccomp_load(filter) != 0)
+            return;
+    }
+    RunOptions options;
+    options.environment["PATH"] = scratch.path("bin") + ":" + std::getenv("PATH");
+    const ProgramResult result =
+        run_program({"lab", "grade", kLabs + "/median", scratch.path("curious"), "--sdk", kSdk, "--counts-only"}, options);
+    scratch.write(to, result.out + result.err);
+}
+
+// Each sandbox is said, and none shows what a submission includes of the teacher's. The reference solution is built in it.
+TEST(Lab, WithoutBubblewrapAndLandlockCompilersAreStillShutIn) {
+    install_sdk();
+    const Scratch scratch;
+    scratch.write("bin/bwrap", "#!/bin/sh\nexit 1\n");
+    fs::permissions(scratch.path("bin/bwrap"), fs::perms::owner_all);
+    scratch.write("curious/median.cpp", "#include \"" + kLabs + "/median/hidden/cases.json\"\n");
+    for (const bool landlock : {true, false}) {
+        // A filter of system calls stays for the rest of a process.
+        const pid_t child = fork();
+        if (child == 0) {
+            grade_without_bubblewrap(scratch, landlock, "said");
+            _exit(0);
+        }
+        waitpid(child, nullptr, 0);
+        const std::string said = scratch.read("said");
+        const bool by_landlock = landlock && clarity::worker::restricts_files();
+        EXPECT_NE(said.find(by_landlock ? "sandbox: a worker's limits (Landlock" : "sandbox: resource limits alone"),
+                  std::string::npos)
+            << said;
+        EXPECT_NE(said.find("it does not compile"), std::string::npos) << said;
+        EXPECT_EQ(said.find("the reference solution"), std::string::npos) << said;
+        for (const char* secret : {"7301", "hidden-1", "teapots"}) EXPECT_EQ(said.find(secret), std::string::npos) << said;
+        fs::remove(scratch.path("said"));
+    }
+}
+
+// Before grading has come to its end there is a score of 0; a lab that cannot be graded keeps it.
+TEST(Lab, ATimeLimitIsNoOtherScore) {
+    install_sdk();
+    const Scratch scratch;
+    fs::copy(kLabs + "/median", scratch.path("lab"), fs::copy_options::recursive);
+    scratch.write("lab/reference/median.cpp", "no C++\n");
+    const ProgramResult result = run_program({"lab", "grade", scratch.path("lab"), kLabs + "/median/reference", "--sdk", kSdk,
+                                              "--gradescope", scratch.path("results.json"), "--autolab"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.err.find("the reference solution: it does not compile"), std::string::npos) << result.err;
+    EXPECT_EQ(json::parse(scratch.read("results.json"))["score"], 0);
+    EXPECT_NE(result.out.find("{\"scores\":{\"checks\":0.0,"), std::string::npos) << result.out;
+}
+
+}  // namespace
