@@ -36,7 +36,6 @@ struct Light {
 constexpr Light kLights[] = {
     {"furnace", [](double) { return 1.0; }},
     {"sky", [](double cosine) { return 0.3 + 0.35 * (1 + cosine); }},
-    {"lamp", [](double cosine) { return 0.05 + 6 * std::exp(20 * (cosine - 1)); }},
 };
 const Light& light_of(const Case& one) {
     for (const Light& light : kLights)
