@@ -19,7 +19,8 @@ class Spawn {
 
     // Our descriptor becomes the program's descriptor `number`.
     void give(int descriptor, int number);
-    // Starts the program words[0], found by PATH if it has no slash. environment: ends with nullptr. Returns 0, or the number of what went wrong.
+    // Starts the program words[0], found by PATH if it has no slash. environment: ends with nullptr. Returns 0, or the number
+    // of what went wrong.
     int start(std::vector<std::string>& words, char* const* environment, pid_t& pid);
 
  private:
