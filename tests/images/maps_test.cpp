@@ -207,6 +207,14 @@ TEST(SmallerPictures, KeepTheMeanOfAnySize) {
     }
 }
 
+TEST(SmallerPictures, TakeAThirdOfTheirPicture) {
+    Texels texels(1024 * 1024);
+    rt_texture texture = {0, 1024, 1024, 0, 0, 0, 0};
+    import::add_smaller_pictures(texels, texture);
+    EXPECT_EQ(texture.levels, 10u);
+    EXPECT_NEAR(double(texels.size()) / (1024 * 1024), 4.0 / 3, 1e-5);
+}
+
 // The only texture: black and white texels by turns, side x side, with its smaller pictures.
 void put_checker(Scene& scene, rt_u32 side) {
     Texels texels;
