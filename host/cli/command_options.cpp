@@ -176,7 +176,8 @@ void add_check(CLI::App& app, CheckCommand& command) {
 }
 
 void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
-    app.add_option("kind", command.kind, "accel (an acceleration structure), importer or primitive (a shape)")
+    app.add_option("kind", command.kind,
+                   "accel (an acceleration structure), importer, primitive (a shape) or surface (a model of surfaces)")
         ->type_name("KIND")
         ->required();
     app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")->type_name("ID")->required();

@@ -139,7 +139,7 @@ int hand_out(const PluginRegistry& plugins, const LabCommand& command, Progress&
     expect_words(command, 2, 2, "handout LAB DIR");
     // The reference's figures of the public cases: students have no reference to measure.
     Desk desk(plugins, command, lab::read_lab(lab_folder(command.words[0]), false), progress);
-    lab::write_handout(desk.grader().lab(), command.words[1], desk.grader().reference_work(progress));
+    lab::write_handout(desk.grader().lab(), command.words[1], desk.grader().known_cases(progress));
     print_text("%s is what students get; they begin with page.md\n", command.words[1].c_str());
     return static_cast<int>(Exit::done);
 }

@@ -85,6 +85,24 @@ Json keys_json(const rt_primitive& primitive) {
     return list;
 }
 
+// A number, or three of a colour.
+Json keys_json(const rt_surface& surface) {
+    Json list = Json::array();
+    for (rt_u32 i = 0; i < surface.key_count; ++i) {
+        const rt_surface_key& key = surface.keys[i];
+        const bool is_color = key.kind == RT_KEY_COLOR;
+        list.push_back({{"key", key.name},
+                        {"label", key.label},
+                        {"kind", is_color ? "color" : "number"},
+                        {"help", key.help},
+                        {"unit", key.unit ? Json(key.unit) : Json()},
+                        {"min", key.min},
+                        {"max", key.max},
+                        {"default", is_color ? Json(key.def) : Json(key.def[0])}});
+    }
+    return list;
+}
+
 Json record_json(const PluginRecord& record) {
     Json json = {{"path", record.path}, {"status", status_name(record)}, {"replaced", record.replaced}};
     if (!record.plugin) {
@@ -114,6 +132,7 @@ Json record_json(const PluginRecord& record) {
         for (const char* const* e = plugin.importer->extensions; *e; ++e) json["extensions"].push_back(*e);
     }
     if (plugin.primitive) json["keys"] = keys_json(*plugin.primitive);
+    if (const rt_surface* surface = rt_surface_of(&plugin)) json["keys"] = keys_json(*surface);
     json["abi_extensions"] = Json::array();
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
         json["abi_extensions"].push_back({{"name", e->name}, {"version", e->version}});

@@ -47,10 +47,28 @@ std::string without_secrets(const std::string& found) {
                                          {"crashed", "it crashes"},
                                          {"did not come to", "it does not come to its end"},
                                          {"keeps state", "it keeps state"},
-                                         {"memory", "it needs too much memory"}};
+                                         {"memory", "it needs too much memory"},
+                                         {"by eval", "the light that is sent back by eval is wrong"},
+                                         {"biased", "the mean of the draws is wrong"},
+                                         {"the density pdf", "the directions of sample do not have the density pdf"},
+                                         {"never finds", "sample never finds some of the light"},
+                                         {"weight of colour", "weights are not f cos / pdf"},
+                                         {"sample", "sample is wrong"},
+                                         {"eval", "eval is wrong"}};
     for (const auto& [words, kind] : kKinds)
         if (found.find(words) != std::string::npos) return std::string("in this hidden case ") + kind;
     return "in this hidden case the build fails";
+}
+
+std::string tried_text(const Case& one, bool is_surface) {
+    if (one.hidden) return is_surface ? "a hidden material" : "a hidden scene";
+    if (!is_surface)
+        return one.scene + ", " + std::to_string(one.triangles) + " triangles, " + std::to_string(one.rays) + " rays" +
+               (one.poses > 1 ? ", " + std::to_string(one.poses) + " poses" : "");
+    std::string text = "color";
+    for (const float c : one.color) text += " " + text_of(double(c));
+    for (const auto& [key, value] : one.keys) text += ", " + key + " " + text_of(value[0]);
+    return text + " in the light `" + one.scene + "`, " + std::to_string(one.rays) + " draws";
 }
 
 }  // namespace
@@ -81,7 +99,8 @@ Grader::Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Pro
     Digest files;
     for (const std::string& path : own) add_file(files, path);
     lab_digest_ = files.hex();
-    for (const Case& one : lab_.cases) cases_.push_back(make_case(one));
+    for (const Case& one : lab_.cases)
+        if (!lab_.is_surface) cases_.push_back(make_case(one));
     if (lab_.reference().empty()) return;
     const std::string sources = options_.work + "/reference/sources";
     try {
@@ -133,8 +152,12 @@ MeasureJob Grader::job_for(const Libraries& libraries) const {
     job.library = libraries.own, job.reference = reference_, job.layout = layout_;
     if (lab_.has_builder()) job.closed.push_back(closed(libraries));
     job.device = options_.device, job.lanes = lab_.lanes, job.times = options_.times && lab_.points_speed > 0;
-    for (size_t i = 0; i < cases_.size(); ++i) {
+    for (size_t i = 0; i < lab_.cases.size(); ++i) {
         if (!is_wanted(lab_.cases[i].name)) continue;
+        if (lab_.is_surface) {
+            job.materials.push_back(lab_.cases[i]);
+            continue;
+        }
         job.scenes.push_back({cases_[i].scene});
         job.rays.push_back(cases_[i].rays);
         job.poses.push_back(lab_.cases[i].poses);
@@ -142,17 +165,18 @@ MeasureJob Grader::job_for(const Libraries& libraries) const {
     return job;
 }
 
-std::vector<double> Grader::reference_work(Progress& progress) {
+std::vector<Case> Grader::known_cases(Progress& progress) {
     if (reference_.empty())
         throw Error(Exit::usage, lab_.folder + ": has no folder reference/, so nobody knows what a good solution costs");
     MeasureJob job = job_for({reference_, lab_.layout.empty() ? reference_ : ""});
     job.times = false;
-    std::vector<double> work;
-    for (const CaseFigures& figures : measure(job, progress)) {
-        if (!figures.wrong.empty()) throw Error(Exit::failed, "the reference solution is wrong: " + figures.wrong);
-        work.push_back(figures.work);
+    std::vector<Case> known = lab_.cases;
+    const std::vector<CaseFigures> all = measure(job, progress);
+    for (size_t i = 0; i < all.size(); ++i) {
+        if (!all[i].wrong.empty()) throw Error(Exit::failed, "the reference solution is wrong: " + all[i].wrong);
+        known[i].reference = all[i].work, known[i].truth = all[i].truth;
     }
-    return work;
+    return known;
 }
 
 Marks Grader::grade(const std::string& submission, Progress& progress) {
@@ -198,15 +222,19 @@ bool Grader::mark_checks(const Libraries& libraries, Marks& marks, Progress& pro
         if (!layout_.empty()) beside.push_back(layout_);
     }
     record.path = libraries.own;
-    bool hits_are_right = true;
+    // A wrong hit, or anything that is wrong of a surface, leaves no points for counts.
+    const auto leaves_out_counts = [](const std::string& name) {
+        return name.rfind("hits", 0) == 0 || name.rfind("surface", 0) == 0;
+    };
+    bool right = true;
     std::vector<Line> lines;
     check::check_plugin_library(record, beside, options, progress, [&](const check::CheckResult& result) {
         Line line = line_of("checks", result.name, 0, result.tried);
         line.found = result.outcome.found;
-        line.alone =
-            "clarity check ./build/" + lab_.id + ".so --quick --lanes " + std::to_string(lab_.lanes) + " --only " + result.name;
+        const std::string lanes = lab_.is_surface ? "" : " --lanes " + std::to_string(lab_.lanes);
+        line.alone = "clarity check ./build/" + lab_.id + ".so --quick" + lanes + " --only " + result.name;
         if (result.outcome.kind == check::Outcome::Kind::passed) line.points = 1;
-        if (line.points == 0 && result.name.rfind("hits", 0) == 0) hits_are_right = false;
+        if (line.points == 0 && leaves_out_counts(result.name)) right = false;
         lines.push_back(line);
     });
     // Checks that never ran, because a worker died too often or the builder is not sound, count as failed.
@@ -215,7 +243,7 @@ bool Grader::mark_checks(const Libraries& libraries, Marks& marks, Progress& pro
         if (std::none_of(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; })) {
             lines.push_back(line_of("checks", name, 0, "not run"));
             lines.back().found = "not run, because of a failure above";
-            if (name.rfind("hits", 0) == 0) hits_are_right = false;
+            if (leaves_out_counts(name)) right = false;
         }
     // Builds and hits are checked side by side, but students read one order.
     const auto place = [&](const Line& line) {
@@ -227,7 +255,7 @@ bool Grader::mark_checks(const Libraries& libraries, Marks& marks, Progress& pro
         line.most = counts ? most : 0, line.points *= line.most;
         marks.lines.push_back(line);
     }
-    return hits_are_right;
+    return right;
 }
 
 void Grader::mark_cases(const Libraries& libraries, Marks& marks, Progress& progress) {
@@ -247,21 +275,12 @@ void Grader::mark_cases(const Libraries& libraries, Marks& marks, Progress& prog
         const double reference = figures.reference_work > 0 ? figures.reference_work : cases[i]->reference;
         Line line = line_of("counts", cases[i]->name, counts / double(lab_.cases.size()), "");
         line.hidden = cases[i]->hidden;
-        line.tried = cases[i]->hidden ? "a hidden scene"
-                                      : cases[i]->scene + ", " + std::to_string(cases[i]->triangles) + " triangles, " +
-                                            std::to_string(cases[i]->rays) + " rays" +
-                                            (cases[i]->poses > 1 ? ", " + std::to_string(cases[i]->poses) + " poses" : "");
+        line.tried = tried_text(*cases[i], lab_.is_surface);
         if (!cases[i]->hidden) line.alone = "clarity lab check . --only " + cases[i]->name;
         if (!figures.wrong.empty()) {
             line.found = cases[i]->hidden ? without_secrets(figures.wrong) : figures.wrong;
         } else {
-            const RayCosts& costs = figures.costs;
-            line.found = text_of(costs.nodes, "%.2f") + " nodes of " + text_of(costs.node_bytes) + " bytes, " +
-                         text_of(costs.boxes, "%.2f") + " boxes and " + text_of(costs.tests, "%.2f") + " tests a ray";
-            if (cases[i]->poses > 1)
-                line.found += "; from pose to pose " + text_of(100 * costs.fresh, "%.0f") +
-                              " % of the nodes are new, and building and fitting adds " + text_of(costs.following, "%.2f") +
-                              " to the work of a ray";
+            line.found = figures.found;
             if (reference > 0) {
                 const double ratio = figures.work / reference;
                 line.found += ", " + text_of(ratio, "%.2f") + " times the work of the reference (all points at " +
@@ -269,7 +288,8 @@ void Grader::mark_cases(const Libraries& libraries, Marks& marks, Progress& prog
                 work += std::log(std::max(ratio, 1e-6));
                 if (right) line.points = line.most * counts_points(lab_, ratio);
             }
-            if (!right) line.found += "; no points, because a hit is wrong elsewhere";
+            if (!right)
+                line.found += "; no points, because " + std::string(lab_.is_surface ? "another case" : "a hit") + " is wrong";
         }
         all_known &= figures.wrong.empty() && reference > 0;
         if (lab_.points_answers > 0) {

@@ -44,8 +44,8 @@ class Grader {
     // Builds the reference and takes its figures once. Throws Error if that fails: it is the teacher's fault.
     Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Progress& progress);
     Marks grade(const std::string& submission, Progress& progress);
-    // Work a ray of the reference on each case; the handout holds those of the public ones.
-    std::vector<double> reference_work(Progress& progress);
+    // The cases with what is known of the reference; the handout holds those of the public ones.
+    std::vector<Case> known_cases(Progress& progress);
     // Tells what is marked, and how: the files that were handed in, and the lab. Not the machine.
     std::string digest(const std::string& submission) const;
     const Lab& lab() const { return lab_; }

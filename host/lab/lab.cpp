@@ -55,6 +55,17 @@ std::vector<Case> read_cases(const ordered_json& list, bool hidden, const std::s
         one.seed = value(json, "seed", uint64_t(0), file);
         one.poses = value(json, "poses", 1u, file);
         one.reference = value(json, "reference", 0.0, file);
+        one.truth = value(json, "truth", std::vector<double>{}, file);
+        one.color = value(json, "color", one.color, file);
+        const ordered_json keys = value(json, "keys", ordered_json::object(), file);
+        for (const auto& [key, number] : keys.items()) {
+            std::array<double, 3> numbers{};
+            if (number.is_array())
+                numbers = value(keys, key.c_str(), numbers, file);
+            else
+                numbers[0] = value(keys, key.c_str(), 0.0, file);
+            one.keys.emplace_back(key, numbers);
+        }
         one.hidden = hidden;
         if (one.triangles < 1 || one.triangles > 1'000'000 || one.rays < 1 || one.rays > 1'000'000)
             refuse(file, "case " + one.name + ": `triangles` and `rays` are from 1 to a million");
@@ -118,6 +129,9 @@ Lab read_lab(const std::string& folder, bool with_hidden) {
     if (!is_plugin_id(lab.id)) refuse(file, "`id` is no id of a plugin");
     lab.title = value<std::string>(json, "title", lab.id, file);
     lab.layout = value<std::string>(json, "layout", "", file);
+    const std::string kind = value<std::string>(json, "kind", "accel", file);
+    if (kind != "accel" && kind != "surface") refuse(file, "`kind` is '" + kind + "'; expected accel or surface");
+    lab.is_surface = kind == "surface";
     if (!json.contains("files")) refuse(file, "`files` is missing");
     for (const ordered_json& one : json["files"]) {
         lab.files.push_back({needed(one, "name", file), value(one, "bytes", uint64_t(64) << 10, file)});
@@ -152,7 +166,7 @@ Lab read_lab(const std::string& folder, bool with_hidden) {
     return lab;
 }
 
-void write_handout(const Lab& lab, const std::string& folder, const std::vector<double>& references) {
+void write_handout(const Lab& lab, const std::string& folder, const std::vector<Case>& known) {
     std::error_code error;
     if (fs::exists(folder) && !fs::is_empty(folder, error))
         throw Error(Exit::usage, folder + ": is there already, and not empty; take another folder");
@@ -160,7 +174,10 @@ void write_handout(const Lab& lab, const std::string& folder, const std::vector<
     for (const std::string& file : lab.given()) fs::copy_file(file, folder + "/" + fs::path(file).filename().string());
     if (fs::exists(lab.folder + "/page.md")) fs::copy(lab.folder + "/page.md", folder + "/page.md");
     ordered_json json = read_json(lab.folder + "/lab.json");
-    for (size_t i = 0; i < references.size() && i < json["cases"].size(); ++i) json["cases"][i]["reference"] = references[i];
+    for (size_t i = 0; i < known.size() && i < json["cases"].size(); ++i) {
+        json["cases"][i]["reference"] = known[i].reference;
+        if (!known[i].truth.empty()) json["cases"][i]["truth"] = known[i].truth;
+    }
     write_text_file(folder + "/lab.json", json.dump(2) + "\n");
 }
 

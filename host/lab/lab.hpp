@@ -1,5 +1,6 @@
 // lab.hpp -- a lab: an assignment of a course, which is a folder. What students get, what they hand in, and how it is marked.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,19 +12,31 @@ namespace clarity::lab {
 
 // A scene and rays, made by a generator: the same on every machine.
 struct Case {
-    std::string name, scene;  // scene: a row of kGenerators
+    std::string name, scene;  // scene: a row of kGenerators; of models of surfaces one of kLights
     unsigned triangles = 0, rays = 0;
     uint64_t seed = 0;
     unsigned poses = 1;  // more than 1: each pose is a mesh, with as many of the rays
     bool hidden = false;
-    double reference = 0;  // work a ray of the reference solution, where students have no reference; 0: not known
+    // Of models of surfaces: a material.
+    std::array<float, 3> color{1, 1, 1};
+    std::vector<std::pair<std::string, std::array<double, 3>>> keys;  // the others have their defaults
+    // Of the reference solution, where students have no reference: its work, 0: not known; what is right, of models of surfaces
+    // the light that is sent back.
+    double reference = 0;
+    std::vector<double> truth;
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.name, self.scene, self.triangles, self.rays, self.poses, self.seed, self.hidden, self.color, self.keys,
+               self.reference, self.truth);
+    }
 };
 
 struct Lab {
     std::string folder, title;
     // The plugin. layout: of a builder of trees, the structure that packs and traces them; "": the plugin has slots and kernels
-    // of its own.
+    // of its own. is_surface: the plugin is a model of surfaces.
     std::string id, layout;
+    bool is_surface = false;
     struct File {
         std::string name;
         uint64_t most_bytes = 0;
@@ -61,9 +74,8 @@ struct MadeCase {
 // Throws Error(usage) for an unknown generator.
 MadeCase make_case(const Case& of);
 
-// clarity lab handout: copies what students get into a new folder. references: work a ray of the reference, of each public
-// case.
-void write_handout(const Lab& lab, const std::string& folder, const std::vector<double>& references);
+// clarity lab handout: copies what students get into a new folder. known: the public cases with what is known of the reference.
+void write_handout(const Lab& lab, const std::string& folder, const std::vector<Case>& known);
 
 // The folder of the labs that are installed with the program.
 std::string installed_labs();

@@ -1,6 +1,7 @@
 #include "lab/measure.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,7 @@
 #include "check/hits/checked_scene.hpp"
 #include "check/hits/judge.hpp"
 #include "device/device.hpp"
+#include "lab/measure_materials.hpp"
 #include "lab/motion.hpp"
 #include "plugin/registry.hpp"
 #include "worker/child.hpp"
@@ -87,8 +89,30 @@ std::string fault_of(CheckedScene& scene, const Variant& variant, std::vector<rt
     return {};
 }
 
+void report_case(const nlohmann::json& report) {
+    worker::send_message(worker::kChannelFd, {worker::MessageKind::report, 0, 0,
+                                              report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+}
+
+// "30.42 nodes of 64 bytes, 60.85 boxes and 5.84 tests a ray"
+std::string text_of(const RayCosts& costs, bool moves) {
+    char text[240];
+    int length = std::snprintf(text, sizeof text, "%.2f nodes of %.3g bytes, %.2f boxes and %.2f tests a ray", costs.nodes,
+                               costs.node_bytes, costs.boxes, costs.tests);
+    if (moves)
+        std::snprintf(
+            text + length, sizeof text - size_t(length),
+            "; from pose to pose %.0f %% of the nodes are new, and building and fitting adds %.2f to the work of a ray",
+            100 * costs.fresh, costs.following);
+    return text;
+}
+
 void measure_job(ParcelReader& arguments) {
     auto job = worker::arguments_in<MeasureJob>(arguments);
+    if (!job.materials.empty()) {
+        measure_materials(job, report_case);
+        return;
+    }
     const rt_plugin *layout = open_library(job.layout), *reference = open_library(job.reference),
                     *student = job.closed.empty() ? open_library(job.library) : take_closed_builder(job.closed.front());
     worker::enter_sandbox(worker::WorkerKind::driver);
@@ -132,7 +156,7 @@ void measure_job(ParcelReader& arguments) {
             worker::say_step("comparing hits", 60 + job.limit_s);
             report["wrong"] = fault_of(own, variant, rays, std::move(counted.hits));
             const RayCosts costs = costs_of(*student, counted.costs);
-            report["costs"] = {costs.nodes, costs.boxes, costs.tests, costs.node_bytes, costs.following, costs.fresh};
+            report["found"] = text_of(costs, job.poses[c] > 1), report["work"] = work_of(costs);
             if (job.times && theirs && report["wrong"] == "") {
                 worker::say_step("measuring times", 20 * kTimes_s);
                 const RayBlocks blocks(rays, static_cast<unsigned>(job.lanes));
@@ -162,8 +186,7 @@ void measure_job(ParcelReader& arguments) {
         } catch (const Error& e) {
             report["wrong"] = e.what();
         }
-        worker::send_message(worker::kChannelFd, {worker::MessageKind::report, 0, 0,
-                                                  report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+        report_case(report);
     }
 }
 
@@ -178,9 +201,8 @@ class Run : public worker::Job {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
         CaseFigures figures;
         figures.wrong = json.value("wrong", "");
-        const auto costs = json.value("costs", std::vector<double>(6));
-        figures.costs = {costs.at(0), costs.at(1), costs.at(2), costs.at(3), costs.at(4), costs.at(5)};
-        figures.work = work_of(figures.costs);
+        figures.found = json.value("found", "");
+        figures.work = json.value("work", 0.0), figures.truth = json.value("truth", std::vector<double>{});
         figures.reference_work = json.value("reference_work", 0.0);
         figures.ms = json.value("ms", 0.0), figures.reference_ms = json.value("reference_ms", 0.0);
         figures.steady = json.value("steady", true);
@@ -211,7 +233,7 @@ std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress) {
     } catch (const Error& e) {
         died = e.what();
     }
-    while (run.cases.size() < job.scenes.size()) {
+    while (run.cases.size() < job.scenes.size() + job.materials.size()) {
         run.cases.emplace_back();
         run.cases.back().wrong = died.empty() ? "nothing was measured" : died;
     }

@@ -23,10 +23,11 @@ struct MeasureJob {
     std::vector<import::SentScene> scenes;
     std::vector<std::vector<rt_ray>> rays;  // of each scene
     std::vector<unsigned> poses;
+    std::vector<Case> materials;  // of a model of surfaces, in the place of scenes
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
         parcel(self.library, self.closed, self.reference, self.layout, self.device, self.lanes, self.times, self.limit_s,
-               self.scenes, self.rays, self.poses);
+               self.scenes, self.rays, self.poses, self.materials);
     }
 };
 
@@ -43,7 +44,8 @@ double work_of(const RayCosts& costs);
 
 struct CaseFigures {
     std::string wrong;                    // what is wrong; "": every hit is right
-    RayCosts costs;                       // of the student
+    std::string found;                    // what the work is of, for people
+    std::vector<double> truth;            // of the reference: Case::truth
     double work = 0, reference_work = 0;  // 0: no reference
     double ms = 0, reference_ms = 0;
     bool steady = true;  // of the times: no row was refused

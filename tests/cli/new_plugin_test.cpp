@@ -44,7 +44,9 @@ TEST_F(NewPlugin, RenamesFilesAndWordsInThem) {
         EXPECT_NE(text.find("pebble"), std::string::npos) << file;
         EXPECT_EQ(text.find("my_primitive"), std::string::npos) << file;
     }
-    EXPECT_EQ(entries("."), 3u) << "nothing else is left";
+    ASSERT_EQ(make("surface", "moss", "moss").exit_code, 0);
+    EXPECT_NE(scratch_.read("moss/moss.cl").find("rt_surface_draw moss_sample"), std::string::npos);
+    EXPECT_EQ(entries("."), 4u) << "nothing else is left";
 }
 
 TEST_F(NewPlugin, NeverOverwrites) {
@@ -73,7 +75,7 @@ TEST_F(NewPlugin, SaysWhatIsWrong) {
     for (const char* kind : {"acel", "..", "."}) {
         const ProgramResult result = make(kind, "tree", "x");
         EXPECT_EQ(result.exit_code, 2) << kind;
-        EXPECT_NE(result.err.find("accel, importer, primitive"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("accel, importer, primitive, surface"), std::string::npos) << result.err;
     }
     const ProgramResult nowhere = make("accel", "tree", "no/where");
     EXPECT_EQ(nowhere.exit_code, 1);

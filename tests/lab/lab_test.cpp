@@ -10,6 +10,7 @@
 
 #include "cli/run_program.hpp"
 #include "lab_sdk.hpp"
+#include "submissions.hpp"
 #include "support/scratch.hpp"
 
 namespace {
@@ -17,21 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// A submission is our solution with one edit. Its mark, of 100 without times: 50 of checks and 50 of counts.
-constexpr const char* kStarter = "starter";
-struct Submission {
-    const char* name;
-    const char* from;  // the first place of this text ...
-    const char* to;    // ... becomes this. kStarter: the file is that of the handout
-    double least, most;
-    const char* found;  // stands in what some line found; "": anything
-    bool quick = false;
-};
-
 constexpr const char* kBegin = "const rt_topology_output* out) {\n";
 #define PROBE(code) "const rt_topology_output* out) {\n    " code "\n"
 
-const Submission kMedian[] = {
+const std::vector<Submission> kMedian = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"slow_file_order", "std::nth_element(begin, middle, end,",
      "(void)axis; (void)std::less<>(); if (false) std::nth_element(begin, middle, end,", 55, 90, "times the work"},
@@ -75,7 +65,7 @@ const Submission kMedian[] = {
      100, 100, "1.00 times the work", true},
 };
 
-const Submission kOrdered[] = {
+const std::vector<Submission> kOrdered = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"slow_file_order", "left_entry <= right_entry", "1", 50, 99, "times the work"},
     {"wrong_forgets_the_other", "ordered_push(stack, left_first", "if (0) ordered_push(stack, left_first", 0, 10, ""},
@@ -86,7 +76,7 @@ const Submission kOrdered[] = {
     {"redefines_what_counts", "uint ordered_next", "#define RT_COUNT_VISIT(a, b)\nuint ordered_next", 0, 0, "has `#`"},
 };
 
-const Submission kBinned[] = {
+const std::vector<Submission> kBinned = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"starter", kStarter, "", 50, 50, "times the work", true},
     {"wrong_loses_one", "in->groups[g].count, split", "std::max(in->groups[g].count, 1u) - 1, split", 0, 12.5, ""},
@@ -97,7 +87,7 @@ const Submission kBinned[] = {
      0, 0, ""},
 };
 
-const Submission kGrid[] = {
+const std::vector<Submission> kGrid = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"starter", kStarter, "", 50, 50, "times the work", true},
     {"slow_to_the_end", "if (!(walk->next[k] <= nearest)) return 0;", "", 51, 90, "times the work"},
@@ -107,7 +97,7 @@ const Submission kGrid[] = {
     {"stays", "walk->cell[k] += walk->step[k];", "walk->cell[k] += 0;", 0, 20, ""},
 };
 
-const Submission kWidePack[] = {
+const std::vector<Submission> kWidePack = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"starter_of_one", "node.lo[i][axis] = static_cast<unsigned char>(lo), node.hi[i][axis] = static_cast<unsigned char>(hi);",
      "node.lo[i][axis] = 0, node.hi[i][axis] = 255;", 50, 50, "times the work"},
@@ -120,12 +110,12 @@ const Submission kWidePack[] = {
      "    for (int axis = 0; axis < 3; ++axis) {\n        const float origin",
      0, 0, ""},
 };
-const Submission kWideUnpack[] = {
+const std::vector<Submission> kWideUnpack = {
     {"starter_alone", kStarter, "", 0, 20, ""},
     {"counts_falsely", "float wide_low(", "float rt_enter_bounds(", 0, 0, "does not allow"},
 };
 
-const Submission kRefit[] = {
+const std::vector<Submission> kRefit = {
     {"right", "", "", 100, 100, "1.00 times the work", true},
     {"starter", kStarter, "", 50, 50, "times the work", true},
     {"never_builds", "return debt < price;", "return true;", 50, 90, "times the work"},
@@ -144,106 +134,13 @@ const Submission kRefit[] = {
     "    *entry = fmax(fmax(fmin(x0, x1), fmin(y0, y1)), fmax(fmin(z0, z1), ray->t_min)) * 0.9999f;\n"           \
     "    return *entry <= 1.0001f * fmin(fmin(fmax(x0, x1), fmax(y0, y1)), fmin(fmax(z0, z1), hit->t));\n"       \
     "}\n"
-const Submission kWholeTraversal[] = {
+const std::vector<Submission> kWholeTraversal = {
     {"own_slabs", "#include \"ordered_visit.h\"\n", OWN_SLABS "#define rt_enter_box own_enter\n", 50, 50,
      "the host has counted 0 boxes, so it tests them by arithmetic of its own, or none: test each by rt_enter_box", true},
     {"own_slabs_that_are_reported", "#include \"ordered_visit.h\"\n",
      OWN_SLABS "#define rt_enter_box(box, ray, hit, entry) (RT_COUNT_BOXES(hit, 1), own_enter(box, ray, hit, entry))\n", 50, 50,
      "it tests boxes by arithmetic of its own: test each by rt_enter_box"},
 };
-
-bool is_quick() {
-    return std::getenv("CLARITY_QUICK_TESTS") != nullptr;
-}
-
-// The records of all submissions of a lab, which one run grades; in quick tests of some.
-std::map<std::string, json> grade(const std::string& folder, const std::string& file,
-                                  const std::vector<Submission>& submissions) {
-    const Scratch scratch;
-    const std::string lab = fs::path(folder).filename().string();
-    const auto text_in = [&](const char* part) {
-        std::ifstream in(folder + "/" + part + "/" + file);
-        return std::string(std::istreambuf_iterator<char>(in), {});
-    };
-    const std::string solution = text_in("reference"), starter = text_in("handout");
-    std::vector<std::string> words = {"lab", "grade", folder};
-    for (const Submission& one : submissions) {
-        std::string text = one.from == kStarter ? starter : solution;
-        if (*one.from && one.from != kStarter) {
-            const size_t at = text.find(one.from);
-            EXPECT_NE(at, std::string::npos) << one.name;
-            text.replace(at, std::string(one.from).size(), one.to);
-        }
-        const std::string hidden = folder + "/hidden/cases.json";
-        for (size_t at = text.find("HIDDEN"); at != std::string::npos; at = text.find("HIDDEN")) text.replace(at, 6, hidden);
-        if (lab == "median") {
-            text.replace(text.find("build(const rt_host*, "), 22, "build([[maybe_unused]] const rt_host* host, ");
-            text =
-                "#include <sys/socket.h>\n#include <unistd.h>\n#include <cstdio>\n#include <cstdlib>\n#include "
-                "<cstring>\n#include <functional>\n" +
-                text;
-        }
-        // Its other files are ours.
-        fs::create_directories(scratch.path(lab));
-        fs::copy(folder + "/reference", scratch.path(lab + "/" + one.name));
-        scratch.write(lab + "/" + one.name + "/" + file, text);
-        words.push_back(scratch.path(lab + "/" + one.name));
-    }
-    // These must not reach the build.
-    for (const Submission& one : submissions) {
-        scratch.write(lab + "/" + one.name + "/CMakeLists.txt", "message(FATAL_ERROR \"a student's CMake is run\")\n");
-        scratch.write(lab + "/" + one.name + "/rt_plugin.hpp", "#error a student's header is used\n");
-    }
-    const std::string work = std::string(CLARITY_BUILD_DIR) + "/tests/lab/work_" + lab;
-    words.insert(words.end(), {"-o", scratch.path("marks"), "--sdk", kSdk, "--work", work, "--counts-only", "--autolab"});
-    RunOptions options;
-    options.limit_s = 800;
-    const ProgramResult result = run_program(words, options);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    // Each line of stdout is the grader's own.
-    std::istringstream lines(result.out);
-    size_t count = 0;
-    for (std::string line; std::getline(lines, line); ++count)
-        EXPECT_NE(line.find("{\"scores\":{\"checks\":"), std::string::npos) << line;
-    EXPECT_EQ(count, submissions.size() + 1);
-    EXPECT_EQ(result.out.find("{\"scores\":{\"checks\":0.0,"), 0u) << "the first line has no points";
-    EXPECT_EQ(result.out.find("1000000000"), std::string::npos);
-    std::map<std::string, json> records;
-    for (const Submission& one : submissions)
-        records[one.name] = json::parse(scratch.read(std::string("marks/") + one.name + ".json"), nullptr, false);
-    return records;
-}
-
-template <size_t N>
-void expect_marks(const std::string& folder, const std::string& file, const Submission (&all)[N]) {
-    install_sdk();
-    std::vector<Submission> chosen;
-    for (const Submission& one : all)
-        if (one.quick || !is_quick()) chosen.push_back(one);
-    const auto records = grade(folder, file, chosen);
-    std::vector<std::string> secrets;
-    if (std::ifstream hidden(folder + "/hidden/cases.json"); hidden)
-        for (const json& one : json::parse(hidden)) secrets.push_back(one["seed"].dump());
-    for (const Submission& one : chosen) {
-        const json& record = records.at(one.name);
-        ASSERT_TRUE(record.is_object()) << one.name;
-        const double total = record["total"];
-        EXPECT_GE(total, one.least) << one.name << record.dump(1);
-        EXPECT_LE(total, one.most) << one.name << record.dump(1);
-        bool found = false;
-        for (const json& line : record["lines"]) {
-            const std::string text = line["found"];
-            found |= text.find(one.found) != std::string::npos;
-            if (line["hidden"] == true) {
-                EXPECT_EQ(text.find("probe"), std::string::npos) << "a hidden line quotes the submission";
-            }
-            for (const std::string& secret : secrets)
-                EXPECT_EQ(text.find(secret), std::string::npos) << one.name << " shows a hidden seed: " << text;
-        }
-        EXPECT_TRUE(found) << one.name << ": no line has '" << one.found << "'" << record.dump(1);
-    }
-    EXPECT_FALSE(fs::exists("/tmp/clarity-lab-probe"));
-}
 
 TEST(LabSubmissions, OfMedianSplit) {
     expect_marks(kLabs + "/median", "median.cpp", kMedian);

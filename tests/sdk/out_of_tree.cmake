@@ -71,10 +71,11 @@ endfunction()
 
 # Makes a plugin of each kind outside of the tree.
 file(MAKE_DIRECTORY ${mine})
-foreach(kind accel importer primitive)
+foreach(kind accel importer primitive surface)
   set(id_accel boxes)
   set(id_importer tri_text)
   set(id_primitive egg)
+  set(id_surface velvet)
   set(id ${id_${kind}})
   run("new ${kind}" told ${clarity} new-plugin ${kind} ${id} ${mine}/${id})
   string(FIND "${told}" "-DCMAKE_PREFIX_PATH='${prefix}'" at)
@@ -232,6 +233,19 @@ run("clarity check egg" said ${clarity} check ${mine}/egg --quick --lanes 4)
 if(NOT said MATCHES "ok  egg keys.text" OR NOT said MATCHES "ok  egg hits.placed")
   message(FATAL_ERROR "clarity check: ${said}")
 endif()
+
+run("clarity check velvet" said ${clarity} check ${mine}/velvet/build/velvet.so --quick)
+if(NOT said MATCHES "ok  velvet surface.density" OR NOT said MATCHES "ok  velvet surface.energy")
+  message(FATAL_ERROR "clarity check: ${said}")
+endif()
+set(ENV{CLARITY_PLUGIN_PATH} "${mine}/velvet/build")
+run("clarity plugins" json ${clarity} plugins --json)
+plugin_field("${json}" velvet keys keys)
+string(JSON key GET "${keys}" 0 key)
+string(JSON greatest GET "${keys}" 0 max)
+expect("the key of a new model of surfaces" "${key} ${greatest}" "edges 8.0")
+run("a picture with a new model of surfaces" ignored ${clarity} render ${mine}/velvet/try.scene --tracer path --spp 2 --size 64x48
+  -o ${root}/velvet.png)
 
 # The window.
 if(WINDOW_CHECK)

@@ -3,65 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
-#include "base/angle.hpp"
 #include "base/statistics.hpp"
 
 namespace clarity::check {
 namespace {
 
-constexpr int kUp = 20, kAround = 32, kCells = kUp * kAround;
-constexpr double kCellAngle = 2 * kPi / kCells;  // sr
-constexpr double kLeastExpected = 20;            // draws of a cell; others are put together
+constexpr size_t kFirstDraws = 20000;  // that decide on the cells
+constexpr double kMostOfCell = 160;    // of these, drawn or expected
+constexpr double kGreatestSide = 1.0 / 8;
+constexpr double kLeastExpected = 20;  // draws of a cell; others are put together
 
-void set_in_cell(int cell, double up, double around, float* w) {
-    set_direction((cell / kAround + up) / kUp, (cell % kAround + around) / kAround, w);
-}
-
-struct CellDensity {
-    double mean = 0, greatest = 0;
-};
-// By the middles of side x side parts of equal solid angle.
-std::vector<CellDensity> densities(SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo,
-                                   const std::vector<int>& cells, int side) {
-    std::vector<CellDensity> found(cells.size());
-    const int parts = side * side;
-    const size_t at_once = std::max(1, (1 << 18) / parts);  // 25 MB of queries and answers
-    for (size_t first = 0; first < cells.size(); first += at_once) {
-        const size_t end = std::min(first + at_once, cells.size());
-        std::vector<SurfaceQuery> queries((end - first) * size_t(parts));
-        for (size_t i = 0; i < queries.size(); ++i) {
-            const int part = int(i) % parts;
-            std::copy_n(wo, 3, queries[i].wo);
-            std::fill_n(queries[i].u, 3, 0.5f);
-            set_in_cell(cells[first + i / size_t(parts)], (part / side + 0.5) / side, (part % side + 0.5) / side,
-                        queries[i].wi);
-        }
-        const auto answers = probe.ask(subject, queries);
-        for (size_t i = 0; i < answers.size(); ++i) {
-            CellDensity& cell = found[first + i / size_t(parts)];
-            cell.mean += double(answers[i].density) / parts;
-            cell.greatest = std::max(cell.greatest, double(answers[i].density));
-        }
-    }
-    return found;
+Integrals density_of(const SurfaceQuery&, const SurfaceAnswer& answer) {
+    return {double(answer.density)};
 }
 
 }  // namespace
-
-void set_direction(double z, double turn, float* w) {
-    const double r = std::sqrt(std::max(0.0, 1 - z * z));
-    w[0] = float(r * std::cos(2 * kPi * turn));
-    w[1] = float(r * std::sin(2 * kPi * turn));
-    w[2] = float(z);
-}
-
-std::string direction_text(const float* w) {
-    char text[80];
-    std::snprintf(text, sizeof text, "(%.9g, %.9g, %.9g)", double(w[0]), double(w[1]), double(w[2]));
-    return text;
-}
 
 std::vector<SurfaceQuery> random_draws(const float* wo, size_t count, std::mt19937& random) {
     std::vector<SurfaceQuery> queries(count);
@@ -73,36 +30,67 @@ std::vector<SurfaceQuery> random_draws(const float* wo, size_t count, std::mt199
     return queries;
 }
 
-CellShares shares_of(SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-    std::vector<int> cells(kCells), uneven;
-    std::iota(cells.begin(), cells.end(), 0);
-    std::vector<CellDensity> found = densities(probe, subject, wo, cells, 8);
-    for (const int c : cells)
-        if (found[size_t(c)].greatest > 2 * found[size_t(c)].mean) uneven.push_back(c);
-    const auto fine = densities(probe, subject, wo, uneven, 64);
-    for (size_t i = 0; i < uneven.size(); ++i) found[size_t(uneven[i])] = fine[i];
-    CellShares shares;
-    for (const CellDensity& cell : found) {
-        shares.shares.push_back(cell.mean * kCellAngle);
-        shares.total += shares.shares.back();
-    }
-    return shares;
+std::vector<Hint> hints_of(const std::vector<SurfaceAnswer>& drawn) {
+    std::vector<Hint> hints;
+    for (const SurfaceAnswer& answer : drawn)
+        if (answer.drawn()) hints.push_back({place_of(answer.wi), double(answer.drawn_density)});
+    return hints;
 }
 
-Misfit misfit_of(const std::vector<SurfaceAnswer>& drawn, const CellShares& expected) {
-    std::vector<double> count(kCells);
-    double nothing = 0;
-    for (const SurfaceAnswer& answer : drawn) {
-        if (!answer.drawn()) {
-            ++nothing;
-            continue;
+DrawCells::DrawCells(SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo, std::mt19937& random) {
+    const auto hints = hints_of(probe.ask(subject, random_draws(wo, kFirstDraws, random)));
+    nodes_.emplace_back();
+    const auto split = [&](size_t n) {
+        nodes_[n].parts = int(nodes_.size());
+        for (int k = 0; k < 4; ++k) {
+            Node part;
+            part.cell = nodes_[n].cell.part(k);
+            nodes_.push_back(part);
         }
-        const double turn = std::atan2(answer.wi[1], answer.wi[0]) / (2 * kPi);
-        const int up = std::clamp(int(answer.wi[2] * kUp), 0, kUp - 1);
-        const int around = std::clamp(int((turn < 0 ? turn + 1 : turn) * kAround), 0, kAround - 1);
-        ++count[size_t(up * kAround + around)];
+    };
+    // Cells in which many were drawn. The parts of a cell are behind it.
+    std::vector<std::vector<Place>> places(1);
+    for (const Hint& hint : hints) places[0].push_back(hint.place);
+    for (size_t n = 0; n < nodes_.size(); ++n) {
+        const double side = nodes_[n].cell.side;
+        if (side <= 2 * kLeastSide || (side <= kGreatestSide && double(places[n].size()) <= kMostOfCell)) continue;
+        split(n);
+        places.resize(nodes_.size());
+        for (const Place& place : places[n]) places[size_t(nodes_[n].parts + nodes_[n].cell.part_of(place))].push_back(place);
+        places[n] = {};
     }
+    // And those in which many should be.
+    for (size_t first = 0; first < nodes_.size();) {
+        std::vector<size_t> fresh;
+        std::vector<SquareCell> cells;
+        for (; first < nodes_.size(); ++first)
+            if (nodes_[first].parts < 0) fresh.push_back(first), cells.push_back(nodes_[first].cell);
+        const auto shares = integrate(probe, subject, wo, cells, hints, density_of);
+        for (size_t i = 0; i < fresh.size(); ++i) {
+            nodes_[fresh[i]].share = shares[i][0];
+            if (shares[i][0] * double(kFirstDraws) > kMostOfCell && cells[i].side > 2 * kLeastSide) split(fresh[i]);
+        }
+    }
+    for (const Node& node : nodes_)
+        if (node.parts < 0) total_ += node.share;
+}
+
+size_t DrawCells::leaf_of(Place place) const {
+    size_t at = 0;
+    while (nodes_[at].parts >= 0) at = size_t(nodes_[at].parts + nodes_[at].cell.part_of(place));
+    return at;
+}
+
+Misfit DrawCells::misfit_of(const std::vector<SurfaceAnswer>& drawn) const {
+    std::vector<double> count(nodes_.size());
     const double draws = double(drawn.size());
+    // Draws without a direction are a count of their own: the density's integral leaves them.
+    double rest_count = 0, rest_expected = std::max(0.0, 1 - total_) * draws;
+    for (const SurfaceAnswer& answer : drawn)
+        if (answer.drawn())
+            ++count[leaf_of(place_of(answer.wi))];
+        else
+            ++rest_count;
     Misfit misfit;
     double chi_square = 0, degrees = -1, worst = 0;
     const auto add = [&](double found, double wanted, const std::string& where) {
@@ -115,18 +103,17 @@ Misfit misfit_of(const std::vector<SurfaceAnswer>& drawn, const CellShares& expe
         std::snprintf(text, sizeof text, " %.0f of %.0f draws, expected %.0f", found, draws, wanted);
         misfit.worst = where + text;
     };
-    // Draws without a direction are a count of their own: the density's integral leaves them.
-    double rest_count = nothing, rest_expected = std::max(0.0, 1 - expected.total) * draws;
-    for (int c = 0; c < kCells; ++c) {
-        const double wanted = expected.shares[size_t(c)] * draws;
+    for (size_t n = 0; n < nodes_.size(); ++n) {
+        if (nodes_[n].parts >= 0) continue;
+        const double wanted = nodes_[n].share * draws;
         if (wanted < kLeastExpected) {
-            rest_count += count[size_t(c)];
+            rest_count += count[n];
             rest_expected += wanted;
             continue;
         }
         float middle[3];
-        set_in_cell(c, 0.5, 0.5, middle);
-        add(count[size_t(c)], wanted, "near the direction " + direction_text(middle));
+        set_direction(nodes_[n].cell.middle(), middle);
+        add(count[n], wanted, "near the direction " + direction_text(middle));
     }
     if (rest_expected > kLeastExpected || rest_count > 3 * kLeastExpected)
         add(rest_count, std::max(rest_expected, 1.0), "without a direction, or where the density is low,");

@@ -4,29 +4,38 @@
 #include <string>
 #include <vector>
 
-#include "check/surfaces/surface_probe.hpp"
+#include "check/surfaces/hemisphere.hpp"
 
 namespace clarity::check {
 
-// A unit vector with a cosine of z to the normal. turn: around it, in turns.
-void set_direction(double z, double turn, float* w);
-std::string direction_text(const float* w);
 // Queries of random u for one wo. wi is the normal.
 std::vector<SurfaceQuery> random_draws(const float* wo, size_t count, std::mt19937& random);
-
-// The share of draws that each cell gets by the density. Cells have equal solid angles.
-struct CellShares {
-    std::vector<double> shares;
-    double total = 0;
-};
-// A lobe that is narrower than a part of a cell is integrated once more, with smaller parts; it may be as narrow as 0.002 rad.
-CellShares shares_of(SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo);
+// Where directions were drawn, and with which density.
+std::vector<Hint> hints_of(const std::vector<SurfaceAnswer>& drawn);
 
 // How far the counts of drawn directions are from the shares: beyond 4, the reason is not chance.
 struct Misfit {
     double sigmas = 0;
     std::string worst;  // "near the direction (0, 0, 1) 20 of 20000 draws, expected 312"
 };
-Misfit misfit_of(const std::vector<SurfaceAnswer>& drawn, const CellShares& expected);
+
+// Cells of about as many draws each, and their shares by the density. Draws of their own decide how small cells are: where many
+// come, or should come, they are small.
+class DrawCells {
+ public:
+    DrawCells(SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo, std::mt19937& random);
+    double total() const { return total_; }  // the density's integral
+    Misfit misfit_of(const std::vector<SurfaceAnswer>& drawn) const;
+
+ private:
+    struct Node {
+        SquareCell cell;
+        int parts = -1;  // the first of four
+        double share = 0;
+    };
+    size_t leaf_of(Place place) const;
+    std::vector<Node> nodes_;
+    double total_ = 0;
+};
 
 }  // namespace clarity::check

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/angle.hpp"
 #include "check/seed.hpp"
 #include "check/surfaces/directions.hpp"
+#include "check/surfaces/model_faults.hpp"
 
 namespace clarity::check {
 namespace {
@@ -50,21 +50,6 @@ Outcome failed(const SurfaceSubject& subject, const std::string& found) {
     return Outcome::failed(subject.what + ": " + found, ModelBench::to_see(subject));
 }
 
-std::string text_of(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", x);
-    return text;
-}
-std::string of_wo(const float* wo) {
-    return " for wo " + direction_text(wo);
-}
-std::string of_draw(const SurfaceQuery& query) {
-    return of_wo(query.wo) + " and u " + direction_text(query.u);
-}
-std::string of_pair(const SurfaceQuery& query) {
-    return of_wo(query.wo) + " and wi " + direction_text(query.wi);
-}
-
 // Calls try_one with each material of these colours and each wo. Returns the first failure, or how many were tried.
 template <size_t N>
 Outcome each(ModelBench& bench, const Step& step, const std::vector<std::array<float, 3>>& colors, const double (&cosines)[N],
@@ -88,22 +73,6 @@ Outcome compiles(ModelBench& bench, const Step& step) {
     return Outcome::passed("they need nothing but the contract of rt_surface.h");
 }
 
-// What of an answer is no number or negative; empty: nothing.
-std::string fault_of(const SurfaceQuery& query, const SurfaceAnswer& answer) {
-    const auto wrong = [](float x) { return !std::isfinite(x) || x < 0; };
-    const auto any_wrong = [&](const float* v) { return std::any_of(v, v + 3, wrong); };
-    if (any_wrong(answer.f)) return "eval is " + direction_text(answer.f) + of_pair(query);
-    if (wrong(answer.density)) return "pdf is " + text_of(double(answer.density)) + of_pair(query);
-    if (wrong(answer.pdf)) return "sample's pdf is " + text_of(double(answer.pdf)) + of_draw(query);
-    if (answer.pdf == 0) return {};
-    const double length = std::hypot(double(answer.wi[0]), double(answer.wi[1]), double(answer.wi[2]));
-    if (!(std::fabs(length - 1) < 1e-3))
-        return "sample draws " + direction_text(answer.wi) + ", which is no unit vector," + of_draw(query);
-    if (answer.drawn() && any_wrong(answer.weight))
-        return "sample's weight is " + direction_text(answer.weight) + of_draw(query);
-    return {};
-}
-
 Outcome finite(ModelBench& bench, const Step& step) {
     std::mt19937 random = bench.random(91);
     return each(bench, step, {kWhite, kBlack, kColor}, kGrazingCosines,
@@ -121,14 +90,10 @@ Outcome finite(ModelBench& bench, const Step& step) {
                     }
                     const auto answers = probe.ask(subject, queries);
                     for (size_t i = 0; i < answers.size(); ++i)
-                        if (const std::string fault = fault_of(queries[i], answers[i]); !fault.empty())
-                            return failed(subject, fault + "; expected finite numbers, and none below 0");
+                        if (const std::string fault = number_fault(queries[i], answers[i]); !fault.empty())
+                            return failed(subject, fault);
                     return Outcome::passed("");
                 });
-}
-
-bool near(double a, double b) {
-    return std::fabs(a - b) <= 1e-3 * std::max(std::fabs(a), std::fabs(b)) + 1e-6;
 }
 
 Outcome weights(ModelBench& bench, const Step& step) {
@@ -139,19 +104,9 @@ Outcome weights(ModelBench& bench, const Step& step) {
             const auto queries = random_draws(wo, bench.pairs(), random);
             const auto answers = probe.ask(subject, queries);
             for (size_t i = 0; i < answers.size(); ++i) {
-                const SurfaceAnswer& a = answers[i];
-                if (!a.drawn()) continue;
-                ++drawn;
-                const std::string where = of_draw(queries[i]) + ", which draws wi " + direction_text(a.wi);
-                if (!near(double(a.pdf), double(a.drawn_density)))
-                    return failed(subject, "sample's pdf is " + text_of(double(a.pdf)) + ", but pdf() says " +
-                                               text_of(double(a.drawn_density)) + where);
-                for (int k = 0; k < 3; ++k) {
-                    const double weight = double(a.weight[k]), wanted = double(a.drawn_f[k]) * double(a.wi[2]) / double(a.pdf);
-                    if (!near(weight, wanted))
-                        return failed(subject, "the weight of colour " + std::to_string(k) + " is " + text_of(weight) +
-                                                   ", but f cos / pdf is " + text_of(wanted) + where);
-                }
+                drawn += answers[i].drawn();
+                if (const std::string fault = weight_fault(queries[i], answers[i]); !fault.empty())
+                    return failed(subject, fault);
             }
             return Outcome::passed("");
         });
@@ -171,7 +126,7 @@ Outcome reciprocity(ModelBench& bench, const Step& step) {
         const auto forth = probe.ask(subject, there), reverse = probe.ask(subject, back);
         for (size_t i = 0; i < there.size(); ++i)
             for (int k = 0; k < 3; ++k)
-                if (!near(double(forth[i].f[k]), double(reverse[i].f[k])))
+                if (!nearly_equal(double(forth[i].f[k]), double(reverse[i].f[k])))
                     return failed(subject, "eval is " + direction_text(forth[i].f) + of_pair(there[i]) + ", but " +
                                                direction_text(reverse[i].f) + " with wo and wi in each other's place");
         return Outcome::passed("");
@@ -179,32 +134,25 @@ Outcome reciprocity(ModelBench& bench, const Step& step) {
 }
 
 Outcome total(ModelBench& bench, const Step& step) {
+    std::mt19937 random = bench.random(96);
     double greatest = 0;
     Outcome outcome =
         each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-            const double sum = shares_of(probe, subject, wo).total;
+            const double sum = DrawCells(probe, subject, wo, random).total();
             greatest = std::max(greatest, sum);
             if (sum <= 1.01) return Outcome::passed("");  // NaN fails; 1 % is for the integration
             return failed(subject,
-                          "the integral of pdf over the hemisphere is " + text_of(sum) + of_wo(wo) + ", expected at most 1");
+                          "the integral of pdf over the hemisphere is " + short_text(sum) + of_wo(wo) + ", expected at most 1");
         });
-    if (outcome.kind == Outcome::Kind::passed) outcome.found += "; the greatest integral is " + text_of(greatest);
+    if (outcome.kind == Outcome::Kind::passed) outcome.found += "; the greatest integral is " + short_text(greatest);
     return outcome;
 }
 
 Outcome density(ModelBench& bench, const Step& step) {
     std::mt19937 random = bench.random(94);
     return each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-        const CellShares shares = shares_of(probe, subject, wo);
-        Misfit misfit;
-        // By chance 4 sigma are passed in one of 30,000 cases; so numbers of their own must confirm it.
-        for (int again = 0; again < 2; ++again) {
-            misfit = misfit_of(probe.ask(subject, random_draws(wo, bench.draws(), random)), shares);
-            if (misfit.sigmas < 4) return Outcome::passed("");
-        }
-        return failed(subject, "the directions of sample do not have the density pdf" + of_wo(wo) + ": " + misfit.worst +
-                                   "; the chi-square of all cells is off by " + text_of(misfit.sigmas) +
-                                   " sigma, expected less than 4");
+        const std::string fault = density_fault(probe, subject, wo, bench.draws(), random);
+        return fault.empty() ? Outcome::passed("") : failed(subject, fault);
     });
 }
 
@@ -232,11 +180,11 @@ Outcome energy(ModelBench& bench, const Step& step) {
                     return Outcome::passed("");
                 }
             }
-            return failed(subject, "it sends back " + text_of(mean) +
-                                       " of the light (the mean weight, with a standard error of " + text_of(error) + ")" +
+            return failed(subject, "it sends back " + short_text(mean) +
+                                       " of the light (the mean weight, with a standard error of " + short_text(error) + ")" +
                                        of_wo(wo) + ", expected at most 1");
         });
-    if (outcome.kind == Outcome::Kind::passed) outcome.found += "; it sends back at most " + text_of(greatest);
+    if (outcome.kind == Outcome::Kind::passed) outcome.found += "; it sends back at most " + short_text(greatest);
     return outcome;
 }
 

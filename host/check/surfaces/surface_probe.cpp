@@ -21,27 +21,6 @@ std::string number_text(double x) {
     return text;
 }
 
-// choice: of each key, its least value (-1), its default or its greatest one (1).
-SurfaceSubject subject_of(const rt_plugin& plugin, const std::array<float, 3>& color, const std::vector<int>& choice) {
-    const rt_surface& surface = *rt_surface_of(&plugin);
-    SurfaceSubject subject;
-    subject.color = color;
-    subject.what = "`model " + std::string(plugin.id) + "  color";
-    for (const float c : color) subject.what += number_text(c);
-    std::vector<float> numbers;
-    for (rt_u32 i = 0; i < surface.key_count; ++i) {
-        const rt_surface_key& key = surface.keys[i];
-        subject.what += "  " + std::string(key.name);
-        for (int k = 0; k < (key.kind == RT_KEY_COLOR ? 3 : 1); ++k) {
-            numbers.push_back(float(choice[i] < 0 ? key.min : choice[i] > 0 ? key.max : key.def[k]));
-            subject.what += number_text(double(numbers.back()));
-        }
-    }
-    subject.what += "`";
-    subject.numbers = guarded_numbers(numbers.data(), numbers.size(), "numbers of the surface");
-    return subject;
-}
-
 std::string source_of(const rt_plugin& plugin, const Device& device) {
     SourceWriter out;
     out.define_int("RT_LANES", 1);
@@ -58,18 +37,48 @@ std::string source_of(const rt_plugin& plugin, const Device& device) {
 
 }  // namespace
 
+SurfaceSubject surface_subject(const rt_plugin& plugin, const std::array<float, 3>& color,
+                               const std::vector<std::array<double, 3>>& values) {
+    const rt_surface& surface = *rt_surface_of(&plugin);
+    SurfaceSubject subject;
+    subject.color = color;
+    subject.what = "`model " + std::string(plugin.id) + "  color";
+    for (const float c : color) subject.what += number_text(c);
+    std::vector<float> numbers;
+    for (rt_u32 i = 0; i < surface.key_count; ++i) {
+        subject.what += "  " + std::string(surface.keys[i].name);
+        for (size_t k = 0; k < (surface.keys[i].kind == RT_KEY_COLOR ? 3 : 1); ++k) {
+            numbers.push_back(float(values[i][k]));
+            subject.what += number_text(double(numbers.back()));
+        }
+    }
+    subject.what += "`";
+    subject.numbers = guarded_numbers(numbers.data(), numbers.size(), "numbers of the surface");
+    return subject;
+}
+
+std::vector<std::array<double, 3>> surface_defaults(const rt_plugin& plugin) {
+    const rt_surface& surface = *rt_surface_of(&plugin);
+    std::vector<std::array<double, 3>> values(surface.key_count);
+    for (rt_u32 i = 0; i < surface.key_count; ++i) std::copy_n(surface.keys[i].def, 3, values[i].begin());
+    return values;
+}
+
 std::vector<SurfaceSubject> surface_subjects(const rt_plugin& plugin, const std::array<float, 3>& color) {
-    const size_t keys = rt_surface_of(&plugin)->key_count;
-    std::vector<std::vector<int>> choices = {std::vector<int>(keys, 0), std::vector<int>(keys, -1), std::vector<int>(keys, 1)};
-    for (size_t i = 0; i < keys; ++i)
-        for (const int end : {-1, 1}) {
-            choices.emplace_back(keys, 0);
-            choices.back()[i] = end;
+    const rt_surface& surface = *rt_surface_of(&plugin);
+    const auto usual = surface_defaults(plugin);
+    auto least = usual, greatest = usual;
+    for (size_t i = 0; i < usual.size(); ++i) least[i].fill(surface.keys[i].min), greatest[i].fill(surface.keys[i].max);
+    std::vector<std::vector<std::array<double, 3>>> all = {usual, least, greatest};
+    for (size_t i = 0; i < usual.size(); ++i)
+        for (const auto& end : {least, greatest}) {
+            all.push_back(usual);
+            all.back()[i] = end[i];
         }
     std::vector<SurfaceSubject> subjects;
     std::set<std::string> known;
-    for (const std::vector<int>& choice : choices) {
-        SurfaceSubject subject = subject_of(plugin, color, choice);
+    for (const auto& values : all) {
+        SurfaceSubject subject = surface_subject(plugin, color, values);
         if (known.insert(subject.what).second) subjects.push_back(std::move(subject));
     }
     return subjects;

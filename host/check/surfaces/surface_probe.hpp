@@ -17,6 +17,10 @@ struct SurfaceSubject {
     std::array<float, 3> color{};
     std::shared_ptr<const GuardedBytes> numbers;
 };
+// values: of each key.
+SurfaceSubject surface_subject(const rt_plugin& plugin, const std::array<float, 3>& color,
+                               const std::vector<std::array<double, 3>>& values);
+std::vector<std::array<double, 3>> surface_defaults(const rt_plugin& plugin);
 // Materials of the color: with all keys at their defaults, each at its least and its greatest value, and all of them there.
 std::vector<SurfaceSubject> surface_subjects(const rt_plugin& plugin, const std::array<float, 3>& color);
 
