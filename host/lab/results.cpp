@@ -43,7 +43,9 @@ std::string marks_text(const Lab& lab, const Marks& marks) {
         if (!line.alone.empty() && line.points < line.most) text += "; alone: " + line.alone;
         text += "\n";
     }
-    std::snprintf(points, sizeof points, "%5.1f points  ", total_of(marks));
+    double most = 0;
+    for (const Line& line : marks.lines) most += line.most;
+    std::snprintf(points, sizeof points, "%5.1f of %.1f points  ", total_of(marks), tenths(most));
     return text + points + lab.title + "\n";
 }
 
