@@ -15,24 +15,24 @@ double rate(const BenchRecord& r) {
     return r.mtris_per_s > 0 ? r.mtris_per_s : r.mrays_per_s;
 }
 
-using Line = std::map<unsigned, const BenchRecord*>;  // by threads
+using Gains = std::map<unsigned, const BenchRecord*>;  // by threads
 
 // Over the fewest threads that it was measured with.
-double gain(const Line& line, unsigned threads) {
+double gain(const Gains& line, unsigned threads) {
     const auto at = line.find(threads);
     return at == line.end() ? 0 : rate(*at->second) / rate(*line.begin()->second);
 }
 
-double against(const Line& line, unsigned threads) {
+double against(const Gains& line, unsigned threads) {
     const auto at = line.find(threads);
     return at == line.end() ? 0 : at->second->speedup.ratio;
 }
 
 // Of lines that have one.
-double geometric_mean(const std::vector<const Line*>& lines, unsigned threads, double (*of)(const Line&, unsigned)) {
+double geometric_mean(const std::vector<const Gains*>& lines, unsigned threads, double (*of)(const Gains&, unsigned)) {
     double sum = 0;
     int count = 0;
-    for (const Line* line : lines)
+    for (const Gains* line : lines)
         if (const double value = of(*line, threads); value > 0) sum += std::log(value), ++count;
     return count ? std::exp(sum / count) : 0;
 }
@@ -41,7 +41,7 @@ double geometric_mean(const std::vector<const Line*>& lines, unsigned threads, d
 
 std::string threads_table(const BenchReport& report) {
     std::vector<std::string> order;
-    std::map<std::string, Line> lines;
+    std::map<std::string, Gains> lines;
     std::set<unsigned> counts;
     for (const BenchRecord& r : report.records) {
         if (r.status != RowStatus::ok || !r.baseline.empty() || r.threads == 0 || rate(r) <= 0) continue;
@@ -57,7 +57,7 @@ std::string threads_table(const BenchReport& report) {
     for (const unsigned count : counts) head.push_back("peer, " + std::to_string(count));
     TextTable table(head, 2);
     const auto add = [&](const std::string& name, const std::string& structure, double first,
-                         const std::vector<const Line*>& of) {
+                         const std::vector<const Gains*>& of) {
         std::vector<std::string> cells = {name, structure, short_number(first)};
         for (const unsigned count : counts)
             if (count != *counts.begin()) cells.push_back(short_number(geometric_mean(of, count, gain)));
@@ -65,9 +65,9 @@ std::string threads_table(const BenchReport& report) {
         table.add(cells);
     };
     std::vector<std::string> means;  // "primary\nbvh8", in the order of their first rows
-    std::map<std::string, std::vector<const Line*>> of_mean;
+    std::map<std::string, std::vector<const Gains*>> of_mean;
     for (const std::string& key : order) {
-        const Line& line = lines[key];
+        const Gains& line = lines[key];
         const BenchRecord& r = *line.begin()->second;
         if (line.size() < 2) continue;
         add(r.case_name, r.variant, line.begin()->first == *counts.begin() ? rate(r) : 0, {&line});
