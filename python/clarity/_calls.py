@@ -23,21 +23,26 @@ def check(code):
 
 
 class _Bar:
-    """progress=True: a line on stderr, if that is a terminal."""
+    """progress=True: a line on stderr, if that is a terminal or a notebook, which is none, but begins a line anew as terminals do."""
 
     def __init__(self):
-        self._shown = sys.stderr is not None and sys.stderr.isatty()
+        stream = sys.stderr
+        self._shown = stream is not None and (stream.isatty() or type(stream).__module__.startswith("ipykernel."))
+        self._width = 0
 
     def __call__(self, stage, fraction):
         if self._shown:
-            share = f" {100 * fraction:3.0f} %" if fraction is not None else ""
-            sys.stderr.write(f"\r\033[K{stage}{share}")
-            sys.stderr.flush()
+            line = stage + (f" {100 * fraction:3.0f} %" if fraction is not None else "")
+            self._write("\r" + line.ljust(self._width))
+            self._width = len(line)
 
     def end(self):
         if self._shown:
-            sys.stderr.write("\r\033[K")
-            sys.stderr.flush()
+            self._write("\r" + " " * self._width + "\r")
+
+    def _write(self, text):
+        sys.stderr.write(text)
+        sys.stderr.flush()
 
 
 class _Watch:

@@ -1,5 +1,7 @@
 """The Python package, against the command line: hits and pictures have to be the same bits."""
+import contextlib
 import gc
+import io
 import os
 import sys
 import tracemalloc
@@ -358,6 +360,24 @@ class Scenes(Case):
             scene.on(accel="bvh2", progress=lambda stage, fraction: False)
         with self.assertRaises(ZeroDivisionError):
             scene.on(accel="bvh2", progress=lambda stage, fraction: 1 / 0)
+
+    def test_show_their_progress_in_terminals_and_notebooks_alone(self):
+        class Terminal(io.StringIO):
+            def isatty(self):
+                return True
+
+        class Notebook(io.StringIO):
+            pass
+
+        Notebook.__module__ = "ipykernel.iostream"  # as of notebooks' own
+        scene = clarity.Scene(self.vertices, self.faces)
+        for stream, shown in ((Terminal(), True), (Notebook(), True), (io.StringIO(), False)):
+            with self.subTest(stream=stream), contextlib.redirect_stderr(stream):
+                scene.on(accel="bvh2", progress=True)
+                written = stream.getvalue()
+                self.assertEqual("\rbuilding bvh2" in written, shown)
+                self.assertTrue(not shown or written.endswith(" \r"), written)
+                self.assertEqual(written.strip("\r ").count("\n"), 0)
 
     def test_lend_arrays_and_free_them(self):
         rt = clarity.Scene(self.vertices.copy(), self.faces.astype(np.uint32)).on(accel="bvh2")

@@ -174,13 +174,9 @@ void test_kept(const clarity_scene* scene, const char* lanes) {
         origins[3 * i + 1] = (float)(i % 77) / 77;
         origins[3 * i + 2] = 4 + (float)(i % 5);
     }
-    clarity_rays query = {0};
-    query.struct_bytes = sizeof query;
+    clarity_rays query = one_ray(origins, direction);
     query.count = COUNT;
-    query.origins = origins;
-    query.directions = direction;
     query.origin_steps[0] = 3 * sizeof(float);
-    query.origin_steps[1] = query.direction_steps[1] = sizeof(float);
     for (int32_t brief = 0; brief < 2; ++brief) {
         clarity_kept* kept = NULL;
         void *of_t = NULL, *of_prim = NULL, *of_uv = NULL, *of_instance = NULL, *again = NULL;
