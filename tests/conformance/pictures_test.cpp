@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "conformance/compare.hpp"
 #include "conformance/degenerate.hpp"
@@ -25,7 +26,7 @@ class Case {
     Case(ScenePtr scene, const std::string& camera) : Case(scene, make_view(*scene, 4.0f / 3, camera)) {}
     Case(ScenePtr scene, const View& view) : scene_(geometry_of(scene)), view_(view), oracle_(scene_) {}
 
-    // Compares the AOVs of one configuration with the oracle.
+    // Compares the AOVs of one configuration with the oracle, and its distances, bit for bit, with the first of this size.
     Comparison picture(const Configuration& configuration, int width, int height, bool with_prims) {
         Settings settings = make_settings({{"aov", "t"}});
         configuration.apply(settings);
@@ -33,6 +34,12 @@ class Case {
         settings.height = height;
         look(width, height);
         const FloatImage t = bench().values(scene_, settings, view_);
+        if (first_.pixels.size() != t.pixels.size()) {
+            first_ = t;
+            first_of_ = configuration.text();
+        } else if (!hostile_) {
+            EXPECT_EQ(other_bits(first_, t), 0u) << configuration.text() << " against " << first_of_;
+        }
         FloatImage prims;
         if (with_prims) {
             settings.aov = "prim";
@@ -62,6 +69,11 @@ class Case {
     }
 
  private:
+    static size_t other_bits(const FloatImage& a, const FloatImage& b) {
+        size_t count = 0;
+        for (size_t i = 0; i < a.pixels.size(); ++i) count += std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(float)) != 0;
+        return count;
+    }
     void look(int width, int height) {
         if (width_ == width && height_ == height) return;
         width_ = width;
@@ -82,6 +94,8 @@ class Case {
     View view_;
     Oracle oracle_;
     bool hostile_ = false;
+    FloatImage first_;
+    std::string first_of_;
     int width_ = 0, height_ = 0;
     std::vector<Truth> truth_;
     std::vector<Ray> rays_;
