@@ -174,6 +174,23 @@ TEST_F(BenchCommand, TimesAreOfProcessorsIfAskedFor) {
     EXPECT_NE(result.out.find("times by processors"), std::string::npos) << result.out;
 }
 
+TEST_F(BenchCommand, RunsOnceWithEachNumberOfThreads) {
+    const ProgramResult result = quick({file("tetrahedron.obj"), "--device", "cpu", "--accel", "bvh2", "--no-peers", "--only",
+                                        "/primary", "--threads", "1,2", "--json", file("a.json")});
+    if (result.err.find("name no more") != std::string::npos) GTEST_SKIP() << "NOT TESTED: " << result.err;
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json list = records("a.json");
+    ASSERT_EQ(list.size(), 2u);
+    for (unsigned i = 0; i < 2; ++i) {
+        EXPECT_EQ(list[i]["threads"], i + 1);
+        EXPECT_EQ(list[i]["run"]["host_threads"], i + 1) << list[i].dump();
+    }
+    EXPECT_NE(result.out.find("x by 2"), std::string::npos) << result.out;
+    const ProgramResult many = quick({file("tetrahedron.obj"), "--threads", "1024"});
+    EXPECT_EQ(many.exit_code, 2);
+    EXPECT_NE(many.err.find("--threads 1024: this process may use"), std::string::npos) << many.err;
+}
+
 TEST_F(BenchCommand, UnsteadyRowsAreRefusedWithAMessage) {
     const ProgramResult result = bench({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--size", "64x48",
                                         "--time-limit", "60", "--max-spread", "0", "--json", file("a.json")});

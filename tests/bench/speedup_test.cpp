@@ -189,4 +189,25 @@ TEST(Speedup, FramesOfVariantsThenAndNowMayBeAboutTheSame) {
     EXPECT_EQ(table.find("1.23"), std::string::npos) << table;
 }
 
+// A case that was measured with 1 and 4 threads: its rate with one, how many times as fast with four, and the peer's ratios.
+TEST(ThreadsTable, ShowsWhatRowsGain) {
+    BenchReport report;
+    for (const unsigned threads : {1u, 4u}) {
+        for (const char* scene : {"a", "b"}) {
+            BenchRecord r = row(scene, "primary", "bvh2", "", threads == 1 ? 10 : scene[0] == 'a' ? 20 : 45);
+            r.threads = threads;
+            r.speedup.baseline = "embree single high";
+            r.speedup.ratio = threads == 1 ? 1.5 : 1.25;
+            report.records.push_back(r);
+        }
+    }
+    const std::string table = threads_table(report);
+    for (const char* text :
+         {"M/s with 1", "x by 4", "peer, 4", "10.0", "2.00", "4.50", "1.25", "GEOMETRIC MEAN, primary", "3.00"})
+        EXPECT_NE(table.find(text), std::string::npos) << text << "\n" << table;
+    EXPECT_NE(bench_table(report).find(table), std::string::npos);
+    report.records.resize(2);
+    EXPECT_EQ(threads_table(report), "");
+}
+
 }  // namespace

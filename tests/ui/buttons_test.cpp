@@ -51,6 +51,24 @@ TEST_F(Buttons, UndoAndRedo) {
     EXPECT_TRUE(reaches(*window, "depth", 1));
 }
 
+// Parts of the light of `path` have a button for each value; another press of the same button changes nothing.
+TEST_F(Buttons, ShowPartsOfTheLightOfPaths) {
+    const auto window = open_scene(source_path("scenes/primitives.scene"), "320x800");
+    ASSERT_EQ(window->command("set tracer path"), "");
+    window->settle();
+    const struct {
+        const char *label, *word;
+    } presses[] = {{"found", "--only-by bsdf"},
+                   {"found", "--only-by bsdf"},
+                   {"glossy", "--only-first glossy"},
+                   {"seen", "--only-bounce 0"}};
+    for (const auto& press : presses) {
+        window->click_on(press.label);
+        window->settle();
+        EXPECT_NE(desired(*window).find(press.word), std::string::npos) << press.label << ": " << desired(*window);
+    }
+}
+
 // Files are opened by their path and by a click on their name.
 TEST_F(Buttons, TheBrowserOpensFiles) {
     const TemporaryFolder folder;
