@@ -1,5 +1,6 @@
 #include "base/parallel_for.hpp"
 
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -46,7 +47,7 @@ void each_index(uint32_t count, const Body& body) {
         for (uint32_t i; (i = next++) < count;) body(i);
     };
     std::vector<std::thread> threads;
-    const uint32_t others = std::min(std::max(std::thread::hardware_concurrency(), 1u), count) - 1;
+    const uint32_t others = std::min(loop_threads(), count) - 1;
     for (uint32_t t = 0; !is_inside && t < others; ++t) threads.emplace_back(work);
     const bool was_inside = is_inside;
     work();
@@ -63,6 +64,10 @@ void each_index(uint32_t count, const Body& body) {
 #endif
 
 }  // namespace
+
+unsigned loop_threads() {
+    return static_cast<unsigned>(std::max(tbb::info::default_concurrency(), 1));
+}
 
 void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body) {
     if (count == 0) return;

@@ -10,4 +10,7 @@ namespace clarity {
 // then be skipped.
 void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body);
 
+// How many threads such a loop takes: as many as this process may use processors.
+unsigned loop_threads();
+
 }  // namespace clarity

@@ -1,6 +1,5 @@
 #include "bench/cases/case_run.hpp"
-
-#include <thread>
+#include "base/parallel_for.hpp"
 
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/baseline_entries.hpp"
@@ -45,7 +44,7 @@ class CaseRunner : CaseRun {
         row.accel = settings.accel;
         row.accel_params = parameters_text(plugin, settings.accel_params);
         if (definition.measure == "build") {
-            describe_host(row, std::thread::hardware_concurrency());
+            describe_host(row, loop_threads());
             add_build(entry, [=, &plugin] {
                 return build_accel(*fixture.scene(), plugin, settings.accel_params, progress, fixture.target_of(plugin));
             });

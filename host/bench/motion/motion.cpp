@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <thread>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
@@ -75,7 +74,7 @@ class MotionCase : CaseRun {
         row.accel = settings.accel;
         row.accel_params = parameters_text(plugin, settings.accel_params);
         if (!variant.on_device && (definition.measure == "refit" || definition.measure == "rebuild"))
-            describe_host(row, std::thread::hardware_concurrency());
+            describe_host(row, loop_threads());
         else
             describe(row, fixture.device(0));
         if (definition.measure == "frame")

@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
-#include <thread>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/parallel_for.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/case_run.hpp"
 #include "bench/cases/entry.hpp"
@@ -210,7 +210,7 @@ BenchReport run_bench(const PluginRegistry& plugins, const BenchRequest& request
     run.version = CLARITY_VERSION;
     run.date = utc_date();
     run.host_cpu = host_cpu_name();
-    run.host_threads = std::thread::hardware_concurrency();
+    run.host_threads = loop_threads();
     run.governor = clock_governor();
     run.clock_mhz_before = host_clock_mhz();
     run.load_before = load_average();
