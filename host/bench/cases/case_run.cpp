@@ -1,6 +1,6 @@
 #include "bench/cases/case_run.hpp"
-#include "base/parallel_for.hpp"
 
+#include "base/parallel_for.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/baseline_entries.hpp"
 #include "bench/cases/light.hpp"
