@@ -58,10 +58,8 @@ TEST_F(Buttons, ShowPartsOfTheLightOfPaths) {
     window->settle();
     const struct {
         const char *label, *word;
-    } presses[] = {{"found", "--only-by bsdf"},
-                   {"found", "--only-by bsdf"},
-                   {"glossy", "--only-first glossy"},
-                   {"seen", "--only-bounce 0"}};
+    } presses[] = {
+        {"found", "only_by=bsdf"}, {"found", "only_by=bsdf"}, {"glossy", "only_first=glossy"}, {"seen", "only_bounce=0"}};
     for (const auto& press : presses) {
         window->click_on(press.label);
         window->settle();
