@@ -1,5 +1,5 @@
 // Random actions on a window for a while: no crash, memory flat, the right picture at rest, no process left, a quick end.
-// CLARITY_SOAK_MINUTES (2) says how long, CLARITY_SOAK_SEED (1) which actions.
+// CLARITY_SOAK_MINUTES (1) says how long, CLARITY_SOAK_SEED (1) which actions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -136,7 +136,7 @@ class Soak : public WindowTest {
 };
 
 TEST_F(Soak, RandomActionsLeaveTheWindowSound) {
-    const double seconds = 60 * number_from("CLARITY_SOAK_MINUTES", 2);
+    const double seconds = 60 * number_from("CLARITY_SOAK_MINUTES", 1);
     const std::string mark = "CLARITY_SOAK_MARK=" + folder.path();
     const std::vector<std::string> start = {"accel bvh2",         "set lanes 1",     "set size 64x48",   "set depth 3",
                                             "set aov color",      "set tracer auto", "set strategy mis", "set sampler sobol",
