@@ -299,7 +299,7 @@ typedef struct rt_hit {
 #define RT_ANSWER_OCCLUSION 1u
 #define RT_ANSWER_NEAREST 2u
 #define RT_ANSWER_HIT 4u
-#define RT_ANSWER_ALL 8u
+#define RT_ANSWER_PLACED 5u
 #define RT_LIST_FIELDS 5u /* of a place in a list of all hits: t, u, v, prim, instance */
 
 /* One ray of the tree of rays that give a pixel its colour. 96 B. */

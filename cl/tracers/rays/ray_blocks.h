@@ -16,8 +16,6 @@
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
 
-#define RT_ANSWER_PLACED 5u
-
 /* t_max of a block; negative in inactive lanes. */
 RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
 {

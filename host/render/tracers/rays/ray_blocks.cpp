@@ -67,7 +67,7 @@ void unpack_hits(const float* answers, size_t ray_count, size_t stride, rt_u32 f
             hit = {answers[i], 0, 0, -1, -1, 0, 0, 0};
             if (fields >= RT_ANSWER_NEAREST) read_number(answers + stride + i, hit.prim);
             if (fields >= RT_ANSWER_HIT) hit.u = answers[2 * stride + 2 * i], hit.v = answers[2 * stride + 2 * i + 1];
-            if (fields >= kAnswerPlaced) read_number(answers + 4 * stride + i, hit.instance);
+            if (fields >= RT_ANSWER_PLACED) read_number(answers + 4 * stride + i, hit.instance);
             if (fields < kAnswerCounted) continue;
             read_number(answers + 5 * stride + i, hit.steps);
             read_number(answers + 6 * stride + i, hit.leaf_tests);

@@ -45,8 +45,8 @@ class RayBlocks {
     std::vector<float> floats_;
 };
 
-// Numbers of an answer, beside RT_ANSWER_*: with the instance; with counters too, those of an rt_hit and a RayWork.
-constexpr rt_u32 kAnswerPlaced = 5, kAnswerCounted = 12;
+// Numbers of an answer, beside RT_ANSWER_*: with counters, those of an rt_hit and a RayWork.
+constexpr rt_u32 kAnswerCounted = 12;
 // How far the arrays of answers lie apart: they begin at cache lines, and have room for the last block of any number of lanes.
 inline size_t answer_stride(size_t ray_count) {
     return (ray_count + 63) / 64 * 64;

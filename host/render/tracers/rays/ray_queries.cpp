@@ -42,7 +42,7 @@ cl_uint RayQueries::answer_fields(const Prepared& prepared, const RayQuery& quer
            : query.any_hit                           ? RT_ANSWER_OCCLUSION
            : query.brief                             ? RT_ANSWER_NEAREST
            : prepared.accel->scene.instances.empty() ? RT_ANSWER_HIT
-                                                     : kAnswerPlaced;
+                                                     : RT_ANSWER_PLACED;
 }
 
 TraceProgram& RayQueries::program_of(const Prepared& prepared, uint64_t number, const KernelRow& row, Progress& progress) {

@@ -100,7 +100,7 @@ TEST(RayBlocks, AnswersAreArraysOneAfterTheOther) {
             put(4, i, rt_i32(i % 5) - 1);
             for (const rt_u32 k : {5u, 6u, 7u, 8u, 9u, 10u, 11u}) put(k, i, k * n);
         }
-        const auto counted = unpacked(answers, count, kAnswerCounted), placed = unpacked(answers, count, kAnswerPlaced),
+        const auto counted = unpacked(answers, count, kAnswerCounted), placed = unpacked(answers, count, RT_ANSWER_PLACED),
                    plain = unpacked(answers, count, RT_ANSWER_HIT), nearest = unpacked(answers, count, RT_ANSWER_NEAREST),
                    occlusion = unpacked(answers, count, RT_ANSWER_OCCLUSION);
         const std::vector<RayWork> work = unpack_work(answers.data(), count, stride);
