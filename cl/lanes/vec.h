@@ -69,6 +69,13 @@ RT_INLINE void rt_store_lanes(rt_vec v, float w, float4 *out)
     for (uint l = 0; l < RT_LANES; ++l) out[l] = (float4)(x[l], y[l], z[l], w);
 }
 #endif
+/* The vector of which rt_store_lanes() has stored x, y and z. */
+RT_INLINE rt_vec rt_load_lanes(const float4 *in)
+{
+    float x[RT_LANES], y[RT_LANES], z[RT_LANES];
+    for (uint l = 0; l < RT_LANES; ++l) x[l] = in[l].x, y[l] = in[l].y, z[l] = in[l].z;
+    return rt_vec_of(rt_load(x), rt_load(y), rt_load(z));
+}
 RT_INLINE vfloat rt_largest(rt_vec a) { return rt_max(a.x, rt_max(a.y, a.z)); }
 
 #endif
