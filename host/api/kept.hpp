@@ -16,7 +16,7 @@ struct KeepingDevice {
     ~KeepingDevice();
     const std::shared_ptr<HostCopies> copies;
     std::mutex calls;                     // one at a time
-    std::atomic<uint64_t> kept_bytes{0};  // of hits on a device whose memory is not the host's
+    std::atomic<uint64_t> kept_bytes{0};  // of hits on a device that has memory of its own
     // The last buffer that was given back: to make one takes a GPU as long as to trace a million rays.
     cl::Buffer take_spare(size_t bytes);
     void give_spare(cl::Buffer buffer);

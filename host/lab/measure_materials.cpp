@@ -130,7 +130,7 @@ std::string color_text(const double* color) {
     return text;
 }
 
-// What is wrong with draws, whose mean should be `truth`.
+// What is wrong with draws. Their mean should be `truth`.
 std::string fault_of(SurfaceProbe& probe, const SurfaceSubject& subject, const View& view, const Brought& own,
                      const double* truth, size_t draws, std::mt19937& random) {
     for (size_t k = 0; k < 3; ++k)

@@ -5,7 +5,7 @@
 
 namespace clarity::lab {
 
-// What a builder of trees did for all poses of a case, whose pose k is the mesh k.
+// What a builder of trees did for all poses of a case. Pose k is the mesh k.
 struct MotionCosts {
     double nodes = 0;   // of all trees; each got a box for its pose
     double fresh = 0;   // of these, those that the tree of the pose before does not have

@@ -78,8 +78,7 @@ std::string threads_table(const BenchReport& report) {
     for (const std::string& mean : means)
         add("GEOMETRIC MEAN, " + mean.substr(0, mean.find('\n')), mean.substr(mean.find('\n') + 1), 0, of_mean[mean]);
     return "threads: million rays (builds: triangles) a second with the fewest, p50; how many times as fast with more; and "
-           "times the "
-           "fastest peer with as many\n" +
+           "times the fastest peer with as many\n" +
            table.text(30) + "\n";
 }
 

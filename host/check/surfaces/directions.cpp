@@ -18,6 +18,14 @@ Integrals density_of(const SurfaceQuery&, const SurfaceAnswer& answer) {
     return {double(answer.density)};
 }
 
+// Where directions were drawn, and with which density.
+std::vector<Hint> hints_of(const std::vector<SurfaceAnswer>& drawn) {
+    std::vector<Hint> hints;
+    for (const SurfaceAnswer& answer : drawn)
+        if (answer.drawn()) hints.push_back({place_of(answer.wi), double(answer.drawn_density)});
+    return hints;
+}
+
 }  // namespace
 
 std::vector<SurfaceQuery> random_draws(const float* wo, size_t count, std::mt19937& random) {
@@ -28,13 +36,6 @@ std::vector<SurfaceQuery> random_draws(const float* wo, size_t count, std::mt199
         for (float& u : query.u) u = float(random() >> 8) * 0x1p-24f;
     }
     return queries;
-}
-
-std::vector<Hint> hints_of(const std::vector<SurfaceAnswer>& drawn) {
-    std::vector<Hint> hints;
-    for (const SurfaceAnswer& answer : drawn)
-        if (answer.drawn()) hints.push_back({place_of(answer.wi), double(answer.drawn_density)});
-    return hints;
 }
 
 DrawCells::DrawCells(SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo, std::mt19937& random) {

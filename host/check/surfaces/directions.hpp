@@ -10,8 +10,6 @@ namespace clarity::check {
 
 // Queries of random u for one wo. wi is the normal.
 std::vector<SurfaceQuery> random_draws(const float* wo, size_t count, std::mt19937& random);
-// Where directions were drawn, and with which density.
-std::vector<Hint> hints_of(const std::vector<SurfaceAnswer>& drawn);
 
 // How far the counts of drawn directions are from the shares: beyond 4, the reason is not chance.
 struct Misfit {

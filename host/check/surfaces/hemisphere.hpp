@@ -14,8 +14,8 @@ namespace clarity::check {
 void set_direction(double z, double turn, float* w);
 std::string direction_text(const float* w);
 
-// A place of the unit square, by the concentric map (Shirley, Chiu 1997, A Low Distortion Map Between Disk and Square) onto the
-// disk whose radius is the root of 1 - z.
+// A place of the unit square. The concentric map (Shirley, Chiu 1997, A Low Distortion Map Between Disk and Square) takes it
+// onto a disk, where a direction lies at a distance of sqrt(1 - z) from the middle.
 struct Place {
     double x = 0, y = 0;
 };
@@ -25,7 +25,7 @@ Place place_of(const float* w);
 struct SquareCell {
     double x = 0, y = 0, side = 1;
     Place middle() const { return {x + side / 2, y + side / 2}; }
-    // number: 0 to 3, by place_in().
+    // number: 0 to 3, as part_of() says.
     SquareCell part(int number) const;
     int part_of(Place place) const { return (place.x >= x + side / 2 ? 1 : 0) + (place.y >= y + side / 2 ? 2 : 0); }
 };

@@ -25,8 +25,8 @@ int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* h
 // no network and no other programs from its first instruction on. For graders.
 struct ClosedBuilder {
     std::string library, id, layout;  // id and layout: what the library must be; what it says of itself is not asked
-    std::string
-        table;  // a library that is trusted, whose slots and kernels count; "": `library` builds topologies for `layout`
+    // A library that is trusted: its slots and kernels count. "": `library` builds topologies for `layout`.
+    std::string table;
     double limit_s = 10;  // processor time of a build
     uint64_t memory_bytes = uint64_t(1) << 30;
     template <class Parcel, class Self>

@@ -1,5 +1,5 @@
 /* my_surface.cl -- Minnaert's surface (1941, The Reciprocity Principle in Lunar Photometry): the cosines of both directions have the
- * exponent k - 1. One ray at a time; directions are unit vectors away from the surface, whose normal is z. numbers: those of the keys. */
+ * exponent k - 1. One ray at a time; directions are unit vectors away from the surface, and z is its normal. numbers: those of the keys. */
 
 /* f, without a cosine: the same if wo and wi change places. */
 RT_INLINE float3 my_surface_eval(const global float *numbers, float3 color, float3 wo, float3 wi)
