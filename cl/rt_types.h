@@ -148,7 +148,9 @@ typedef struct rt_emitter {
 #ifndef RT_LIGHTS
 #define RT_LIGHTS RT_LIGHTS_ALL
 #endif
-#ifndef RT_LOBES
+#ifdef RT_LOBES
+#define RT_KNOWS_LOBES /* the host has said which: a program of paths */
+#else
 #define RT_LOBES RT_LOBES_ALL
 #endif
 #define RT_MAY_SHINE(kinds) ((RT_LIGHTS & (kinds)) != 0u) /* whether the scene has one of them */

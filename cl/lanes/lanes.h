@@ -35,6 +35,12 @@
 #else
 #define RT_PART RT_INLINE
 #endif
+/* A traversal is such a part of paths. Other programs do little else than trace, and hold it themselves. */
+#ifdef RT_KNOWS_LOBES
+#define RT_TRAVERSAL RT_PART
+#else
+#define RT_TRAVERSAL RT_INLINE
+#endif
 #define RT_CAT_(a, b) a##b
 #define RT_CAT(a, b) RT_CAT_(a, b)
 

@@ -13,7 +13,7 @@
     }
 #endif
 
-RT_PART void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *ray, rt_hits *hit)
+RT_TRAVERSAL void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_HAS_PLANES
     RT_FN(rt_hit_planes)(ctx, frame->plane_count, ray, hit);
