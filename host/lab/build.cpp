@@ -142,9 +142,10 @@ Sandbox find_sandbox() {
 const char* sandbox_text(Sandbox sandbox) {
     switch (sandbox) {
         case Sandbox::bubblewrap:
-            return "bubblewrap: compilers see only the system, the SDK and this submission";
+            return "bubblewrap: compilers see only the system, themselves, the SDK and this submission";
         case Sandbox::worker:
-            return "a worker's limits (Landlock, seccomp): compilers read only the system, the SDK and this submission";
+            return "a worker's limits (Landlock, seccomp): compilers read only the system, themselves, the SDK and this "
+                   "submission";
         default:
             return "resource limits alone: neither bubblewrap nor Landlock works here, so a submission may name files of the "
                    "teacher's in #include, and what the compiler says of them is left out";

@@ -182,7 +182,7 @@ BuildTools find_build_tools(const std::string& sdk, const std::vector<std::strin
     tools.make = find_program({"make", "gmake", "ninja"}, "make", "make");
     tools.generator = fs::path(tools.make).filename() == "ninja" ? "Ninja" : "Unix Makefiles";
     opened.open_program(tools.make);
-    opened.open_prefix(real(sdk));
+    for (const char* name : {"include/clarity", "lib", "lib64"}) opened.open(real(sdk) / name);
     for (const std::string& folder : more) {
         if (real(folder).empty()) throw Error(Exit::usage, "--tools " + folder + ": there is no such folder");
         opened.open(real(folder));

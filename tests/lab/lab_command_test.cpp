@@ -215,19 +215,18 @@ TEST(Lab, ToolsAreFoundWhereverTheyAre) {
     const auto graded = [&](const std::string& first, const std::vector<std::string>& more = {}) {
         RunOptions options;
         options.environment["PATH"] = (first.empty() ? "" : scratch.path(first) + ":") + path;
-        std::vector<std::string> words = {"lab",         "grade", kLabs + "/median", kLabs + "/median/reference",
-                                          "--sdk",       kSdk,    "--counts-only",   "--only",
-                                          "builds.sound"};
+        std::vector<std::string> words = {"lab", "grade", kLabs + "/median", scratch.path("nothing"), "--sdk", kSdk};
         words.insert(words.end(), more.begin(), more.end());
         const ProgramResult result = run_program(words, options);
         return result.out + result.err;
     };
+    // Nothing was handed in, and this is told behind the build of the reference solution.
+    const std::string built = "median.cpp is not there";
     const auto program = [&](const std::string& name, const std::string& text) {
         fs::permissions(scratch.write(name, "#!/bin/sh\n" + text + "\n"), fs::perms::owner_all);
     };
     program("without/bwrap", "exit 1");
-    for (const char* first : {"", "without"})
-        EXPECT_NE(graded(first).find("10.0 of 10.0 points"), std::string::npos) << graded(first);
+    for (const char* first : {"", "without"}) EXPECT_NE(graded(first).find(built), std::string::npos) << graded(first);
     // A compiler that runs a program of a folder of which it says nothing.
     program("else/compiler", "exec " + fs::canonical(scratch.path("links/c++")).string() + " \"$@\"");
     program("odd/c++", "test \"$1\" = -E -o \"$1\" = -print-search-dirs || exec " + scratch.path("else/compiler") + " \"$@\"");
@@ -236,7 +235,7 @@ TEST(Lab, ToolsAreFoundWhereverTheyAre) {
         << said;
     EXPECT_NE(said.find("name others that it needs by --tools"), std::string::npos) << said;
     const std::string named = graded("odd", {"--tools", scratch.path("else")});
-    EXPECT_NE(named.find("10.0 of 10.0 points"), std::string::npos) << named;
+    EXPECT_NE(named.find(built), std::string::npos) << named;
 }
 
 // A folder that is opened for a tool holds neither the home nor anything that is closed.
