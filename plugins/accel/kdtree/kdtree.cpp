@@ -13,7 +13,7 @@ namespace {
 
 enum Param { kTraversal, kIntersection, kEmpty, kDepth };
 constexpr rt_param kParams[] = {
-    rt::float_param("traversal_cost", "Traversal cost", "cost of a node, in units of the heuristic", 0.01, 100, 1),
+    rt::float_param("traversal_cost", "Traversal cost", "cost of a node, in units of the heuristic", 0.01, 100, 2),
     clarity::space::kIntersectionCost,
     clarity::space::kEmptyBonus,
     clarity::space::kMaxDepth,
