@@ -50,17 +50,19 @@
 #define RT_GROUP_PACKETS(frame) (RT_GROUP_W(frame) * RT_GROUP_H(frame))
 
 /* A launch computes the groups from first_group on, group_count of them. On a GPU each has a work-group of its own. On a CPU there are as many
- * work-groups as threads, and each takes the next group until none is left. PoCL itself deals out 1 / threads of what is left at a time, so
- * that all others would wait for the thread that has the dearest part of a picture, or a core that something else uses, too. `taken` counts
- * on from launch to launch; taken_before is what it counted before this one. */
+ * work-groups as threads, and each takes the next group_share groups until none is left. PoCL itself deals out 1 / threads of what is left at a
+ * time, so that all others would wait for the thread that has the dearest part of a picture, or a core that something else uses, too.
+ * `taken` counts shares on from launch to launch; taken_before is what it counted before this one. */
 #if RT_CPU
-#define RT_GROUPS_PARAMS const uint first_group, const uint group_count, const uint taken_before, volatile global uint *taken,
-#define RT_FOR_GROUPS(group) for (uint group; rt_take_group(first_group, group_count, taken_before, taken, &group);)
-RT_INLINE bool rt_take_group(uint first_group, uint group_count, uint taken_before, volatile global uint *taken, uint *group)
+#define RT_GROUPS_PARAMS const uint first_group, const uint group_count, const uint group_share, const uint taken_before, volatile global uint *taken,
+#define RT_FOR_GROUPS(group) \
+    for (uint group, group##_end; rt_take_groups(group_count, group_share, taken_before, taken, &group, &group##_end);) \
+        for (group += first_group, group##_end += first_group; group < group##_end; ++group)
+RT_INLINE bool rt_take_groups(uint count, uint share, uint taken_before, volatile global uint *taken, uint *begin, uint *end)
 {
-    const uint number = atomic_inc(taken) - taken_before;
-    *group = first_group + number;
-    return number < group_count;
+    *begin = (atomic_inc(taken) - taken_before) * share;
+    *end = min(*begin + share, count);
+    return *begin < count;
 }
 #else
 #define RT_GROUPS_PARAMS const uint first_group,

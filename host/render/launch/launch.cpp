@@ -58,9 +58,16 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, KernelArguments& k
         kernel.set("first_group", cl_uint(begin + first));
         unsigned groups = count;
         if (takes) {
-            groups = std::min(count, std::max(1u, device.info().compute_units));
-            kernel.set("group_count", cl_uint(count)).set("taken_before", taken_before_).set("taken", taken_);
-            taken_before_ += count + groups;  // the last that each takes is none
+            const unsigned threads = std::max(1u, device.info().compute_units);
+            // Threads that take shorter work wait for each other's taking; of larger shares they wait for the last one.
+            constexpr double kShare_ms = 0.03;
+            constexpr unsigned kSharesEach = 16;
+            const double share = std::min(kShare_ms / (expected_ms(1) * threads), double(count) / (kSharesEach * threads));
+            const unsigned share_groups = share > 1 ? unsigned(share) : 1, shares = (count + share_groups - 1) / share_groups;
+            groups = std::min(shares, threads);
+            kernel.set("group_count", cl_uint(count)).set("group_share", cl_uint(share_groups));
+            kernel.set("taken_before", taken_before_).set("taken", taken_);
+            taken_before_ += shares + groups;  // the last that each takes is none
         }
         queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(size_t(groups) * group_size),
                                    cl::NDRange(group_size), nullptr, &event);
