@@ -12,8 +12,8 @@ namespace clarity::check {
 namespace {
 
 // What plugins bind for the templates of cl/ (CONTRACT.md).
-constexpr const char* kBindings[] = {"RT_PACKET_STACK_SIZE", "RT_PACKET_RAYS", "RT_STEP_STACK_SIZE", "RT_STEP_DONE",
-                                     "RT_STEP_IS_LEAF"};
+constexpr const char* kBindings[] = {"RT_PACKET_STACK_SIZE", "RT_PACKET_RAYS",  "RT_STEP_STACK_SIZE",
+                                     "RT_STEP_DONE",         "RT_STEP_IS_LEAF", "RT_TRAVERSES_PACKETS"};
 
 bool is_reserved(const std::string& name, bool is_undef) {
     if (name.rfind("RT_", 0) != 0 && name.rfind("rt_", 0) != 0 && name != "vfloat" && name != "vint" && name != "vmask")
