@@ -60,7 +60,7 @@ struct MeasuredPart {
 
 // Measures the trees, on all cores. The nodes of group g begin at roots[g] and end where those of the next group begin, or at
 // node_count.
-Statistics measure(const rt_host* host, const clarity::bvh::Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
+Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
                    const std::vector<rt_u32>& roots, const rt_group* groups) {
     constexpr rt_u32 kPart = 8192;
     std::vector<MeasuredPart> parts;

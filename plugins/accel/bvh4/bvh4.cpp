@@ -48,7 +48,7 @@ uint64_t device_elements(rt_u32, uint64_t count, const double*) {
 int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_input* input,
                     const rt_device_topology* topology, const rt_device_tree* tree, const rt_device_output* out) {
     const uint64_t n = input->count, each = rt::elements_each(plan), elements = tree->element_count[0];
-    const uint32_t max_leaf = clarity::bvh::wide_rules(input->params).max_leaf;
+    const uint32_t max_leaf = wide_rules(input->params).max_leaf;
     const bool has_root = topology->root != RT_NONE;
     rt::DeviceSteps steps(plan);
     const rt_u32 choices = steps.buffer(kChoiceBytes * n), used = steps.buffer(4), tasks = steps.buffer(kTaskBytes * elements),
@@ -67,15 +67,15 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
            {number(elements), number(each), of(choices), of(used), of(tasks), of(below), number(tree->first_element[0]),
             number(tree->first_leaf), of(tree->slots[0]), of(tree->ranges)});
     out->root(out->ctx, static_cast<rt_u32>(tree->first_element[0]));
-    out->define(out->ctx, "BVH4_STACK", clarity::bvh::stack_places(3 * topology->depth));
+    out->define(out->ctx, "BVH4_STACK", stack_places(3 * topology->depth));
     return steps.result();
 }
 
 int32_t device_ranges(const rt_host* host, const rt_built* built, rt_u32 group, rt_tree_ranges* out) {
-    const auto* const nodes = static_cast<const clarity::bvh::WideNode<4>*>(built->slots[0]);
-    return clarity::bvh::find_ranges(host, built, group, out, [&](uint32_t at) {
+    const auto* const nodes = static_cast<const WideNode<4>*>(built->slots[0]);
+    return find_ranges(host, built, group, out, [&](uint32_t at) {
         std::array<uint32_t, 4> codes;
-        const clarity::bvh::WideNode<4> node = settled_node(nodes, at);
+        const WideNode<4> node = settled_node(nodes, at);
         std::copy_n(node.child, codes.size(), codes.begin());
         return codes;
     });
@@ -83,8 +83,8 @@ int32_t device_ranges(const rt_host* host, const rt_built* built, rt_u32 group, 
 
 int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device_tree* tree, rt_u32 blocks, rt_u32 costs,
                      const double* params) {
-    const clarity::bvh::Rules rules = clarity::bvh::wide_rules(params);
-    return clarity::bvh::plan_refit(plan, "bvh4_refit", tree, blocks, costs, {rules.traversal_cost, rules.intersection_cost});
+    const Rules rules = wide_rules(params);
+    return plan_refit(plan, "bvh4_refit", tree, blocks, costs, {rules.traversal_cost, rules.intersection_cost});
 }
 
 // The extension `refit` of bvh4: new volumes for primitives that moved, in the same tree.
@@ -97,7 +97,7 @@ struct Rows {
     uint32_t child(uint32_t at, uint32_t slot) const {
         uint32_t code;
         std::memcpy(&code, row(at, 6) + slot, sizeof code);
-        return clarity::bvh::is_leaf(code) ? code : BVH4_INDEX(code);
+        return is_leaf(code) ? code : BVH4_INDEX(code);
     }
 
  private:
@@ -106,7 +106,6 @@ struct Rows {
 static_assert(sizeof(bvh4_node) == 32 * sizeof(float), "eight rows of four numbers");
 
 int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out) {
-    using namespace clarity::bvh;
     WideRefit<Rows> layout({static_cast<float*>(out->slots[0])}, in->slot_counts[0], in);
     const Rules rules = wide_rules(in->params);
     Refit<WideRefit<Rows>>(host, in, out, layout, {rules.traversal_cost, rules.intersection_cost}).run();

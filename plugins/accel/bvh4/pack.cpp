@@ -18,7 +18,6 @@ using namespace clarity::bvh;
 // Chooses the slot of each child in a node, and writes the node. With four slots, the order that packets use
 // (by direction signs) covers two axes.
 
-using clarity::bvh::Slot;
 using WideNode = clarity::bvh::WideNode<4>;
 
 constexpr uint32_t kWidth = 4;
@@ -55,7 +54,7 @@ void write_node(WideNode& node, const Slot children[], const uint32_t code[], ui
     uint32_t slot_of[kWidth];
     assign_slots(children, count, slot_of);
     for (int k = 0; k < 6; ++k) std::fill_n(node.plane[k], kWidth, k < 3 ? INFINITY : -INFINITY);
-    std::fill_n(node.child, kWidth, clarity::bvh::kEmpty);
+    std::fill_n(node.child, kWidth, kEmpty);
     std::fill_n(node.pad, 4, 0u);
     for (uint32_t i = 0; i < count; ++i) {
         for (int k = 0; k < 6; ++k) node.plane[k][slot_of[i]] = children[i].box[k];
