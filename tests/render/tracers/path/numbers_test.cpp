@@ -168,7 +168,7 @@ namespace {
 const std::vector<std::string> kHeaders = {"lanes/lanes.h", "lanes/vec.h", "sampling/math.h", "sampling/warps.h"};
 
 // Rows of x, y -> sin x, cos x, sin and cos of 2 pi y, 2^x, e^x, atan2(y, x), acos(y), linear of y.
-const char* const kBody =
+const char* const kMathBody =
     "rt_sin_cos(in[0], out, out + 1); rt_sin_cos_turns(in[1], out + 2, out + 3); out[4] = rt_exp2(in[0]); out[5] = "
     "rt_exp(in[0]);"
     "out[6] = rt_atan2(in[1], in[0]); out[7] = rt_acos(in[1]); out[8] = rt_srgb_to_linear(in[1]);";
@@ -194,7 +194,7 @@ std::vector<float> numbers() {
 
 TEST(PathMath, FunctionsAgreeWithTheLibrary) {
     const std::vector<float> rows = numbers();
-    const std::vector<float> found = LaneKernel(kHeaders, 2, 9, kBody, 16).run(rows);
+    const std::vector<float> found = LaneKernel(kHeaders, 2, 9, kMathBody, 16).run(rows);
     double worst[9] = {};
     const auto note = [&](int k, double is, double should, double scale = 1) {
         worst[k] = std::max(worst[k], std::isfinite(is) ? std::abs(is - should) / scale : 1e30);
@@ -225,9 +225,9 @@ TEST(PathMath, FunctionsAgreeWithTheLibrary) {
 }
 
 TEST(PathMath, LanesAgree) {
-    const std::vector<float> rows = numbers(), one = LaneKernel(kHeaders, 2, 9, kBody, 1).run(rows);
+    const std::vector<float> rows = numbers(), one = LaneKernel(kHeaders, 2, 9, kMathBody, 1).run(rows);
     for (const int lanes : lane_counts()) {
-        const std::vector<float> found = LaneKernel(kHeaders, 2, 9, kBody, unsigned(lanes)).run(rows);
+        const std::vector<float> found = LaneKernel(kHeaders, 2, 9, kMathBody, unsigned(lanes)).run(rows);
         EXPECT_EQ(std::memcmp(found.data(), one.data(), 4 * one.size()), 0) << lanes << " lanes";
     }
 }
