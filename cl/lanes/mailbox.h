@@ -9,7 +9,12 @@
 #ifndef RT_MAILBOX_H
 #define RT_MAILBOX_H
 
+/* On a CPU more places cost only their clearing, and save a packet a third of its tests in a grid. On a GPU each ray has its own. */
+#if RT_CPU
+#define RT_MAILBOX_SIZE 64u
+#else
 #define RT_MAILBOX_SIZE 8u
+#endif
 
 typedef struct rt_mailbox {
     uint at[RT_MAILBOX_SIZE];

@@ -2,6 +2,9 @@
  * CONTRACT.md. */
 RT_INLINE void RT_TRAVERSE_PACKET(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits)
 {
+#ifdef RT_TRAVERSES_PACKETS
+    if (RT_CAT(RT_TRAVERSE, _packet)(ctx, root, rays, hits)) return;
+#endif
     rt_single_rays ray_lanes;
     rt_single_hits hit_lanes;
     rt_spread_rays(rays, &ray_lanes);

@@ -49,6 +49,24 @@
 #endif
 #define RT_GROUP_PACKETS(frame) (RT_GROUP_W(frame) * RT_GROUP_H(frame))
 
+/* A launch computes the groups from first_group on, group_count of them. On a GPU each has a work-group of its own. On a CPU there are as many
+ * work-groups as threads, and each takes the next group until none is left. PoCL itself deals out 1 / threads of what is left at a time, so
+ * that all others would wait for the thread that has the dearest part of a picture, or a core that something else uses, too. `taken` counts
+ * on from launch to launch; taken_before is what it counted before this one. */
+#if RT_CPU
+#define RT_GROUPS_PARAMS const uint first_group, const uint group_count, const uint taken_before, volatile global uint *taken,
+#define RT_FOR_GROUPS(group) for (uint group; rt_take_group(first_group, group_count, taken_before, taken, &group);)
+RT_INLINE bool rt_take_group(uint first_group, uint group_count, uint taken_before, volatile global uint *taken, uint *group)
+{
+    const uint number = atomic_inc(taken) - taken_before;
+    *group = first_group + number;
+    return number < group_count;
+}
+#else
+#define RT_GROUPS_PARAMS const uint first_group,
+#define RT_FOR_GROUPS(group) for (uint group = first_group + (uint)get_group_id(0), group##_once = 1u; group##_once != 0u; group##_once = 0u)
+#endif
+
 /* The first pixel of a packet. group: the index of the work-group, row by row over the picture, or over the device's rows of
  * groups where several devices share the picture. packet: the packet's index in the group. */
 RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uint packet)

@@ -47,13 +47,14 @@ RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, v
 }
 
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_aov(const constant rt_frame *frame, const uint first_group, global float *film, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+trace_aov(const constant rt_frame *frame, RT_GROUPS_PARAMS global float *film, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint blocks = RT_BLOCKS(frame);
+    RT_FOR_GROUPS(group)
     RT_FOR_PACKETS(frame, packet)
     RT_FOR_STREAMS(base, 0u, blocks) {
-        const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0), packet);
+        const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint count = RT_STREAM_OF(blocks - base);
         rt_rays rays[RT_STREAM];
         rt_hits hits[RT_STREAM];

@@ -42,9 +42,9 @@ RT_GROUP_WORK void rt_iterative_group(const rt_ctx *scene, const constant rt_fra
 }
 
 RT_PICTURE_KERNEL
-trace_iterative(const constant rt_frame *frame, const uint first_group, global rt_film *film, global uint4 *counters,
+trace_iterative(const constant rt_frame *frame, RT_GROUPS_PARAMS global rt_film *film, global uint4 *counters,
                 global float *distances, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    rt_iterative_group(&ctx, frame, first_group + (uint)get_group_id(0), film, counters, distances);
+    RT_FOR_GROUPS(group) rt_iterative_group(&ctx, frame, group, film, counters, distances);
 }

@@ -30,9 +30,9 @@ RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *f
 }
 
 RT_PICTURE_KERNEL
-trace_path(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters, global float *distances,
+trace_path(const constant rt_frame *frame, RT_GROUPS_PARAMS global float4 *film, global uint4 *counters, global float *distances,
            RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    rt_path_group(&ctx, frame, first_group + (uint)get_group_id(0), film, counters, distances);
+    RT_FOR_GROUPS(group) rt_path_group(&ctx, frame, group, film, counters, distances);
 }

@@ -2,11 +2,12 @@
  * the layout of rays. Those of `after` are t and prim of the last hit that the host has of each ray; those of answers t, u, v, prim,
  * instance of each place of a list, the nearest hit first. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_all_hits(const constant rt_frame *frame, const uint first_group, const uint blocks, const global float *rays,
+trace_all_hits(const constant rt_frame *frame, RT_GROUPS_PARAMS const uint blocks, const global float *rays,
                const global float *after, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    const uint group = first_group + (uint)get_group_id(0), packet_blocks = RT_BLOCKS(frame);
+    const uint packet_blocks = RT_BLOCKS(frame);
+    RT_FOR_GROUPS(group)
     RT_FOR_PACKETS(frame, packet)
     {
         const uint first = (group * RT_GROUP_PACKETS(frame) + packet) * packet_blocks, end = min(first + packet_blocks, blocks);

@@ -1,12 +1,13 @@
 /* rays.cl -- traces the host's rays, a block of RT_LANES at a time, for queries, tests and benchmarks. ray_blocks.h has their
  * layout. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit,
+trace_rays(const constant rt_frame *frame, RT_GROUPS_PARAMS const uint blocks, const uint any_hit,
            const uint fields, const uint stride, const uint before,
            const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    const uint group = first_group + (uint)get_group_id(0), packet_blocks = RT_BLOCKS(frame);
+    const uint packet_blocks = RT_BLOCKS(frame);
+    RT_FOR_GROUPS(group)
     RT_FOR_PACKETS(frame, packet)
     {
         const uint first = (group * RT_GROUP_PACKETS(frame) + packet) * packet_blocks, end = min(first + packet_blocks, blocks);

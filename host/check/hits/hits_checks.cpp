@@ -109,8 +109,8 @@ Check all_hits_check(const BenchInput& input) {
 // Names of the host that a plugin's kernels must not define.
 
 // What plugins bind for the templates of cl/ (CONTRACT.md).
-constexpr const char* kBindings[] = {"RT_PACKET_STACK_SIZE", "RT_PACKET_RAYS", "RT_STEP_STACK_SIZE", "RT_STEP_DONE",
-                                     "RT_STEP_IS_LEAF"};
+constexpr const char* kBindings[] = {"RT_PACKET_STACK_SIZE", "RT_PACKET_RAYS",  "RT_STEP_STACK_SIZE",
+                                     "RT_STEP_DONE",         "RT_STEP_IS_LEAF", "RT_TRAVERSES_PACKETS"};
 
 bool is_reserved(const std::string& name, bool is_undef) {
     if (name.rfind("RT_", 0) != 0 && name.rfind("rt_", 0) != 0 && name != "vfloat" && name != "vint" && name != "vmask")

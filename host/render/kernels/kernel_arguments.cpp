@@ -46,11 +46,9 @@ void replace(std::string& text, const std::string& macro, const std::string& by)
 
 }  // namespace
 
-std::vector<std::string> argument_names(const std::string& text, const std::string& entry, const std::string& scene,
-                                        bool debug) {
+std::vector<std::string> argument_names(const std::string& text, const std::string& entry, const ArgumentMacros& macros) {
     std::string list = parameters_of(without_comments(text), entry);
-    replace(list, "RT_CTX_PARAMS", scene);
-    replace(list, "RT_OVERFLOWS_PARAM", debug ? "overflows," : "");
+    for (const auto& [macro, by] : macros) replace(list, macro, by);
     std::vector<std::string> names;
     for (size_t at = 0; at < list.size();) {
         const size_t comma = std::min(list.find(',', at), list.size());

@@ -3,15 +3,17 @@
 #include <CL/opencl.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace clarity {
 
-// The names of a kernel's arguments in their order, from its declaration in `text`. scene: the names that RT_CTX_PARAMS stands
-// for, separated by commas. debug: whether RT_OVERFLOWS_PARAM declares an argument. Empty if the text does not declare such a
+// Macros in declarations of kernels, and the names of the arguments that each stands for, separated by commas.
+using ArgumentMacros = std::vector<std::pair<std::string, std::string>>;
+
+// The names of a kernel's arguments in their order, from its declaration in `text`. Empty if the text does not declare such a
 // kernel.
-std::vector<std::string> argument_names(const std::string& text, const std::string& entry, const std::string& scene,
-                                        bool debug);
+std::vector<std::string> argument_names(const std::string& text, const std::string& entry, const ArgumentMacros& macros);
 
 // Holds arguments, so that users must not share one.
 class KernelArguments {

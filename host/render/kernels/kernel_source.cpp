@@ -365,7 +365,7 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
         if (accel.accel->capabilities & capability.bit) out.line(std::string("#define ") + capability.define);
     for (const auto& [name, value] : data.defines) out.define_uint(name, value);
 
-    source.scene_arguments = write_preamble(out, layout, accel, scene, features, row);
+    const std::string scene_arguments = write_preamble(out, layout, accel, scene, features, row);
     write_queries(out, row, layout, features, accel);
     for (const char* name : {"lanes/vec.h", "shading/power.h", "shading/surface.h", "shading/point.h", "tracers/camera.h"})
         out.include(name);
@@ -375,7 +375,9 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
     out.include(row.file);
 
     source.declarations = kernel_text(row.file);
-    source.debug = settings.debug;
+    source.macros = {{"RT_CTX_PARAMS", scene_arguments},
+                     {"RT_OVERFLOWS_PARAM", settings.debug ? "overflows," : ""},
+                     {"RT_GROUPS_PARAMS", layout.cpu ? "first_group, group_count, taken_before, taken," : "first_group,"}};
     source.text = out.text();
     source.options = "-cl-std=CL1.2";
     if (settings.fast_math) source.options += " -cl-fast-relaxed-math";

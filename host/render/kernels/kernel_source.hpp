@@ -4,6 +4,7 @@
 #include <string>
 
 #include "render/accel/accel_build.hpp"
+#include "render/kernels/kernel_arguments.hpp"
 #include "render/kernels/kernel_row.hpp"
 #include "render/kernels/layout.hpp"
 #include "scene/scene.hpp"
@@ -15,9 +16,8 @@ struct KernelSource {
     std::string text, options;
     std::string what;              // for messages: "tracer iterative with accel bvh2"
     bool limit_registers = false;  // limit the kernel's registers on GPUs: it is faster with fewer than it would take
-    // Where the kernels of the program are declared, and the names of the scene's arguments, separated by commas.
-    std::string declarations, scene_arguments;
-    bool debug = false;
+    std::string declarations;      // where the kernels of the program are declared
+    ArgumentMacros macros;         // of these declarations
 };
 // Returns the source of a kernel for this scene in this structure. Throws Error(kernel_build_failed) if a file of the kernel
 // cannot be read.

@@ -14,15 +14,11 @@ std::string options_for(const DeviceInfo& info, const KernelSource& source) {
 }
 
 TraceProgram::TraceProgram(const KernelSource& source, cl::Program compiled)
-    : row(*source.row),
-      program(std::move(compiled)),
-      declarations_(source.declarations),
-      scene_arguments_(source.scene_arguments),
-      debug_(source.debug) {}
+    : row(*source.row), program(std::move(compiled)), declarations_(source.declarations), macros_(source.macros) {}
 
 KernelArguments TraceProgram::kernel(const char* entry) const {
     const std::string name = entry ? entry : row.entry;
-    return {cl::Kernel(program, name.c_str()), argument_names(declarations_, name, scene_arguments_, debug_),
+    return {cl::Kernel(program, name.c_str()), argument_names(declarations_, name, macros_),
             std::string("cl/") + row.file + ": kernel " + name};
 }
 

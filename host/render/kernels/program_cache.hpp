@@ -28,8 +28,8 @@ class TraceProgram {
     KernelArguments kernel(const char* entry = nullptr) const;
 
  private:
-    std::string declarations_, scene_arguments_;
-    bool debug_;
+    std::string declarations_;
+    ArgumentMacros macros_;
 };
 
 // The options with which a kernel is compiled for a device.

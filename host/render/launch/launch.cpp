@@ -54,14 +54,28 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_cou
 
 LaunchTimes Launcher::run(const Device& device, Queue& queue, KernelArguments& kernel, unsigned group_count,
                           unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
+    const bool takes = kernel.has("taken");
+    if (takes && !taken_known_) {
+        cl_uint none = taken_before_ = 0;
+        taken_ = cl::Buffer(queue.getInfo<CL_QUEUE_CONTEXT>(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizeof none, &none);
+    }
+    taken_known_ = false;  // after a launch that has not ended
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
         kernel.set("first_group", cl_uint(begin + first));
-        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(size_t(count) * group_size),
+        unsigned groups = count;
+        if (takes) {
+            groups = std::min(count, std::max(1u, device.info().compute_units));
+            kernel.set("group_count", cl_uint(count)).set("taken_before", taken_before_).set("taken", taken_);
+            taken_before_ += count + groups;  // the last that each takes is none
+        }
+        queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(size_t(groups) * group_size),
                                    cl::NDRange(group_size), nullptr, &event);
         return Piece{event, event};
     };
-    return run(device, queue, group_count, group_count, enqueue, go_on, side_work);
+    const LaunchTimes times = run(device, queue, group_count, group_count, enqueue, go_on, side_work);
+    taken_known_ = takes;
+    return times;
 }
 
 void Pace::begin_picture() {

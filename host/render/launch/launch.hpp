@@ -63,7 +63,8 @@ class Launcher {
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
                     const SideWork& side_work = {});
     // Runs groups [begin, begin + group_count) of `group_size` work-items. The argument `first_group` (a uint) receives the
-    // number of a piece's first group. The global offset stays zero, because PoCL compiles a kernel again for another offset.
+    // number of a piece's first group. Kernels with the argument `taken` take their groups by themselves (RT_FOR_GROUPS). The
+    // global offset stays zero, because PoCL compiles a kernel again for another offset.
     LaunchTimes run(const Device& device, Queue& queue, KernelArguments& kernel, unsigned group_count, unsigned group_size,
                     const std::function<void()>& go_on, unsigned begin = 0, const SideWork& side_work = {});
     void forget() { pace_.forget(); }
@@ -73,6 +74,10 @@ class Launcher {
 
  private:
     Pace pace_;
+    // How many groups kernels have tried to take in all their launches, on the device and, so that nothing need clear it, here.
+    cl::Buffer taken_;
+    cl_uint taken_before_ = 0;
+    bool taken_known_ = false;
 };
 
 }  // namespace clarity

@@ -81,6 +81,12 @@ class CellFinder {
             below_[k] = double{head.box[k]} + slack, above_[k] = double{head.box[k]} - slack;
             a_unit_[k] = 1.0 / head.size[k], last_[k] = head.cells[k] - 1.0, half_[k] = 0.5 * head.size[k] + slack;
         }
+        const size_t row = head.cells[0], layer = row * head.cells[1];
+        for (unsigned shape = 0; shape < 8; ++shape) {
+            unsigned& count = counts_[shape];
+            for (unsigned c = 0; c < 8; ++c)
+                if ((c & ~shape) == 0 && count < 4) near_[shape][count++] = (c & 1) + (c >> 1 & 1) * row + (c >> 2) * layer;
+        }
     }
     size_t cells() const { return cells_; }
 
@@ -94,16 +100,22 @@ class CellFinder {
     }
 
     // Calls body(cell, meets) for cells near primitive i: their numbers, and whether the primitive meets them. Huge ones are in
-    // a cell of their own behind all others. `meets` is no branch here, because nobody can predict it.
+    // a cell of their own behind all others. `meets` is no branch here, because nobody can predict it. Nor can anybody predict
+    // how many cells a small primitive is near: up to four are in a table, and their planes are not asked, since they would
+    // hardly save a cell.
     template <class Body>
     void each(const Prims& of, rt_u32 i, const Body& body) const {
         const rt_prim& p = of.prims[i];
         if (is_huge(p)) return body(cells_, true);
         const CellRange r = range(p);
-        const bool flat =
-            (r.hi[0] > r.lo[0]) + (r.hi[1] > r.lo[1]) + (r.hi[2] > r.lo[2]) < 2;  // then its plane hardly misses a cell
-        const bool all = flat || !of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE;
-        if (all)
+        const int x = r.hi[0] - r.lo[0], y = r.hi[1] - r.lo[1], z = r.hi[2] - r.lo[2];
+        if ((x | y | z) <= 1 && (x & y & z) == 0) {
+            const unsigned shape = unsigned(x | y << 1 | z << 2);
+            const size_t first = (size_t(r.lo[2]) * head_.cells[1] + size_t(r.lo[1])) * head_.cells[0] + size_t(r.lo[0]);
+            for (unsigned c = 0; c < 4; ++c) body(first + near_[shape][c], c < counts_[shape]);
+            return;
+        }
+        if (!of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE)
             return each_of(
                 r,
                 [](int, int) {
@@ -127,6 +139,10 @@ class CellFinder {
     const Head& head_;
     size_t cells_;
     double below_[3], above_[3], a_unit_[3], last_[3], half_[3];
+    // The cells of one or two along each axis, from the first on: how many, and how much greater their numbers are. Bit k of
+    // the index: two along axis k.
+    size_t near_[8][4] = {};
+    unsigned counts_[8] = {};
 
     // Of the cells with one y and one z: how far the centre of the first is above a plane, how much each further one is above
     // the one before, and how far a centre may be if its cell meets the plane.

@@ -1,6 +1,9 @@
 // grid.cpp -- a uniform grid for each group: Fujimoto, Tanaka, Iwata 1986, "ARTS: Accelerated Ray-Tracing System"; Cleary,
 // Wyvill 1988, "Analysis of an algorithm for fast ray tracing using uniform space subdivision", for the number of cells.
 //
+// Packets go from slice to slice instead of from cell to cell, as long as their rays stay together: Wald, Ize, Kensler, Knoll,
+// Parker 2006, "Ray Tracing Animated Scenes using Coherent Grid Traversal".
+//
 // A cell takes 4 bytes, and 4 for each primitive in it. The traversal needs no stack. A build takes time in proportion to the
 // primitives and cells, and rays meet cells in the order of their distances. It is good at primitives of one size that fill
 // their box, such as height fields. It is bad at a small object in a large scene, which lies in few cells, and at empty space,
@@ -22,7 +25,7 @@ using namespace clarity::space;
 
 enum Param { kDensity, kExact };
 constexpr rt_param kParams[] = {
-    rt::float_param("density", "Density", "cells for each primitive", 0.1, 64, 5),
+    rt::float_param("density", "Density", "cells for each primitive", 0.1, 64, 3),
     rt::bool_param("exact", "Exact", "a triangle is in the cells that its plane meets; else in all that its box meets", true),
 };
 

@@ -1,6 +1,7 @@
 /* grid_types.h -- a uniform grid for each group. Shared by builder and traversal. */
 #ifndef GRID_TYPES_H
 #define GRID_TYPES_H
+#define RT_TRAVERSES_PACKETS /* see "Single rays" in CONTRACT.md */
 /* 64 B. The primitives of cell (x, y, z) are grid_list[s[cell]] to grid_list[s[cell + 1] - 1], where s = grid_starts + first and
  * cell = (z * cells[1] + y) * cells[0] + x. The list has positions in leaf order. Behind the last cell there is one more, of
  * primitives that are too large for a grid. */

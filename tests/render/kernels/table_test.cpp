@@ -41,7 +41,7 @@ TEST(KernelTable, EveryRowNamesExistingFiles) {
     EXPECT_GE(all_rows().size(), 11u);
     for (const KernelRow* row : all_rows()) {
         const std::string text = kernel_text(row->file);
-        EXPECT_FALSE(argument_names(text, row->entry, "ctx_leaves", false).empty()) << row->file << " has no " << row->entry;
+        EXPECT_FALSE(argument_names(text, row->entry, {}).empty()) << row->file << " has no " << row->entry;
         for (const char* header : row->headers) EXPECT_NO_THROW(kernel_text(header)) << header << " of " << row->entry;
         EXPECT_EQ(std::string(find_tracer(row->tracer).id), row->tracer);
         EXPECT_NE(std::string(row->what), "");
@@ -97,14 +97,14 @@ trace_x (const constant rt_frame *frame, const uint /* of, the launch */ first_g
 {
     call_trace_x(frame);
 })";
-    EXPECT_EQ(argument_names(text, "trace_x", "ctx_leaves, ctx_planes", false),
+    EXPECT_EQ(argument_names(text, "trace_x", {{"RT_CTX_PARAMS", "ctx_leaves, ctx_planes"}, {"RT_OVERFLOWS_PARAM", ""}}),
               (Names{"frame", "first_group", "list", "ctx_leaves", "ctx_planes"}));
-    EXPECT_EQ(argument_names(text, "trace_x", "ctx_leaves", true),
+    EXPECT_EQ(argument_names(text, "trace_x", {{"RT_OVERFLOWS_PARAM", "overflows,"}, {"RT_CTX_PARAMS", "ctx_leaves"}}),
               (Names{"frame", "first_group", "list", "overflows", "ctx_leaves"}));
-    EXPECT_EQ(argument_names(text, "trace", "", false), Names());
-    EXPECT_EQ(argument_names(text, "rt_frame", "", false), Names());
+    EXPECT_EQ(argument_names(text, "trace", {}), Names());
+    EXPECT_EQ(argument_names(text, "rt_frame", {}), Names());
     for (const std::string broken : {"trace_x(", "trace_x(uint a", "trace_x(uint a)", "/* trace_x(uint a) {", "// trace_x", ""})
-        EXPECT_EQ(argument_names(broken, "trace_x", "", false), Names()) << broken;
+        EXPECT_EQ(argument_names(broken, "trace_x", {}), Names()) << broken;
 }
 
 TEST(KernelArguments, OneThatIsNotDeclaredIsNamed) {

@@ -69,8 +69,8 @@ std::vector<float> RayQueries::list_hits(const Prepared& prepared, const TracePr
     overflows_.bind(kernel);
     view_.bind(*prepared.on_device, kernel);
     const unsigned in_group = layout.group_packets() * layout.blocks();
-    launchers_[&program.row].run(*device_, queue, kernel, (unsigned(rays.block_count()) + in_group - 1) / in_group,
-                                 layout.local_size(), [] {});
+    all_hits_launcher_.run(*device_, queue, kernel, (unsigned(rays.block_count()) + in_group - 1) / in_group,
+                           layout.local_size(), [] {});
     if (debug) overflowed_ += overflows_.read(queue);
     queue.enqueueReadBuffer(out, CL_TRUE, 0, lists.size() * sizeof(float), lists.data());
     return lists;
@@ -84,8 +84,7 @@ AllHits RayQueries::trace_all(const Prepared& prepared, const std::vector<rt_ray
         overflowed_ = 0;
         if (rays.empty()) return all;
         const Layout& layout = prepared.layout;
-        last_ = {};
-        launchers_.clear();
+        all_hits_launcher_.forget();
         const auto program = tried_program(programs_, prepared, all_hits(), progress);
         rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
         frame.ray_mask = query.mask;

@@ -54,8 +54,8 @@ LaunchTimes RayQueries::trace_at_once(const Launch& launch) {
     KernelArguments& kernel = kernel_of(launch);
     kernel.set(each ? "count" : "blocks", cl_uint(launch.blocks));
     const unsigned in_group = each ? layout.local_size() * each : layout.group_packets() * layout.blocks();
-    return launchers_[&launch.program.row].run(*device_, device_->queue(), kernel, (launch.blocks + in_group - 1) / in_group,
-                                               layout.local_size(), [&] { launch.go_on(); });
+    return launch.launcher.run(*device_, device_->queue(), kernel, (launch.blocks + in_group - 1) / in_group,
+                               layout.local_size(), [&] { launch.go_on(); });
 }
 
 LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
@@ -80,7 +80,7 @@ LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
         return piece;
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launchers_[&launch.program.row].run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
+    return launch.launcher.run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
 }
 
 LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
@@ -101,7 +101,7 @@ LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launchers_[&launch.program.row].run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
+    return launch.launcher.run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
 }
 
 }  // namespace clarity

@@ -54,6 +54,31 @@ TraceProgram& RayQueries::program_of(const Prepared& prepared, uint64_t number, 
     return *program;
 }
 
+RayQueries::Choice& RayQueries::choice_for(const Prepared& prepared, uint64_t packing, size_t blocks, const RayQuery& query) {
+    if (prepared.on_device != scene_ || prepared.program != program_) {
+        choices_.clear();
+        scene_ = prepared.on_device;
+        program_ = prepared.program;
+    }
+    const auto found =
+        std::find_if(choices_.begin(), choices_.end(), [&](const Choice& choice) { return choice.is(packing, query); });
+    if (found != choices_.end()) {
+        choices_.splice(choices_.begin(), choices_, found);
+    } else {
+        if (choices_.size() == kMostChoices) choices_.pop_back();
+        std::vector<const KernelRow*> kernels{&plain_rays()};
+        if (packing != kFew)
+            kernels = kernels_for(*prepared.accel->layout, prepared.layout, votes(device_->info(), prepared.settings), query);
+        const auto variants = static_cast<unsigned>(kernels.size());
+        choices_.push_front(
+            {packing, query.any_hit, query.count, query.brief, std::move(kernels), Autotuner(variants), blocks, {}});
+    }
+    Choice& choice = choices_.front();
+    if (choice.blocks != blocks) choice.launchers.clear();
+    choice.blocks = blocks;
+    return choice;
+}
+
 double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQuery& query, Answers& answers) {
     tuning_ = {};
     answers.count = rays.count;
@@ -64,22 +89,13 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
         throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes) + " lanes and the program has " +
                                       std::to_string(layout.lanes) + ": pack them again");
     const size_t blocks = (rays.count + layout.lanes - 1) / layout.lanes;
-    const Asked asked{prepared.on_device, prepared.program, blocks, query.any_hit, query.count, query.brief};
-    if (!(asked == last_)) {
-        if (!last_.alike(asked)) packing_ = 0;
-        last_ = asked;
-        launchers_.clear();
-    }
     const bool few = rays.count <= kFewRays && !query.count;
-    if (!few && packing_ != rays.packing) {
-        packing_ = rays.packing;
-        kernels_ = kernels_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
-        autotuner_ = Autotuner(static_cast<unsigned>(kernels_.size()));
-    }
-    const KernelRow& row = few ? plain_rays() : *kernels_[autotuner_.variant()];
+    Choice& choice = choice_for(prepared, few ? kFew : rays.packing, blocks, query);
+    Autotuner& autotuner = choice.autotuner;
+    const KernelRow& row = *choice.kernels[autotuner.variant()];
     Progress never_cancelled;
     const TraceProgram& program = program_of(prepared, rays.prepared, row, query.progress ? *query.progress : never_cancelled);
-    if (!few) tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
+    if (!few) tuning_ = {autotuner.variant(), autotuner.trying(), false};
     Queue& queue = device_->queue();
     rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
     frame.ray_mask = query.mask;
@@ -92,14 +108,14 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
     const cl::Buffer in = rays.upload();
     const bool debug = prepared.settings.debug;
     if (debug) overflows_.clear(queue);
-    const LaunchTimes times =
-        trace({prepared, program, static_cast<unsigned>(blocks), query.any_hit, in, answers, query.progress});
+    const LaunchTimes times = trace(
+        {prepared, program, static_cast<unsigned>(blocks), query.any_hit, in, answers, query.progress, choice.launchers[&row]});
     tuning_.processor_ms = times.processor_ms;
     overflowed_ = debug ? overflows_.read(queue) : 0;
     if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
     if (!few) {
-        autotuner_.took(times.device_ms / double(blocks));  // pieces of one packing may differ in size
-        tuning_.settled = autotuner_.settled();
+        autotuner.took(times.device_ms / double(blocks));  // pieces of one packing may differ in size
+        tuning_.settled = autotuner.settled();
     }
     return times.device_ms;
 }

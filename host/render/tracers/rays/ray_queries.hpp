@@ -1,6 +1,7 @@
 // ray_queries.hpp -- traces the caller's own rays with the traversals that pictures use.
 #pragma once
 #include <functional>
+#include <list>
 #include <map>
 #include <tuple>
 
@@ -88,6 +89,7 @@ class RayQueries {
         const cl::Buffer& in;
         const Answers& answers;
         const Progress* progress;
+        Launcher& launcher;
         void go_on() const {
             if (progress && progress->cancelled()) throw Cancelled();
         }
@@ -117,25 +119,29 @@ class RayQueries {
     ProgramCache programs_;  // of all kernels for ray queries
     LookedUp looked_up_;
     ViewBuffers view_;
-    std::map<const KernelRow*, Launcher> launchers_;
     Counted long_rays_, fetched_;
-    // What the launchers' pace depends on. If it stays the same, a short query is a single launch.
-    struct Asked {
-        std::shared_ptr<const DeviceScene> scene;
-        std::shared_ptr<const TraceProgram> program;  // the program of pictures: it changes with the settings
-        size_t blocks = 0;
+    static constexpr uint64_t kFew = 0;  // stands for the packings of few rays, which no packing has
+    // How a query of some rays is traced. The fastest variant depends on both: mirror rays may need another one than diffuse
+    // rays.
+    struct Choice {
+        uint64_t packing = kFew;
         bool any_hit = false, count = false, brief = false;
-        // But for the number of rays.
-        bool alike(const Asked& o) const {
-            return std::tie(scene, program, any_hit, count, brief) == std::tie(o.scene, o.program, o.any_hit, o.count, o.brief);
+        std::vector<const KernelRow*> kernels;
+        Autotuner autotuner;
+        size_t blocks = 0;  // those of the launchers' pace: if they stay the same, a short query is a single launch
+        std::map<const KernelRow*, Launcher> launchers;
+        bool is(uint64_t other, const RayQuery& query) const {
+            return std::tie(packing, any_hit, count, brief) == std::tie(other, query.any_hit, query.count, query.brief);
         }
-        bool operator==(const Asked& o) const { return alike(o) && blocks == o.blocks; }
     };
-    Asked last_;
-    // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
-    uint64_t packing_ = 0;
-    std::vector<const KernelRow*> kernels_;
-    Autotuner autotuner_;
+    Choice& choice_for(const Prepared& prepared, uint64_t packing, size_t blocks, const RayQuery& query);
+    // Callers trace few sets of rays by turns. Each needs some 15 launches until its fastest variant is chosen.
+    static constexpr size_t kMostChoices = 16;
+    std::list<Choice>
+        choices_;  // the last one first, all of this scene and this program of pictures, which changes with settings
+    std::shared_ptr<const DeviceScene> scene_;
+    std::shared_ptr<const TraceProgram> program_;
+    Launcher all_hits_launcher_;
     RayTuning tuning_;
     uint64_t overflowed_ = 0;
     OverflowCounter overflows_;  // used for debug programs

@@ -93,6 +93,24 @@ TEST(RequeuedRays, GiveTheHitsOfOneLaunchWhereWorkItemsShareAList) {
     expect_same_each_time(heap(), "brute", 100);
 }
 
+// Scripts trace few sets of rays again and again, and ask different things of them: what was found out about one stays known.
+TEST(RayQueries, KnowTheVariantsOfRaysThatComeByTurns) {
+    const Settings settings = make_settings({{"accel", "bvh4"}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}});
+    const auto prepared = Workbench::get().prepare(rubble(), settings);
+    RayQueries& queries = Workbench::get().queries();
+    const RayBlocks some(rays_at_rubble(1000), 1), others(rays_at_rubble(500), 1);
+    std::string trials;
+    for (unsigned turn = 0; turn <= kTries; ++turn)
+        for (const RayBlocks* rays : {&some, &others})
+            for (const RayQuery query : {RayQuery{false}, RayQuery{true}}) {
+                queries.trace(*prepared, *rays, query);
+                ASSERT_TRUE(turn > 0 || queries.tuning().trial) << "there are several variants";
+                if (turn == kTries && queries.tuning().trial)
+                    trials += std::to_string(rays->ray_count()) + (query.any_hit ? " any-hit rays; " : " rays; ");
+            }
+    EXPECT_EQ(trials, "") << "are tried as if they came for the first time";
+}
+
 TEST(Autotuner, UsesTheMinimumTimeWithoutTheWarmUp) {
     for (const unsigned variants : {1u, 2u, 3u, 5u})
         for (unsigned best = 0; best < variants; ++best) {
