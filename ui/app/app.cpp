@@ -28,6 +28,10 @@
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace clarity::ui {
 namespace {
 
@@ -148,6 +152,7 @@ int App::run() {
     while (!window_->closing() && !asked_to_end) {
         if (window_->wait_events(wait_seconds())) settle_frames_ = 3;
         if (due()) turn();
+        give_memory_back();
     }
     return static_cast<int>(asked_to_end ? Exit::interrupted : Exit::done);
 }
@@ -159,6 +164,20 @@ bool App::due() const {
     if (settle_frames_ > 0 || (script_ && script_->has_lines())) return true;
     if (woken_ || held_.any_held(*state_.key_map)) return since >= kShortestTurn;
     return since >= longest_wait();
+}
+
+// When nothing is to do. Scenes, structures and compilers leave holes in the heaps of their threads: a window that got 14,500
+// random actions in half an hour grew by 1.3 MiB a minute, though all that it still used at the end was what it had used in the
+// beginning.
+void App::give_memory_back() {
+    constexpr double kEvery_s = 10;  // it takes some ms, and what comes next must fetch its pages again
+    if (!session_->idle()) worked_ = true;
+    if (!worked_ || !session_->idle() || now_s() - trimmed_s_ < kEvery_s) return;
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+    trimmed_s_ = now_s();
+    worked_ = false;
 }
 
 double App::longest_wait() const {

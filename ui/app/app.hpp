@@ -31,6 +31,7 @@ class App {
     bool due() const;  // whether a frame is to be drawn now
     double wait_seconds() const;
     double longest_wait() const;  // seconds until the next turn if nothing happens
+    void give_memory_back();
     bool typing() const;
     void run_script();
     void take_keys();
@@ -60,6 +61,8 @@ class App {
     std::shared_ptr<const Preview> uploaded_preview_;
     std::string capture_path_;
     double last_turn_s_ = 0;   // start of the last turn, in seconds of the steady clock
+    double trimmed_s_ = 0;     // when memory was last given back
+    bool worked_ = false;      // since then
     double oldest_key_s_ = 0;  // time of the oldest key event that the coming frame handles; 0: no key event
     int settle_frames_ = 3;    // frames still to draw: ImGui needs a few to settle after an event
 };

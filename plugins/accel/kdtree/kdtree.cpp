@@ -3,8 +3,9 @@
 // Source: Wald, Havran 2006, "On building fast kd-Trees for Ray Tracing"; planes of large nodes: Hunt, Mark, Stoll 2006. A node
 // takes 8 bytes, a leaf 4 more for each of its primitives; the traversal's stack has 12 bytes a level. Planes cut primitives,
 // so cells do not overlap: a ray stops at its first hit, and tests fewer primitives than in a tree of boxes. It visits more
-// nodes for that. The structure suits static scenes of unlike primitives, such as slanted or long ones. It is slow to build,
-// and cannot be refitted.
+// nodes for that. Packets whose directions agree in sign go through the tree together: Wald, Slusallek, Benthin, Wagner 2001,
+// "Interactive Rendering with Coherent Ray Tracing". The structure suits static scenes of unlike primitives, such as slanted or
+// long ones. It is slow to build, and cannot be refitted.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -211,7 +212,7 @@ Tree build_tree(const rt_host* host, const Rules& rules, const rt_prim* prims, r
 
 enum Param { kTraversal, kIntersection, kEmpty, kDepth };
 constexpr rt_param kParams[] = {
-    rt::float_param("traversal_cost", "Traversal cost", "cost of a node, in units of the heuristic", 0.01, 100, 1),
+    rt::float_param("traversal_cost", "Traversal cost", "cost of a node, in units of the heuristic", 0.01, 100, 2),
     clarity::space::kIntersectionCost,
     clarity::space::kEmptyBonus,
     clarity::space::kMaxDepth,

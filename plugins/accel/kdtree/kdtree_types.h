@@ -1,6 +1,7 @@
 /* kdtree_types.h -- a kd-tree for each group. Shared by builder and traversal. */
 #ifndef KDTREE_TYPES_H
 #define KDTREE_TYPES_H
+#define RT_TRAVERSES_PACKETS /* see "Single rays" in CONTRACT.md */
 /* The tree of a group: the box of all its primitives, and its root. 32 B. */
 typedef struct kdtree_head {
     rt_f32 box[6]; /* lo.xyz, hi.xyz */

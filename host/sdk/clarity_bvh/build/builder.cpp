@@ -9,16 +9,16 @@ namespace clarity::bvh {
 namespace {
 
 // At most 16384 records (0.5 MiB) per task, so that they fit into a core's own cache. Small scenes get smaller tasks, so that
-// no core runs out of work before the end.
+// none of many cores runs out of work before the end: they are no fewer for fewer cores, as the tree must be the same everywhere.
 uint32_t task_size_for(uint64_t primitive_count) {
-    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 16384));
+    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 64, 512, 16384));
 }
 // The sorted builder (Method::morton) needs no records.
 uint64_t record_count(const Rules& rules, uint64_t room) {
     return rules.method == Method::morton ? 0 : room;
 }
 uint32_t chunk_size_for(uint64_t primitive_count) {
-    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 8, 1024, 8192));
+    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 8192));
 }
 
 }  // namespace
