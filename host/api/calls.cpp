@@ -1,18 +1,101 @@
 // calls.cpp -- the functions of clarity.h.
+#include <atomic>
+#include <cmath>
 #include <limits>
+#include <mutex>
+#include <string>
+#include <utility>
 
 #include "api/clarity.h"
 #include "api/handles.hpp"
 #include "api/library.hpp"
-#include "api/mesh_scene.hpp"
 #include "api/rows.hpp"
-#include "api/watched.hpp"
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "base/progress.hpp"
 #include "import/import.hpp"
+#include "import/sink/world_origin.hpp"
+#include "plugin/registry.hpp"
 #include "scene/motion/pose.hpp"
+#include "scene/scene.hpp"
 #include "scene/scene_json.hpp"
 
 namespace clarity::api {
 namespace {
+
+// Progress of a call, told to the caller's function, and the caller's cancel.
+
+class Watched : public Progress {
+ public:
+    explicit Watched(const clarity_watch& watch) : watch_(watch) {}
+    void stage(const std::string& text) override {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stage_ = text;
+        tell(0);
+    }
+    // Work reports as often as it likes; the caller hears of twenty a second.
+    bool report(float fraction) override {
+        if (const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock); lock && now_s() - told_s_ > 0.05) tell(fraction);
+        return !cancelled();
+    }
+    bool cancelled() const override { return Progress::cancelled() || (watch_.cancel && *watch_.cancel != 0); }
+
+ private:
+    void tell(float fraction) {
+        told_s_ = now_s();
+        if (watch_.progress && watch_.progress(watch_.user, stage_.c_str(), fraction) == 0) cancel();
+    }
+    const clarity_watch watch_;
+    std::mutex mutex_;  // one call at a time
+    std::string stage_;
+    double told_s_ = 0;
+};
+
+// A scene of the caller's arrays.
+
+// Numbers of primitives are ints in kernels.
+constexpr uint64_t kMost = std::numeric_limits<int32_t>::max();
+
+// Rounds positions after the origin is subtracted that suits their box.
+SharedArray<float> rounded(const double* positions, size_t numbers, std::array<double, 3>& origin) {
+    import::WorldBox box;
+    bool has_digits = false;
+    for (size_t i = 0; i + 2 < numbers; i += 3) box.add({positions[i], positions[i + 1], positions[i + 2]});
+    for (size_t i = 0; i < numbers && !has_digits; ++i) has_digits = positions[i] != double(float(positions[i]));
+    if (box.is_far(has_digits ? import::kFarWithDigits : import::kFar)) origin = import::origin_of(box);
+    std::vector<float> floats(numbers);
+    for (size_t i = 0; i < numbers; ++i) floats[i] = static_cast<float>(positions[i] - origin[i % 3]);
+    return floats;
+}
+
+// The scene borrows the arrays, but positions of type CLARITY_FLOAT64. Throws Error(usage) for arrays that are no mesh.
+Scene scene_of_mesh(const PluginRegistry& plugins, const clarity_mesh& mesh) {
+    const auto refuse = [](const std::string& why) { throw Error(Exit::usage, "the mesh of arrays " + why); };
+    if (mesh.vertex_count > kMost || mesh.triangle_count > kMost)
+        refuse("has more than 2^31 - 1 vertices or triangles: divide it");
+    if ((!mesh.positions && mesh.vertex_count > 0) || (!mesh.triangles && mesh.triangle_count > 0))
+        refuse("has a null pointer");
+    if (mesh.type != CLARITY_FLOAT32 && mesh.type != CLARITY_FLOAT64)
+        refuse("has positions of the unknown type " + std::to_string(mesh.type));
+    Scene scene;
+    const size_t numbers = 3 * mesh.vertex_count;
+    if (mesh.type == CLARITY_FLOAT64)
+        scene.positions = rounded(static_cast<const double*>(mesh.positions), numbers, scene.origin);
+    else
+        scene.positions = SharedArray<float>::borrow(nullptr, static_cast<const float*>(mesh.positions), numbers);
+    scene.triangles = SharedArray<rt_u32>::borrow(nullptr, mesh.triangles, 3 * mesh.triangle_count);
+    scene.triangle_materials.assign(mesh.triangle_count, 0);
+    Mesh whole;
+    whole.name = "mesh";
+    whole.vertex_count = scene.vertex_count();
+    whole.triangle_count = whole.polygon_count = scene.triangle_count();
+    scene.meshes.push_back(whole);
+    scene.instances.emplace_back();
+    scene.instances.back().name = whole.name;
+    scene.materials.push_back({"default", default_material()});
+    if (const Problem why = import::complete_scene(plugins, scene)) refuse(why.text());
+    return scene;
+}
 
 Watched watched(const clarity_watch* watch) {
     return Watched(watch ? copy_of(watch, "clarity_watch") : clarity_watch{});

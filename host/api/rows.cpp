@@ -7,14 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "api/library.hpp"
 #include "worker/process.hpp"
-#include "worker/spawn.hpp"
 
 extern char** environ;
 

@@ -9,7 +9,7 @@
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
 #include "render/tracers/rays/query_scene.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity::api {
 

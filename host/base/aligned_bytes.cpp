@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "base/physical_memory.hpp"
+#include "base/machine.hpp"
 #include "clarity_bvh/base/spare_blocks.hpp"
 
 namespace clarity {

@@ -1,13 +1,13 @@
 // digest.hpp -- a digest of 128 bits that tells contents apart: XXH3 of Yann Collet's xxHash, about as fast as memory is read.
 // It is no protection against somebody who wants two contents to look alike.
 #pragma once
+struct XXH3_state_s;
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <type_traits>
-
-struct XXH3_state_s;
 
 namespace clarity {
 
@@ -41,5 +41,15 @@ class Digest {
 std::string digest_of(const std::string& content);
 // The same of a file, which is read piece by piece; empty if it cannot be read.
 std::string digest_of_file(const std::string& path);
+
+// A hash that tells contents apart. It is no protection against somebody who wants two to be alike.
+
+// FNV-1a of 64 bits. seed: the hash of what comes before.
+inline uint64_t hash_bytes(const void* data, size_t bytes, uint64_t seed = 14695981039346656037ull) {
+    uint64_t hash = seed;
+    const auto* at = static_cast<const unsigned char*>(data);
+    for (size_t i = 0; i < bytes; ++i) hash = (hash ^ at[i]) * 1099511628211ull;
+    return hash;
+}
 
 }  // namespace clarity

@@ -12,7 +12,7 @@
 #include <mutex>
 
 #include "base/error.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/printable.hpp"
+#include "base/text.hpp"
 
 namespace clarity::check {
 

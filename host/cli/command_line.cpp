@@ -6,7 +6,6 @@
 
 #include "base/error.hpp"
 #include "cli/command_options.hpp"
-#include "cli/help/bash_completion.hpp"
 #include "cli/help/man_page.hpp"
 #include "cli/option_groups.hpp"
 

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/memory_text.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "device/device.hpp"
 

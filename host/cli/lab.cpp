@@ -13,7 +13,6 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/render/frame_claim.hpp"
-#include "lab/board.hpp"
 #include "lab/grade.hpp"
 #include "lab/results.hpp"
 

@@ -18,7 +18,7 @@
 #include "import/import_in_worker.hpp"
 #include "lab/build.hpp"
 #include "lab/measure.hpp"
-#include "plugin/load_trial.hpp"
+#include "plugin/trust.hpp"
 #include "render/accel/build_in_worker.hpp"
 #include "render/trial/trial.hpp"
 #include "worker/child.hpp"

@@ -20,7 +20,7 @@
 #include "base/files/library_files.hpp"
 #include "base/files/read_file.hpp"
 #include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "plugin/plugin_check.hpp"
 

@@ -3,8 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/plural.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "plugin/capabilities.hpp"
 #include "plugin/parameters.hpp"

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "base/log.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

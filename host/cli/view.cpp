@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "render/compare/reference_picture.hpp"
+#include "render/compare/picture_errors.hpp"
 #ifdef CLARITY_HAVE_UI
 #include "ui/app/window_main.hpp"
 #endif

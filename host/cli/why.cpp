@@ -7,7 +7,7 @@
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
 #include "base/numbers.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -16,7 +16,7 @@
 #include "render/film/film_noise.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/noise/noise.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 namespace {

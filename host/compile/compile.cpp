@@ -8,7 +8,6 @@
 #include "base/log.hpp"
 #include "base/timeline.hpp"
 #include "compile/compile_in_worker.hpp"
-#include "compile/pocl_entries.hpp"
 #include "compile/program_store.hpp"
 #include "device/kernel_files.hpp"
 

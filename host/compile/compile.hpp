@@ -1,7 +1,7 @@
 // compile.hpp -- compiles kernels so that a compiler that hangs, crashes or takes all memory never harms this process.
 //
 // A program is compiled in a worker process first (host/worker), if compiles_in_worker(). Then the host gets it: as a binary
-// from the worker, or, where PoCL is slow to give one, as what PoCL has written into its cache (pocl_entries.hpp). Programs
+// from the worker, or, where PoCL is slow to give one, as what PoCL has written into its cache (program_store.hpp). Programs
 // that were compiled once are known on disk (program_store.hpp), and need no worker.
 #pragma once
 #include <string>

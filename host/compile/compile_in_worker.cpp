@@ -6,9 +6,8 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/memory_text.hpp"
-#include "base/physical_memory.hpp"
-#include "base/printable.hpp"
+#include "base/machine.hpp"
+#include "base/text.hpp"
 #include "device/pocl_cache.hpp"
 
 namespace clarity {

@@ -2,17 +2,112 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "base/error.hpp"
-#include "compile/pocl_forms.hpp"
-#include "compile/zero_launch.hpp"
 #include "device/device.hpp"
+#include "device/pocl_cache.hpp"
 #include "worker/child.hpp"
 
 namespace clarity {
 namespace {
+
+// Launches the kernels of a program once on buffers of zeros. PoCL compiles a kernel when it is first
+// launched with a work-group size: this compiles it without a scene.
+constexpr size_t kBufferBytes = 64 << 10, kLocalBytes = 16 << 10, kGroup = 64;
+constexpr size_t kMostBytes = 128;  // of an argument by value: a vector of 16 doubles
+
+// The size of an argument by value is not asked for in OpenCL 1.2; the driver refuses the wrong ones.
+void set_zero(cl::Kernel& kernel, cl_uint at) {
+    const char zeros[kMostBytes] = {};
+    cl_int error = CL_INVALID_ARG_SIZE;
+    for (size_t bytes = 1; bytes <= kMostBytes && error != CL_SUCCESS; bytes *= 2)
+        error = clSetKernelArg(kernel(), at, bytes, zeros);
+    if (error != CL_SUCCESS) throw cl::Error(error, "clSetKernelArg");
+}
+
+// All kernels must end at once on zeros. Their arguments must be known: the program was compiled with -cl-kernel-arg-info.
+// Kernels without a required work-group size are launched with 64 work-items, as FilmKernels does. Throws cl::Error.
+void launch_on_zeros(Device& device, const cl::Program& program) {
+    cl::Program compiled = program;
+    std::vector<cl::Kernel> kernels;
+    compiled.createKernels(&kernels);
+    for (cl::Kernel& kernel : kernels) {
+        std::vector<cl::Buffer> buffers;
+        const auto count = kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+        for (cl_uint at = 0; at < count; ++at) {
+            const auto space = kernel.getArgInfo<CL_KERNEL_ARG_ADDRESS_QUALIFIER>(at);
+            if (space == CL_KERNEL_ARG_ADDRESS_PRIVATE) {
+                set_zero(kernel, at);
+            } else if (space == CL_KERNEL_ARG_ADDRESS_LOCAL) {
+                kernel.setArg(at, cl::Local(kLocalBytes));
+            } else {
+                buffers.emplace_back(device.context(), CL_MEM_READ_WRITE, kBufferBytes);
+                device.queue().enqueueFillBuffer(buffers.back(), cl_uint(0), 0, kBufferBytes);
+                kernel.setArg(at, buffers.back());
+            }
+        }
+        const cl::size_type required = kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(device.info().cl_device)[0];
+        const size_t local = required ? required : kGroup;
+        device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(local), cl::NDRange(local));
+        device.queue().finish();
+    }
+}
+
+// Makes the binaries of PoCL cheap.
+//
+// PoCL keeps a form of each kernel for each kind of launch in its cache, KERNEL/LOCAL-goffs0-smallgrid/KERNEL.so. When it is
+// asked for a binary it also compiles a form for any local size, KERNEL/0-0-0/KERNEL.so, which takes as long as all that was
+// compiled before (PoCL 3.1; Cornell box on an AMD EPYC: 12.5 s instead of 6.9 s). No launch of ours uses that form: all our
+// kernels have one local size. A second name of the launched form stands in for it.
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> folders_in(const fs::path& folder) {
+    std::vector<fs::path> found;
+    std::error_code error, gone;  // others may remove folders meanwhile
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        if (at->is_directory(gone)) found.push_back(at->path());
+    return found;
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void share_form_of(const fs::path& kernel_folder) {
+    std::error_code ignored;
+    const fs::path file = kernel_folder.filename().string() + ".so", general = kernel_folder / "0-0-0" / file;
+    if (fs::exists(general, ignored)) return;
+    for (const fs::path& form : folders_in(kernel_folder)) {
+        if (!ends_with(form.filename().string(), "-goffs0-smallgrid") || !fs::exists(form / file, ignored)) continue;
+        fs::create_directory(general.parent_path(), ignored);
+        fs::create_hard_link(form / file, general, ignored);
+        return;
+    }
+}
+
+// Names the launched forms of a program a second time, in the folder pocl_cache(). kernels: all those of the program, launched
+// once before. Where PoCL keeps its forms otherwise nothing happens, and PoCL compiles. Throws nothing.
+void share_launched_forms(const std::vector<std::string>& kernels) {
+    const fs::path cache = pocl_cache();
+    if (cache.empty()) return;
+    for (const fs::path& group : folders_in(cache))
+        for (const fs::path& program : folders_in(group)) {
+            const auto has = [&](const std::string& kernel) {
+                std::error_code error;
+                return fs::is_directory(program / kernel, error);
+            };
+            // Programs of the same kernels with other settings may be served, too: their launches are alike.
+            if (!std::all_of(kernels.begin(), kernels.end(), has)) continue;
+            for (const std::string& kernel : kernels) share_form_of(program / kernel);
+        }
+}
 
 std::vector<char> binary_of(const cl::Program& program) {
     size_t bytes = 0;

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/lower.hpp"
 #include "base/numbers.hpp"
+#include "base/text.hpp"
 #include "device/device_list.hpp"
 
 namespace clarity {

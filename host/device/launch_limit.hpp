@@ -14,7 +14,7 @@
 namespace clarity {
 
 // Seconds that a launch may take on a GPU, by the host's clock: CLARITY_LAUNCH_LIMIT, else 20. Infinite if that is 0. Launches
-// are cut into pieces of 0.2 s (render/launch/pace.hpp).
+// are cut into pieces of 0.2 s (Pace in render/launch/launch.hpp).
 double launch_limit_s();
 
 // Waits for an event of the device. Throws Error(failed) after the limit, and cl::Error if the work failed. what: the work, for

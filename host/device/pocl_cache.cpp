@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "base/files/cache_folder.hpp"
-#include "base/files/own_folder.hpp"
 #include "base/files/process_folder.hpp"
 #include "base/problem.hpp"
 #include "worker/channel.hpp"

@@ -1,7 +1,9 @@
 // import.hpp -- reads files into a Scene. Importer plugins run in a worker process.
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/problem.hpp"
@@ -31,5 +33,21 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
 // Finds the plugins of the shapes in a scene that has come as plain arrays, and validates it. Returns nothing on success,
 // otherwise what the scene has or is ("is not sound: ...").
 Problem complete_scene(const PluginRegistry& plugins, Scene& scene);
+
+// Reads the files of sequences when poses need them, and keeps the last two.
+
+// Not thread-safe.
+class SequenceReader {
+ public:
+    SequenceReader(const PluginRegistry& plugins, ImportOptions options, Progress& progress);
+    // The vertices of a file, as FrameVertices of scene/motion/pose.hpp asks for them. Throws what import_scene() throws.
+    std::vector<float> operator()(const std::string& file);
+
+ private:
+    const PluginRegistry& plugins_;
+    ImportOptions options_;
+    Progress& progress_;
+    std::deque<std::pair<std::string, std::vector<float>>> kept_;
+};
 
 }  // namespace clarity::import

@@ -1,5 +1,7 @@
 // wire.hpp -- passes a Scene from one process to another, in a file in memory (base/files/parcel.hpp).
 #pragma once
+#include <string>
+
 #include "base/files/parcel.hpp"
 #include "scene/scene.hpp"
 
@@ -32,5 +34,13 @@ Scene read_scene(const MemoryFile& file);
 // The scene of a file that write_scene() wrote and that has been sealed whole: its large arrays lie in the file, so that all
 // processes that call this share one copy.
 Scene map_scene(const MemoryFile& file);
+
+// Tells whether two imported scenes make the same pictures.
+
+// 32 hexadecimal digits, from all that the scene holds: geometry, materials, texels, lights, cameras, motion, edits. Left out
+// are the places of its files, its warnings, and names by which nothing is chosen (of meshes, instances, materials, lights):
+// the same files in another folder or on another machine have the same digest. Of numbered files of a sequence it holds the
+// numbers, not the contents. Takes about as long as reading the scene's memory once. For any thread.
+std::string scene_digest(const Scene& scene);
 
 }  // namespace clarity::import

@@ -15,8 +15,8 @@
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
-#include "base/printable.hpp"
 #include "base/run_tool.hpp"
+#include "base/text.hpp"
 #include "worker/child.hpp"
 
 namespace clarity::lab {

@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cstdio>
-
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 #include "base/error.hpp"
 #include "bench/run/measure.hpp"
+#include "check/builds/build_run.hpp"
 #include "check/hits/checked_scene.hpp"
 #include "check/hits/judge.hpp"
 #include "device/device.hpp"
+#include "lab/lab.hpp"
 #include "lab/measure_materials.hpp"
-#include "lab/motion.hpp"
 #include "plugin/registry.hpp"
+#include "rt_plugin.h"
 #include "worker/child.hpp"
 
 namespace clarity::lab {
@@ -20,6 +23,86 @@ namespace {
 
 using check::CheckedScene;
 using check::Variant;
+
+// What it costs to follow a scene that moves: which nodes of a pose's tree were there in the pose before.
+
+// What a builder of trees did for all poses of a case. Pose k is the mesh k.
+struct MotionCosts {
+    double nodes = 0;   // of all trees; each got a box for its pose
+    double fresh = 0;   // of these, those that the tree of the pose before does not have
+    double sorted = 0;  // primitives below each of them
+};
+
+// Tells sets of primitives apart, whatever their order: a sum of numbers that look random (the finalizer of Steele, Lea, Flood
+// 2014, "Fast Splittable Pseudorandom Number Generators").
+uint64_t mixed(uint64_t x) {
+    x += 0x9E3779B97F4A7C15u;
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+    return x ^ (x >> 31);
+}
+
+struct Below {
+    uint64_t set = 0;
+    double count = 0;
+};
+
+// The nodes of a tree, each as one number: of the primitives below it, and of how its children share them.
+class TreeNodes {
+ public:
+    TreeNodes(const BuilderResult& result, rt_u32 root, rt_u32 first_ref)
+        : nodes_(reinterpret_cast<const rt_topology_node*>(result.slots[0].memory.data())),
+          refs_(reinterpret_cast<const rt_u32*>(result.refs.data())),
+          first_ref_(first_ref) {
+        if (root != RT_NONE) visit(root);
+    }
+    std::vector<std::pair<uint64_t, double>> all;  // node, primitives below it
+
+ private:
+    // Trees are at most RT_TOPOLOGY_DEPTH deep: BuildCase has checked it.
+    Below visit(rt_u32 at) {
+        const rt_topology_node& node = nodes_[at];
+        Below below;
+        uint64_t shares = 0;
+        if (node.right & RT_TOPOLOGY_LEAF) {
+            for (rt_u32 i = 0; i < (node.right & ~RT_TOPOLOGY_LEAF); ++i)
+                below.set += mixed(RT_REF_INDEX(refs_[node.left + i]) - first_ref_), below.count += 1;
+        } else {
+            const Below left = visit(node.left), right = visit(node.right);
+            below = {left.set + right.set, left.count + right.count};
+            shares = mixed(left.set) + mixed(right.set);
+        }
+        all.emplace_back(mixed(below.set) ^ shares, below.count);
+        return below;
+    }
+
+    const rt_topology_node* nodes_;
+    const rt_u32* refs_;
+    const rt_u32 first_ref_;
+};
+
+// Builds the trees of a case by `plugin`, which builds topologies, and compares each with that of the pose before. What a node
+// is decides, and not what the builder says: the primitives below it, and how its children share them. Throws Error.
+MotionCosts motion_costs(const rt_plugin& plugin, const Scene& scene) {
+    const check::BuildCase input("the poses", scene);
+    const BuildScene& build = input.scene();
+    const check::BuildRun run = input.run(plugin, {}, check::Schedule::program);
+    if (run.why) throw Error(Exit::failed, run.why.text());
+    MotionCosts costs;
+    std::set<uint64_t> before;
+    for (const rt_u32 group : build.group_of_mesh) {
+        const TreeNodes tree(run.result, run.result.roots[group], build.first_ref_of_group[group]);
+        std::set<uint64_t> now;
+        for (const auto& [node, count] : tree.all) {
+            now.insert(node);
+            if (before.count(node)) continue;
+            costs.fresh += 1, costs.sorted += count;
+        }
+        costs.nodes += double(tree.all.size());
+        before = std::move(now);
+    }
+    return costs;
+}
 
 constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;
 constexpr size_t kJudged = 600;     // rays of a case that are compared with every primitive

@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "check/seed.hpp"
-#include "check/surfaces/directions.hpp"
-#include "check/surfaces/model_faults.hpp"
+#include "check/surfaces/hemisphere.hpp"
+#include "check/surfaces/model_checks.hpp"
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
 #include "worker/child.hpp"

@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
-#include "base/shell_word.hpp"
+#include "base/text.hpp"
 
 namespace clarity::lab {
 namespace {

@@ -1,9 +1,11 @@
-// capabilities.hpp -- names of the bits of rt_accel::capabilities, for messages, JSON and kernels.
+// capabilities.hpp -- what a plugin says that it can do: the bits of rt_accel::capabilities with their names, and extensions.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "rt_device.h"
 #include "rt_plugin.h"
+#include "rt_refit.h"
 
 namespace clarity {
 
@@ -17,5 +19,13 @@ const std::vector<Capability>& capabilities();
 
 // Returns the names of a structure's capabilities in the order of their bits. Bits that this host does not know are left out.
 std::vector<std::string> capability_names(const rt_accel& accel);
+
+// Finds the extensions of a plugin that this host knows.
+
+// The extension `refit` of a structure; refit is nullptr if it has none of a version that this host knows. The tables of
+// plugins are the registry's copies.
+rt_refit refit_of(const rt_plugin& plugin);
+// The extension `device_build`; topology, pack and refit are nullptr if it has none of a version that this host knows.
+rt_device_build device_build_of(const rt_plugin& plugin);
 
 }  // namespace clarity

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/files/cache_folder.hpp"
 #include "base/files/library_files.hpp"
-#include "base/files/own_folder.hpp"
 #include "base/files/process_folder.hpp"
 #include "base/files/read_file.hpp"
 #include "base/log.hpp"

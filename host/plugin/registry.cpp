@@ -15,12 +15,12 @@
 #include "base/files/library_files.hpp"
 #include "base/files/packed_file.hpp"
 #include "base/log.hpp"
-#include "base/lower.hpp"
+#include "base/text.hpp"
 #include "base/timeline.hpp"
 #include "plugin/elf_file.hpp"
-#include "plugin/load_trial.hpp"
 #include "plugin/plugin_check.hpp"
 #include "plugin/plugin_copy.hpp"
+#include "plugin/trust.hpp"
 #include "scene/surface_models.hpp"
 
 namespace clarity {

@@ -3,6 +3,9 @@
 #pragma once
 #include <string>
 
+#include "base/problem.hpp"
+#include "worker/job.hpp"
+
 namespace clarity {
 
 enum class Trust {
@@ -20,5 +23,14 @@ void trust_own_libraries_only();
 
 // Makes a library proven, in this process and later ones ($XDG_CACHE_HOME/clarity/known_plugins).
 void remember_library(const std::string& path);
+
+// Opens a library in a worker process before this process does. The dynamic loader and a library's
+// constructors run at once; a damaged file crashes them.
+
+// Opens and checks a library without trust (trust.hpp) in a worker. Returns nothing if that worker came to
+// an end, or could not be started; otherwise how it died: the library must then not be opened here. Thread-safe.
+Problem try_to_load(const std::string& path);
+
+extern const worker::JobKind kLoadJob;
 
 }  // namespace clarity

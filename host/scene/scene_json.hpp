@@ -21,4 +21,12 @@ std::map<std::string, uint64_t> light_counts(const Scene& scene);
 uint64_t materials_with_alpha(const Scene& scene);
 std::string sky_text(const Sky& sky);
 
+// Materials as JSON and as text, without values that are defaults.
+
+// Name, model, and all values of the model that are not defaults, by their keys; `texture` if it has one,
+// and its maps by their keys.
+nlohmann::ordered_json material_json(const Scene& scene, const Material& material);
+// The same in a line: "steel: gltf, color 0.5 0.5 0.5, metallic 1".
+std::string material_text(const Scene& scene, const Material& material);
+
 }  // namespace clarity

@@ -11,9 +11,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "base/lower.hpp"
-#include "base/memory_text.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "base/timeline.hpp"
 
 namespace clarity::worker {

@@ -18,7 +18,6 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "worker/channel.hpp"
-#include "worker/spawn.hpp"
 
 extern char** environ;
 
@@ -131,6 +130,35 @@ uint64_t WorkerProcess::resident_bytes() const {
     const bool read = std::fscanf(file, "%llu %llu", &total, &resident) == 2;
     std::fclose(file);
     return read ? resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+Spawn::Spawn() {
+    posix_spawn_file_actions_init(&files_);
+    posix_spawn_file_actions_addopen(&files_, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawnattr_init(&attributes_);
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    posix_spawnattr_setsigmask(&attributes_, &none);
+    posix_spawnattr_setsigdefault(&attributes_, &all);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+}
+
+Spawn::~Spawn() {
+    posix_spawnattr_destroy(&attributes_);
+    posix_spawn_file_actions_destroy(&files_);
+}
+
+void Spawn::give(int descriptor, int number) {
+    posix_spawn_file_actions_adddup2(&files_, descriptor, number);
+}
+
+int Spawn::start(std::vector<std::string>& words, char* const* environment, pid_t& pid) {
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    return posix_spawnp(&pid, argv[0], &files_, &attributes_, argv.data(), environment);
 }
 
 }  // namespace clarity::worker

@@ -9,7 +9,6 @@
 #include "base/error.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/suites/ray_sets.hpp"
-#include "bench/suites/shape_meshes.hpp"
 #include "bench/suites/zoo_scenes.hpp"
 #include "support/scenes.hpp"
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bench/baselines/baseline.hpp"
-#include "bench/cases/analysis.hpp"
+#include "bench/cases/own_entries.hpp"
 #include "bench/suites/ray_sets.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "support/generated.hpp"

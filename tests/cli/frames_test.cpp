@@ -1,14 +1,15 @@
 // frames_test.cpp -- frames of an animation that several processes render, and some of them are killed.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/host_name.hpp"
+#include "base/machine.hpp"
 #include "cli/run_program.hpp"
 #include "render/settings/tracer_choice.hpp"
 #include "support/scratch.hpp"

@@ -1,4 +1,3 @@
-#include "device/pocl_threads.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

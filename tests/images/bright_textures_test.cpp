@@ -5,8 +5,8 @@
 
 #include "base/pictures/shared_exponent.hpp"
 #include "images/map_scenes.hpp"
-#include "import/sink/smaller_pictures.hpp"
-#include "render/emitters/map_mean.hpp"
+#include "import/sink/texture.hpp"
+#include "render/emitters/sky_table.hpp"
 #include "scene/bright_texture.hpp"
 
 using namespace clarity;

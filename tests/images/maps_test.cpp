@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "images/map_scenes.hpp"
-#include "import/sink/smaller_pictures.hpp"
-#include "render/emitters/map_mean.hpp"
+#include "import/sink/texture.hpp"
+#include "render/emitters/sky_table.hpp"
 #include "render/kernels/scene_features.hpp"
 #include "scene/tangents.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <new>
 
-#include "import/scene_digest.hpp"
+#include "import/wire.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"
 

@@ -1,5 +1,5 @@
 // What importers deliver of motion, good and bad, with both kinds of import: in this process and in the worker.
-#include "import/sequence_reader.hpp"
+#include "import/import.hpp"
 #include "import_case.hpp"
 #include "scene/motion/pose.hpp"
 

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
-#include "lab/board.hpp"
 #include "lab/build.hpp"
 #include "lab/grade.hpp"
+#include "lab/results.hpp"
 #include "lab_sdk.hpp"
 #include "support/scratch.hpp"
 #include "worker/child.hpp"

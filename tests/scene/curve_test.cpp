@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scene/motion/curve.hpp"
+#include "scene/motion/clip_values.hpp"
 #include "scene/motion/node_transform.hpp"
 
 namespace clarity {

@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "render/settings/accel_choice.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity::test {
 namespace {

@@ -10,12 +10,12 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "ui/app/preferences_json.hpp"
+#include "ui/app/preferences.hpp"
 #include "ui/browser/file_listing.hpp"
 #include "ui/hud/keys_hud.hpp"
 #include "ui/panel/preset_folder.hpp"
-#include "ui/widgets/frame_graph.hpp"
 #include "ui/widgets/log_rows.hpp"
+#include "ui/widgets/plots.hpp"
 #include "ui/widgets/scene_rows.hpp"
 
 namespace clarity::ui {

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "ui/driver/window_fixture.hpp"
-#include "ui/widgets/keyboard_layout.hpp"
+#include "ui/widgets/key_map.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <set>
 
-#include "base/plural.hpp"
-#include "ui/app/preferences_json.hpp"
+#include "base/text.hpp"
+#include "ui/app/preferences.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/threads/frame_thread.hpp"
 #include "ui/widgets/fonts.hpp"

@@ -1,18 +1,19 @@
 // Tests of the overlays of pictures, as far as they need no screen.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <glm/geometric.hpp>
+
+#include <cmath>
 #include <limits>
 
-#include "ui/hud/hud_stack.hpp"
+#include "ui/hud/picture_hud.hpp"
 #include "ui/overlay/light_handles.hpp"
 #include "ui/overlay/line_quads.hpp"
+#include "ui/overlay/move_handles.hpp"
 #include "ui/overlay/ray_lines.hpp"
-#include "ui/overlay/selection_box.hpp"
-#include "ui/threads/picture_difference.hpp"
+#include "ui/threads/picture.hpp"
+#include "ui/viewport/picture_captions.hpp"
 #include "ui/viewport/picture_layout.hpp"
-#include "ui/viewport/speed_verdict.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -3,17 +3,23 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
+#include <thread>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/files/output_file.hpp"
+#include "base/files/process_folder.hpp"
 #include "base/log.hpp"
 #include "render/film/image_io.hpp"
-#include "ui/app/close_limit.hpp"
 #include "ui/app/key_actions.hpp"
 #include "ui/automation/script.hpp"
 #include "ui/hud/hud.hpp"
@@ -28,6 +34,45 @@
 
 namespace clarity::ui {
 namespace {
+
+// Ends the program if its threads do not. No call of OpenCL stops a launch on a CPU, or returns from a call
+// that hangs in a driver, so a window that waited for its threads would stay as a process without a window.
+
+// If this object lives longer than the limit and no picture is being written, the process ends with exit code 0, after a line
+// on stderr. Nothing is lost: the caller has saved what is to be kept, and the kernel ends our workers with us.
+class CloseLimit {
+ public:
+    explicit CloseLimit(double seconds) : thread_([this, seconds] { run(seconds); }) {}
+    ~CloseLimit() {
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            closed_ = true;
+        }
+        changed_.notify_all();
+        thread_.join();
+    }
+    CloseLimit(const CloseLimit&) = delete;
+    CloseLimit& operator=(const CloseLimit&) = delete;
+
+ private:
+    void run(double seconds) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        const auto closed = [this] { return closed_; };
+        do
+            if (changed_.wait_for(lock, std::chrono::duration<double>(seconds), closed)) return;
+        while (PendingWrite::any());
+        log(LogLevel::warning, "the OpenCL driver did not stop within " + std::to_string(static_cast<int>(seconds)) +
+                                   " s after the window was closed, so the program was ended");
+        std::fflush(nullptr);
+        leave_process_folders();
+        _exit(0);
+    }
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool closed_ = false;
+    std::thread thread_;  // last member: the thread starts when all others exist
+};
 
 // SIGTERM, SIGHUP and Ctrl-C close the window as its button does, so that preferences are saved and temporary files removed. A
 // second signal ends the program at once.

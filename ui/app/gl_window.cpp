@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "ui/widgets/keyboard_layout.hpp"
+#include "ui/widgets/key_map.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -12,7 +12,7 @@ namespace clarity::ui {
 
 // A key that was pressed or released, or the loss of the keyboard focus.
 struct KeyEvent {
-    int key = 0;  // GLFW's code of the key that is meant (keyboard_layout.hpp)
+    int key = 0;  // GLFW's code of the key that is meant (widgets/key_map.hpp)
     enum class Kind { press, release, lost_focus } kind = Kind::press;
     bool ctrl = false;
     bool other_modifier = false;  // Alt or Super

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "ui/session/figures.hpp"
 #include "ui/session/session.hpp"
+#include "ui/session/session_output.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/ui_state.hpp"
 

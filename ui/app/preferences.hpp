@@ -1,6 +1,7 @@
 // preferences.hpp -- the settings which the window keeps from run to run, as JSON under XDG_CONFIG_HOME/clarity.
 #pragma once
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,12 @@ std::string preferences_folder();
 Preferences load_preferences(const std::string& folder, std::string* notice = nullptr);
 // Writes a temporary file, then renames it. A failure is a warning in the log.
 void save_preferences(const std::string& folder, const Preferences& preferences);
+
+// Conversion of preferences to JSON and back.
+nlohmann::json to_json(const Preferences& preferences);
+// Values out of range are clamped; missing ones get their defaults. Throws nlohmann::json::exception if an entry has the wrong
+// type. With `problems`, each such failure is appended there and the entry is left out; then it throws only if `json` is not an
+// object.
+Preferences preferences_from(const nlohmann::json& json, std::vector<std::string>* problems = nullptr);
 
 }  // namespace clarity::ui

@@ -4,22 +4,21 @@
 #include <imgui.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "base/error.hpp"
 #include "plugin/parameters.hpp"
 #include "render/film/image_io.hpp"
-#include "ui/automation/picture_script.hpp"
+#include "ui/automation/script_commands.hpp"
 #include "ui/automation/scripted_window.hpp"
-#include "ui/automation/time_script.hpp"
-#include "ui/session/figures.hpp"
 #include "ui/session/session_output.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/widgets.hpp"

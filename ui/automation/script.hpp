@@ -33,7 +33,7 @@
 //   why X Y                     traces a pixel's samples once more, to say why it is noisy
 //   noise                       what that said, as JSON
 //   find LABEL                  rectangle of this row's widget or list entry, as last drawn: JSON x, y, w, h
-// The commands of picture_script.hpp and time_script.hpp work as well.
+// The commands of script_commands.hpp work as well.
 #pragma once
 #include <deque>
 #include <memory>

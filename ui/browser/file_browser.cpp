@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "ui/browser/folder_reader.hpp"
+#include "ui/browser/file_listing.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"

@@ -1,6 +1,7 @@
 // file_listing.hpp -- folder listings and path completion for the file browser. Needs no window.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,5 +45,23 @@ std::string absolute_folder(const std::string& folder);  // without a slash at i
 std::vector<size_t> matching(const Listing& listing, const std::string& word);
 // Completes the text: appends what all entries that begin with it have in common, and "/" for a single folder.
 std::string complete(const Listing& listing, const std::string& text);
+
+// Reads folders on detached threads. A read that hangs is abandoned.
+
+// Keeps the listing of the folder that was requested last. Used on the window's thread; get() never waits for a disk.
+class FolderReader {
+ public:
+    // Returns the newest listing, which may be of another folder while reading(). nullptr until the first.
+    std::shared_ptr<const Listing> get(const DesiredListing& desired);
+    bool reading() const;
+    // The next get() reads the folder again.
+    void refresh() { stale_ = true; }
+
+ private:
+    struct Shared;
+    std::shared_ptr<Shared> shared_;
+    std::string asked_;
+    bool stale_ = false;
+};
 
 }  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "render/film/film_noise.hpp"
-#include "ui/session/figures.hpp"
+#include "ui/session/session_output.hpp"
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"

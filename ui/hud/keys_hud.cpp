@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "ui/widgets/keyboard_layout.hpp"
+#include "ui/widgets/key_map.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 

@@ -1,4 +1,4 @@
-// picture_hud.hpp -- small HUD boxes over a picture: lines of text, colour bars.
+// picture_hud.hpp -- small HUD boxes over a picture: lines of text, colour bars; and where they stand.
 #pragma once
 #include <imgui.h>
 
@@ -7,10 +7,30 @@
 #include <vector>
 
 #include "render/film/false_colors.hpp"
-#include "ui/hud/hud_stack.hpp"
 #include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
+
+// Places HUD boxes in the corners of a picture so that none covers another. Pure arithmetic.
+enum class Corner { top_left, top_right, bottom_left, bottom_right };
+
+// The free room in one picture's corners: a column at the left and one at the right, each filled from above and from below. If
+// two columns would be narrower than `least`, there is only one.
+class HudStack {
+ public:
+    HudStack() = default;
+    HudStack(const Rect& area, float margin, float least = 0);
+    // The largest width of a box.
+    float max_width() const { return max_width_; }
+    // Takes room for a box. Returns nullopt if there is not enough left in this corner.
+    std::optional<Rect> take(Corner corner, float width, float height);
+
+ private:
+    Rect area_;
+    float margin_ = 0, max_width_ = 0;
+    bool one_column_ = false;
+    float above_[2] = {}, below_[2] = {};  // heights taken so far in the left and the right column
+};
 
 struct HudText {
     std::string text;

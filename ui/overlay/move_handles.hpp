@@ -3,11 +3,13 @@
 // Arrows along the world's axes move along them, the disc in the middle moves across the view, a ring about an axis turns, and
 // the square scales. All have the same size in the window, wherever the instance is.
 #pragma once
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "scene/instance_edit.hpp"
 #include "ui/overlay/projection.hpp"
+#include "ui/session/session.hpp"
 
 namespace clarity::ui {
 
@@ -41,5 +43,18 @@ struct MoveDrag {
 };
 // The shift of the instance now. The start's, where the view shows the handle's axis as a point.
 InstanceShift dragged(const MoveDrag& drag, const Projection& projection, const glm::vec2& mouse);
+
+// The box around the selected object, in world space.
+
+// A box along an object's own axes.
+struct SelectionBox {
+    Bounds own;  // not empty
+    Affine place = kIdentity;
+    std::array<std::array<float, 3>, 8> corners() const;  // in the order of Volumes
+};
+
+// nullopt: the selection has no bounds. vertices: those of the selected instance's mesh, where the scene does not have them.
+// Takes time linear in the mesh's vertices.
+std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection, const PosedMesh* vertices = nullptr);
 
 }  // namespace clarity::ui

@@ -13,6 +13,20 @@ namespace {
 
 constexpr uint32_t kHalo = IM_COL32(0, 0, 0, 150);
 
+constexpr uint32_t kUnder = IM_COL32(0, 0, 0, 150);
+
+glm::vec3 place_of(const rt_path_record& record) {
+    return {record.at[0], record.at[1], record.at[2]};
+}
+
+// Of the ray that leaves an event: as of Whitted's rays.
+uint32_t color_of_event(const rt_path_record& record) {
+    const size_t kind = record.kind == RT_PATH_BEGINS || record.how == RT_FIRST_DIFFUSE ? 0
+                        : record.how == RT_FIRST_GLOSSY                                 ? 1
+                                                                                        : 2;
+    return ray_kinds()[kind].color;
+}
+
 }  // namespace
 
 const std::vector<RayKind>& ray_kinds() {
@@ -56,6 +70,43 @@ void append_ray_lines(const RayTree& tree, const Projection& seen, float far, fl
             lines.dot(to, (chosen ? 6.0f : 4.0f) * unit, color, width);
         else
             lines.arrow_head(to, along, 9 * unit, color, width);
+    }
+}
+
+void append_path_lines(const Replay& replay, const std::vector<unsigned>& samples, const Projection& seen, float far,
+                       float scale, int selected, LineList& lines) {
+    const uint32_t to_light = ray_kinds()[3].color;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const bool chosen = static_cast<int>(i) == selected;
+        const float width = (chosen ? 4.0f : 1.4f) * scale, opacity = selected < 0 || chosen ? 1.0f : 0.4f;
+        const auto draw = [&](const glm::vec3& from, const glm::vec3& to, uint32_t color) {
+            lines.line(from, to, kUnder, width + 2 * scale);
+            lines.line(from, to, with_opacity(color, opacity), width);
+        };
+        const auto unit_at = [&](const glm::vec3& place) {
+            return seen.unit_at(std::max(seen.to_camera(place).z, seen.near())) * scale;
+        };
+        const ReplayedSample& sample = replay.samples[samples[i]];
+        std::vector<const rt_path_record*> events;  // the camera, and each event
+        for (unsigned r = 0; r < sample.records; ++r) {
+            const rt_path_record& record = replay.records[sample.first_record + r];
+            if (record.kind == RT_PATH_LIT) continue;
+            const glm::vec3 at = place_of(record);
+            if (!events.empty()) {
+                draw(place_of(*events.back()), at, color_of_event(*events.back()));
+                lines.dot(at, (chosen ? 6.0f : 3.5f) * unit_at(at), with_opacity(color_of_event(record), opacity), width);
+            }
+            events.push_back(&record);
+        }
+        for (unsigned r = 0; r < sample.records; ++r) {
+            const rt_path_record& record = replay.records[sample.first_record + r];
+            if (record.kind != RT_PATH_LIT || record.bounce >= events.size()) continue;
+            const glm::vec3 from = place_of(*events[record.bounce]), at = place_of(record);
+            const glm::vec3 to = record.flags & RT_PATH_BEYOND ? from + at * far : at, way = to - from;
+            draw(from, to, to_light);
+            if (const float length = glm::length(way); length > 0)
+                lines.arrow_head(to, way / length, 9 * unit_at(to), with_opacity(to_light, opacity), width);
+        }
     }
 }
 

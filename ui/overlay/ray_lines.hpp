@@ -1,9 +1,10 @@
-// ray_lines.hpp -- draws the rays of a pixel as lines in the scene.
+// ray_lines.hpp -- draws the rays of a pixel, and the paths of its samples, as lines in the scene.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "render/tracers/inspect/inspect.hpp"
+#include "render/tracers/replay/replay.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/overlay/projection.hpp"
 
@@ -24,5 +25,13 @@ size_t ray_kind_of(const RayRecord& ray);
 // hits. seen: view that dots and arrow heads are sized for, so that they look the same from anywhere. selected: index of the
 // highlighted ray; -1: none.
 void append_ray_lines(const RayTree& tree, const Projection& seen, float far, float scale, int selected, LineList& lines);
+
+// Draws paths of light as lines in the scene.
+
+// Appends the paths of these samples, from the camera to each event, and from there to the light that counted; light beyond
+// everything has a line of length `far`. Paths have the colours of ray_kinds(). seen: as of append_ray_lines(). selected: index
+// in `samples` of the highlighted path; -1: none.
+void append_path_lines(const Replay& replay, const std::vector<unsigned>& samples, const Projection& seen, float far,
+                       float scale, int selected, LineList& lines);
 
 }  // namespace clarity::ui

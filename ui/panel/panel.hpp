@@ -1,6 +1,9 @@
 // panel.hpp -- the tabs beside the picture. Each draws its rows from tables and statistics, and changes the session's desired
 // state.
 #pragma once
+#include <array>
+
+#include "scene/key.hpp"
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
 #include "ui/widgets/ui_state.hpp"
@@ -27,5 +30,11 @@ void draw_statistics_tab(Session& session);
 void draw_log_tab(Session& session, UiState& state);
 void draw_plugins_tab(Session& session);
 void draw_help_tab(UiState& state, const std::string& gl_text);
+
+// Rows of the panel for keys of lights and materials.
+
+// Draws label and widget of a key. Returns whether the user has changed the value, which is then allowed. size: of the scene,
+// for steps of places and lengths.
+bool key_row(const Key& key, std::array<float, 3>& value, float size);
 
 }  // namespace clarity::ui

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "scene/light_kinds.hpp"
-#include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "base/files/output_file.hpp"
-#include "base/plural.hpp"
+#include "base/text.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"

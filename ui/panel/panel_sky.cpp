@@ -4,7 +4,6 @@
 #include "render/edit/sky_edit.hpp"
 #include "render/settings/tracer_choice.hpp"
 #include "scene/sky_kinds.hpp"
-#include "ui/panel/key_rows.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"

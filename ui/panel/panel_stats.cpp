@@ -6,9 +6,8 @@
 #include <cstdio>
 
 #include "ui/panel/panel.hpp"
-#include "ui/session/figures.hpp"
-#include "ui/widgets/frame_graph.hpp"
-#include "ui/widgets/log_plot.hpp"
+#include "ui/session/session_output.hpp"
+#include "ui/widgets/plots.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 

@@ -10,7 +10,7 @@
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 #include "ui/session/comparisons.hpp"
 
 namespace clarity::ui {

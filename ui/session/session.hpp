@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "base/files/file_watch.hpp"
+#include "base/log.hpp"
 #include "device/kernel_watch.hpp"
 #include "plugin/library_watch.hpp"
 #include "render/edit/preset.hpp"
 #include "ui/session/history.hpp"
 #include "ui/session/log_buffer.hpp"
-#include "ui/session/messages.hpp"
 #include "ui/session/playback.hpp"
 #include "ui/session/sequence.hpp"
 #include "ui/session/view_options.hpp"
@@ -28,6 +28,32 @@
 #include "ui/threads/preview_thread.hpp"
 
 namespace clarity::ui {
+
+// The message over the picture.
+
+// It stays until it is dismissed or its cause is gone.
+struct WindowMessage {
+    std::string text, details;
+};
+
+// Used on the window's thread.
+class Messages {
+ public:
+    // Shows a failure, in place of the last one, and logs it.
+    void report(const std::string& text, const std::string& details = {}) {
+        log(LogLevel::error, details.empty() ? text : text + "\n" + details);
+        shown_ = {text, details};
+        ++count_;
+    }
+    const WindowMessage& shown() const { return shown_; }  // without text: none
+    void add(const std::string& text) { shown_.text += text; }
+    void dismiss() { shown_ = {}; }
+    uint64_t count() const { return count_; }  // of all that were reported
+
+ private:
+    WindowMessage shown_;
+    uint64_t count_ = 0;
+};
 
 // The object selected in the picture or in the scene's tree.
 struct Selection {

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "base/files/pending_write.hpp"
+#include "base/files/output_file.hpp"
 #include "base/log.hpp"
 #include "device/launch_limit.hpp"
 #include "ui/session/session.hpp"

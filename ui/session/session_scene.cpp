@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/log.hpp"
-#include "render/view/size_note.hpp"
+#include "render/view/view.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/comparisons.hpp"
 #include "ui/session/session.hpp"

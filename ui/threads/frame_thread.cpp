@@ -12,7 +12,7 @@
 #include "render/compare/picture_errors.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/settings/aov.hpp"
-#include "ui/threads/picture_difference.hpp"
+#include "ui/threads/picture.hpp"
 #include "ui/threads/thread_priority.hpp"
 
 namespace clarity::ui {

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "render/multi/multi_frame_renderer.hpp"
-#include "ui/threads/frame_times.hpp"
 #include "ui/threads/picture.hpp"
 
 namespace clarity::ui {

@@ -3,14 +3,40 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "render/film/false_colors.hpp"
+#include "render/film/film_noise.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
-#include "ui/threads/convergence.hpp"
 #include "ui/threads/picture_part.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
+
+// How the estimated error of a picture of `path` has fallen while its samples were traced.
+
+class Convergence {
+ public:
+    struct Point {
+        double samples;  // a pixel, the mean
+        double seconds;  // of tracing
+        double error;    // FilmNoise::error
+        double rmse;     // against the reference; NaN: there is none of this size
+    };
+    // A sample more was traced, in so many milliseconds; sample 0 begins anew. Returns whether the error is to be estimated
+    // now: of some samples only, as the film must be read for it.
+    bool add(unsigned sample, double ms);
+    // Estimated after the last sample. More than once does no harm.
+    void put(const FilmNoise& noise, double rmse);
+    double seconds() const { return seconds_; }  // of all samples
+    const std::vector<Point>& points() const { return points_; }
+    // The exponent of the samples by which the error falls; NaN: not known.
+    double slope() const;
+
+ private:
+    std::vector<Point> points_;
+    double seconds_ = 0;
+};
 
 // Everything that the frame thread needs to trace and display a picture.
 struct FrameJob {
@@ -85,6 +111,32 @@ class Surroundings {
     ByteImage images_[2];
     Camera camera_;
     std::weak_ptr<const void> loaded_;
+};
+
+// Compares two pictures of the same view pixel by pixel.
+
+// Compares two images of the same size. If the sizes differ, every pixel counts as different and the image is empty.
+PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b);
+
+// The last frame times of one side.
+
+// Times of the frames of one program, in milliseconds, oldest first.
+class FrameTimes {
+ public:
+    // Adds those of a frame. Times of another program are dropped, and so is the first frame of this one: drivers finish
+    // compiling in it.
+    void add(const std::shared_ptr<const Ready>& of, const PictureSide& side);
+    // PictureSide::frame_ms, and the sums of its kernels. The former has the host's part too.
+    const std::vector<float>& frames_ms() const { return frames_ms_; }
+    const std::vector<float>& kernels_ms() const { return kernels_ms_; }
+    // Of the last 30 frames, to compare two sides: with more, frames of an earlier view would count too.
+    std::vector<float> recent_kernels_ms() const;
+    size_t size() const { return frames_ms_.size(); }
+
+ private:
+    std::vector<float> frames_ms_, kernels_ms_;
+    std::shared_ptr<const Ready> of_;
+    bool cold_ = false;  // holds only the time of the program's first frame
 };
 
 }  // namespace clarity::ui

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "render/launch/device_scene.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 #include "scene/motion/deform.hpp"
 
 namespace clarity::ui {

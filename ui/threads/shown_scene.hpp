@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "import/sequence_reader.hpp"
+#include "import/import.hpp"
 #include "render/multi/pose_preparer.hpp"
 #include "scene/instance_edit.hpp"
 #include "ui/threads/prepared_scene.hpp"

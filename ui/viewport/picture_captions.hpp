@@ -29,4 +29,12 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
 std::vector<HudText> caption_lines(const Caption& caption);
 std::string difference_text(const PictureDifference& difference);
 
+// Decides from measured frame times which of two sides is faster.
+inline constexpr const char* kAboutTheSame = "about the same";
+
+// Returns "1.80x faster" if `mine` is faster than `others`, and kAboutTheSame if the difference is within the spread of the
+// times. Returns an empty text for the slower side, and if a side has fewer than five times. Times are milliseconds of frames
+// that the two sides trace alternately.
+std::string speed_verdict(const std::vector<float>& mine, const std::vector<float>& others);
+
 }  // namespace clarity::ui

@@ -1,16 +1,16 @@
 // The parts of PicturePane which draw over the pictures, except for lines of the world: HUD boxes, handles, marks at pixels.
 #include <imgui.h>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/viewport/picture_pane.hpp"
 #include "ui/widgets/theme.hpp"
-#include "ui/widgets/widget_rects.hpp"
 #include "ui/widgets/widgets.hpp"
 
 namespace clarity::ui {

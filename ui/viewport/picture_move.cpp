@@ -3,7 +3,7 @@
 
 #include "ui/viewport/picture_pane.hpp"
 #include "ui/widgets/theme.hpp"
-#include "ui/widgets/widget_rects.hpp"
+#include "ui/widgets/widgets.hpp"
 
 namespace clarity::ui {
 namespace {

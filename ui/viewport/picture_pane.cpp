@@ -10,7 +10,6 @@
 #include "base/elapsed.hpp"
 #include "scene/camera.hpp"
 #include "scene/motion/deform.hpp"
-#include "ui/overlay/path_lines.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session_view.hpp"

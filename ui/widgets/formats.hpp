@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "base/plural.hpp"
+#include "base/text.hpp"
 
 namespace clarity::ui {
 

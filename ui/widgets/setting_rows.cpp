@@ -1,4 +1,3 @@
-#include "ui/widgets/setting_rows.hpp"
 
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -13,7 +12,6 @@
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "ui/widgets/formats.hpp"
-#include "ui/widgets/slider_bar.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 

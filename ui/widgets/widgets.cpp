@@ -3,10 +3,12 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <unordered_map>
 
 #include "base/error.hpp"
 #include "ui/session/session.hpp"
-#include "ui/widgets/slider_bar.hpp"
+#include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -28,6 +30,17 @@ void title_text(const char* title) {
     ImGui::PopStyleColor();
     ImGui::PopFont();
 }
+
+struct Place {
+    Rect rect;
+    int frame = -1;
+    bool inside = false;  // not scrolled out of sight
+};
+std::unordered_map<std::string, Place>& widget_rects() {
+    static std::unordered_map<std::string, Place> all;
+    return all;
+}
+std::string wanted;  // label of the rectangle that is to be scrolled into view
 
 }  // namespace
 
@@ -177,6 +190,61 @@ void attempt(Session& session, const std::function<void()>& what) {
     } catch (const Error& error) {
         session.messages().report(error.what(), error.details());
     }
+}
+
+void draw_slider_bar(double value, double min, double max, bool logarithmic) {
+    double share = max > min ? (value - min) / (max - min) : 0;
+    if (logarithmic) {  // like ImGui: zero counts as the smallest number shown
+        const double least = min > 0 ? min : 1e-3;
+        share = std::log(std::max(value, least) / least) / std::log(max / least);
+    }
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const ImVec2 to(from.x + ImGui::CalcItemWidth(), from.y + ImGui::GetFrameHeight());
+    const auto end = from.x + (to.x - from.x) * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    const bool hovered = ImGui::IsMouseHoveringRect(from, to) && ImGui::IsWindowHovered();
+    const float rounding = ImGui::GetStyle().FrameRounding;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(from, to, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
+    const ImVec4& accent = colors::kAccent;
+    if (end > from.x + 1)
+        list.AddRectFilled(from, {end, to.y}, ImGui::GetColorU32(ImVec4(accent.x, accent.y, accent.z, hovered ? 0.5f : 0.4f)),
+                           rounding, end < to.x - 1 ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
+}
+
+BareFrames::BareFrames() {
+    for (const ImGuiCol color : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive})
+        ImGui::PushStyleColor(color, ImVec4(0, 0, 0, 0));
+}
+
+BareFrames::~BareFrames() {
+    ImGui::PopStyleColor(3);
+}
+
+void note_rect(const std::string& label, const Rect& rect) {
+    if (label.empty()) return;
+    const ImVec2 low = ImGui::GetWindowDrawList()->GetClipRectMin(), high = ImGui::GetWindowDrawList()->GetClipRectMax();
+    const float middle = rect.y + rect.height / 2;
+    const bool inside = middle > low.y && middle < high.y && rect.x < high.x && rect.x + rect.width > low.x;
+    Place& place = widget_rects()[label];
+    // If two rectangles of one frame have the same label, the visible one is kept.
+    if (inside || !place.inside || place.frame != ImGui::GetFrameCount()) place = {rect, ImGui::GetFrameCount(), inside};
+    if (wanted != label) return;
+    wanted.clear();
+    if (!inside) ImGui::SetScrollHereY(0.5f);
+}
+
+void note_rect(const std::string& label) {
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    note_rect(label, {from.x, from.y, to.x - from.x, to.y - from.y});
+}
+
+const Rect* drawn_rect(const std::string& label) {
+    const auto found = widget_rects().find(label);
+    // A script asks between two frames, before ImGui counts the next one.
+    if (found == widget_rects().end() || found->second.frame < ImGui::GetFrameCount() - 1) return nullptr;
+    if (found->second.inside) return &found->second.rect;
+    wanted = label;
+    return nullptr;
 }
 
 }  // namespace clarity::ui

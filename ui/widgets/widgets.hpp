@@ -4,12 +4,30 @@
 #include <string>
 #include <vector>
 
+#include "render/settings/settings.hpp"
+#include "rt_plugin.h"
 #include "ui/widgets/formats.hpp"
-#include "ui/widgets/setting_rows.hpp"
+#include "ui/widgets/rect.hpp"
 #include "ui/widgets/theme.hpp"
-#include "ui/widgets/widget_rects.hpp"
 
 namespace clarity::ui {
+
+// Rows drawn from the settings table and from the plugins' parameter tables.
+
+// Draws a row of the settings table. Returns whether `settings` changed. Settings which make the host rebuild or recompile
+// change when the mouse button is released, all others while the slider is dragged.
+bool setting_row(const Setting& row, Settings& settings);
+// The same for a parameter of a plugin.
+bool parameter_row(const rt_param& param, double& value);
+
+// The rectangles in which rows, buttons and list entries were drawn. Tests click there.
+
+// Notes the rectangle of the last item, or the given one. It counts as visible inside the clip rectangle of the current window.
+void note_rect(const std::string& label);
+void note_rect(const std::string& label, const Rect& place);
+// Returns nullptr if nothing with this label is visible. If it is scrolled out of sight, the next frame scrolls it into view:
+// ask again then.
+const Rect* drawn_rect(const std::string& label);
 
 class Session;
 
@@ -47,5 +65,18 @@ std::string cut_front_to(const std::string& text, float width);
 
 // Runs `what`. An Error becomes the session's message.
 void attempt(Session& session, const std::function<void()>& what);
+
+// Draws a slider's value as a bar from the left edge, behind the number. ImGui's grab would cover the number.
+
+// Call it before the slider, and draw the slider with BareFrames.
+void draw_slider_bar(double value, double min, double max, bool logarithmic);
+
+// Hides the frames of sliders while it exists.
+struct BareFrames {
+    BareFrames();
+    ~BareFrames();
+    BareFrames(const BareFrames&) = delete;
+    BareFrames& operator=(const BareFrames&) = delete;
+};
 
 }  // namespace clarity::ui

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "base/hash.hpp"
+#include "base/digest.hpp"
 
 namespace clarity {
 namespace {

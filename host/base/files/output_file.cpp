@@ -17,7 +17,7 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "base/host_name.hpp"
+#include "base/machine.hpp"
 #include "base/problem.hpp"
 
 namespace clarity {

@@ -1,5 +1,6 @@
 // output_file.hpp -- writes files which appear complete or not at all.
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <string>
 
@@ -41,5 +42,24 @@ void write_text_file(const std::string& path, const std::string& text);
 // Throws Error(usage) if `path` cannot be written as a file: its folder is missing or not writable, it is itself a folder, or
 // its name is too long. Creates nothing and does not change an existing file.
 void check_writable(const std::string& path);
+
+// Whether a file is being made, so that a program that has to end gives it the time.
+
+// Exists from the first step of making a file, its encoding, to the last. Any thread may have some.
+class PendingWrite {
+ public:
+    PendingWrite() { ++count(); }
+    ~PendingWrite() { --count(); }
+    PendingWrite(const PendingWrite&) = delete;
+    PendingWrite& operator=(const PendingWrite&) = delete;
+    // Whether there is one in this process.
+    static bool any() { return count() > 0; }
+
+ private:
+    static std::atomic<int>& count() {
+        static std::atomic<int> writes{0};
+        return writes;
+    }
+};
 
 }  // namespace clarity

@@ -12,8 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "base/lower.hpp"
-#include "base/memory_text.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "base/files/own_folder.hpp"
+#include "base/files/cache_folder.hpp"
 
 namespace clarity {
 namespace {

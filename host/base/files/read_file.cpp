@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "base/memory_text.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

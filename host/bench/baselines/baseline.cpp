@@ -1,7 +1,5 @@
 #include "bench/baselines/baseline.hpp"
 
-#include "bench/baselines/moving_baseline.hpp"
-
 #ifdef CLARITY_HAVE_EMBREE
 #include "bench/baselines/embree_baseline.hpp"
 #endif

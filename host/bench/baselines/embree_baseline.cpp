@@ -16,7 +16,6 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
-#include "bench/baselines/embree_frame.hpp"
 
 namespace clarity::bench {
 namespace {

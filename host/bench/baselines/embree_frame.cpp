@@ -2,7 +2,7 @@
 // of 16, all full but the last one: surviving rays and shadow rays are compacted into arrays, field by field. The arithmetic is
 // loops over 16 lanes, which the compiler vectorizes once for each instruction set. Rays and picture are the same as those of
 // cl/.
-#include "bench/baselines/embree_frame.hpp"
+#include "bench/baselines/embree_baseline.hpp"
 
 #if defined(__SSE2__)
 #include <immintrin.h>

@@ -7,7 +7,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "bench/baselines/moving_baseline.hpp"
+#include "bench/baselines/baseline.hpp"
 
 namespace clarity::bench {
 

@@ -5,7 +5,6 @@
 
 #include "device/program.hpp"
 #include "render/compare/picture_errors.hpp"
-#include "render/compare/reference_picture.hpp"
 #include "render/kernels/program_cache.hpp"
 
 namespace clarity::bench {

@@ -1,8 +1,12 @@
 // own_entries.hpp -- entries of our structures: they build, trace a set of rays, or render pictures.
 #pragma once
 #include <functional>
+#include <vector>
 
 #include "bench/cases/case_state.hpp"
+#include "bench/output/record.hpp"
+#include "bench/suites/ray_sets.hpp"
+#include "render/tracers/rays/ray_query.hpp"
 
 namespace clarity::bench {
 
@@ -29,5 +33,12 @@ void count_rays(CaseState& state, BenchRecord& row, const Settings& settings, co
 
 // Compares each overlapped sequence with the non-overlapped one of the same structure and device.
 void compare_with_one_by_one(std::vector<BenchRecord>& rows);
+
+// Turns the counters of packets into figures per ray.
+
+// `hits`: results of `rays`, traced with RayQuery::count in packets of `lanes`; `work`: RayQuery::work of them. node_bytes:
+// size of one node in bytes.
+Analysis analyze(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hits, const std::vector<RayWork>& work,
+                 unsigned lanes, unsigned node_bytes);
 
 }  // namespace clarity::bench

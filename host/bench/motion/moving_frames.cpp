@@ -7,9 +7,9 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
-#include "bench/motion/motions.hpp"
+#include "bench/motion/animations.hpp"
 #include "device/cl_errors.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity::bench {
 namespace {

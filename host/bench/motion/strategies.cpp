@@ -12,7 +12,7 @@
 #include "render/frame/preparer.hpp"
 #include "render/moving/follow/pose_follower.hpp"
 #include "render/moving/on_host/host_mover.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity::bench {
 namespace {

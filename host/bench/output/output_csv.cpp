@@ -1,7 +1,7 @@
 // output_csv.cpp -- records as CSV (RFC 4180), with the keys of JSON; nested keys are joined with dots.
 #include <algorithm>
 
-#include "bench/output/record_keys.hpp"
+#include "bench/output/record_fields.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -3,7 +3,6 @@
 #include "bench/baselines/speedup.hpp"
 #include "bench/output/output.hpp"
 #include "bench/output/record_fields.hpp"
-#include "bench/output/record_keys.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -2,6 +2,7 @@
 // show it. To add a statistic, add a member to BenchRecord (or Analysis, or Summary) and a line to its table here.
 #pragma once
 #include "bench/output/fields.hpp"
+#include "bench/output/output.hpp"
 #include "bench/output/record.hpp"
 
 namespace clarity::bench {
@@ -20,5 +21,10 @@ template <class Owner>
 std::string shown_text(const Field<Owner>& field, const Owner& owner) {
     return shown_text(field.number(owner), field.look);
 }
+
+// One record as JSON, which CSV is also made from.
+
+// Every key is present; its value is null if there is nothing to say.
+Json record_json(const BenchReport& report, const BenchRecord& record);
 
 }  // namespace clarity::bench

@@ -4,7 +4,7 @@
 
 #include "bench/output/output.hpp"
 #include "bench/output/text_table.hpp"
-#include "bench/suites/shape_meshes.hpp"
+#include "bench/suites/zoo_scenes.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -5,11 +5,11 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "base/memory_text.hpp"
 #include "base/numbers.hpp"
+#include "base/text.hpp"
 #include "bench/run/machine.hpp"
 #include "bench/suites/subdivide.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "base/processor_time.hpp"
 #include "bench/run/failure.hpp"
 
 namespace clarity::bench {

@@ -5,7 +5,6 @@
 
 #include "base/angle.hpp"
 #include "base/parallel_for.hpp"
-#include "bench/suites/vec3.hpp"
 #include "scene/light_kinds.hpp"
 
 namespace clarity::bench {

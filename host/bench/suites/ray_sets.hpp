@@ -2,14 +2,25 @@
 // baselines trace the same rays.
 #pragma once
 #include <functional>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "bench/suites/vec3.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::bench {
+
+// Vectors in double precision, for rays and meshes made on the host.
+
+using Vec3 = glm::dvec3;
+
+// Unit vector. Returns `otherwise` for the zero vector, for which glm::normalize() returns NaN.
+inline Vec3 normalized(const Vec3& a, const Vec3& otherwise) {
+    const double length = glm::length(a);
+    return length > 0 ? (1 / length) * a : otherwise;
+}
 
 // Rays in an order which suits packets of up to 16x16 pixels: tiles of 16x16 pixels in rows, Z-order within a tile. Any 4, 8 or
 // 16 consecutive rays are thus 2x2, 4x2 or 4x4 pixels. A pixel without a ray (beyond the picture's edge, or where the camera

@@ -12,7 +12,6 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/packed_file.hpp"
-#include "bench/suites/shape_meshes.hpp"
 #include "bench/suites/zoo_scenes.hpp"
 #include "render/edit/edit.hpp"
 

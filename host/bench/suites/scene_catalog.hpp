@@ -18,7 +18,7 @@ struct BenchScene {
     std::string camera, light;       // in the syntax of make_view; "": the scene's own
     std::string computed;            // a name of zoo_scenes.hpp: what is added to the files, of which there may be none
     uint64_t triangles = 0;          // of what is computed, about
-    std::string shape;               // a name of shape_meshes.hpp: that mesh is added
+    std::string shape;               // a name of zoo_scenes.hpp: that mesh is added
     unsigned parts = 0;              // of the mesh
     std::string missing;             // not empty: the scene was not found; where it was sought, and what to do
 };
@@ -50,7 +50,7 @@ class SceneCatalog {
     std::vector<BenchView> views() const;
     // Eight scenes that are hard in different ways: five that are computed, of about so many triangles, and three scans.
     std::vector<BenchScene> zoo(uint64_t triangles) const;
-    // Each kind of shape_meshes.hpp: the shape, "torus", and its meshes, "torus, 32 parts".
+    // Each kind of zoo_scenes.hpp: the shape, "torus", and its meshes, "torus, 32 parts".
     std::vector<BenchScene> shapes() const;
 
  private:

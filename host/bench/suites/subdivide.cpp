@@ -9,7 +9,7 @@
 
 #include "base/angle.hpp"
 #include "base/parallel_for.hpp"
-#include "bench/suites/vec3.hpp"
+#include "bench/suites/ray_sets.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/motion/animations.hpp"
-#include "bench/motion/motions.hpp"
 #include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {

@@ -51,7 +51,7 @@ struct BenchCase {
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene
     Timing timing = Timing::timed;
-    std::string motion;  // of suite moving: see motions.hpp
+    std::string motion;  // of suite moving: see animations.hpp
 };
 
 struct Suite {

@@ -5,12 +5,57 @@
 #include <stdexcept>
 
 #include "base/angle.hpp"
-#include "bench/suites/mesh_writer.hpp"
 #include "bench/suites/ray_sets.hpp"
+#include "scene/scene.hpp"
 #include "scene/vec.hpp"
 
 namespace clarity::bench {
 namespace {
+
+// Writes meshes that are computed into a scene.
+
+// A mesh that grows at the end of the scene's arrays.
+class MeshWriter {
+ public:
+    explicit MeshWriter(Scene& scene) : scene_(scene) {
+        if (scene.materials.empty()) scene.materials.push_back({"default", default_material()});
+        mesh_.first_vertex = scene.vertex_count();
+        mesh_.first_triangle = scene.triangle_count();
+    }
+    rt_u32 vertex(const Vec& p) {
+        for (int k = 0; k < 3; ++k) scene_.positions.push_back(static_cast<float>(p[k]));
+        return mesh_.first_vertex + mesh_.vertex_count++;
+    }
+    void triangle(rt_u32 a, rt_u32 b, rt_u32 c) {
+        for (const rt_u32 v : {a, b, c}) scene_.triangles.push_back(v);
+        scene_.triangle_materials.push_back(0);
+        ++mesh_.triangle_count;
+        ++mesh_.polygon_count;
+    }
+    void quad(const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
+        const rt_u32 first = vertex(a);
+        vertex(b), vertex(c), vertex(d);
+        triangle(first, first + 1, first + 2);
+        triangle(first, first + 2, first + 3);
+    }
+    rt_u32 triangles() const { return mesh_.triangle_count; }
+    // Ends the mesh. Returns its number.
+    rt_u32 end() {
+        scene_.meshes.push_back(mesh_);
+        return static_cast<rt_u32>(scene_.meshes.size() - 1);
+    }
+    void end_and_place() { place(scene_, end(), kIdentity); }
+    static void place(Scene& scene, rt_u32 mesh, const Affine& at) {
+        Instance instance;
+        instance.mesh = mesh;
+        instance.world_from_object = at;
+        scene.instances.push_back(instance);
+    }
+
+ private:
+    Scene& scene_;
+    Mesh mesh_;
+};
 
 constexpr double kTurn = 2 * kPi;
 
@@ -168,6 +213,104 @@ void add_soup(uint64_t triangles, Scene& scene) {
     mesh.end_and_place();
 }
 
+constexpr double kWholeTurn = 2 * kPi;
+
+// A point of a profile that is turned around the y axis.
+struct ProfilePoint {
+    double radius, height;
+};
+ProfilePoint cylinder_at(double v) {
+    return {0.8, 1.6 * v};
+}
+ProfilePoint cone_at(double v) {
+    return {0.9 * (1 - v), 1.6 * v};
+}
+ProfilePoint torus_at(double v) {
+    return {0.8 + 0.3 * std::cos(kWholeTurn * v), 0.7 - 0.3 * std::sin(kWholeTurn * v)};
+}
+// The vase: a curve of Bezier, degree 3.
+ProfilePoint nurbs_at(double v) {
+    constexpr ProfilePoint kPoints[4] = {{0.6, 0}, {1.1, 0.5}, {0.2, 1.1}, {0.5, 1.6}};
+    const double w = 1 - v, weights[4] = {w * w * w, 3 * w * w * v, 3 * w * v * v, v * v * v};
+    ProfilePoint at{0, 0};
+    for (int i = 0; i < 4; ++i) at.radius += weights[i] * kPoints[i].radius, at.height += weights[i] * kPoints[i].height;
+    return at;
+}
+
+struct Turned {
+    const char* name;
+    ProfilePoint (*at)(double v);  // v from 0 to 1
+    double rows_per_part;          // along the profile; 0: it is straight
+};
+constexpr Turned kTurned[] = {
+    {"cylinder", cylinder_at, 0}, {"cone", cone_at, 0}, {"torus", torus_at, 0.5}, {"nurbs", nurbs_at, 0.25}};
+
+Vec turned_point(const Turned& shape, double u, double v) {
+    const ProfilePoint at = shape.at(v);
+    return {at.radius * std::cos(kWholeTurn * u), at.height, -at.radius * std::sin(kWholeTurn * u)};
+}
+
+// A mesh of a turned profile.
+struct TurnedMesh {
+    const Turned& shape;
+    const unsigned parts, rows;  // around the axis, along the profile
+
+    TurnedMesh(const Turned& turned, unsigned wanted)
+        : shape(turned),
+          parts(std::max(3u, wanted)),
+          rows(std::max(1u, static_cast<unsigned>(std::lround(turned.rows_per_part * parts)))) {}
+    Vec at(double column, double row) const { return turned_point(shape, column / parts, row / rows); }
+    // All columns meet there.
+    bool is_tip(unsigned row) const { return shape.at(double(row) / rows).radius == 0; }
+};
+
+void add_turned(const TurnedMesh& grid, Scene& scene) {
+    MeshWriter mesh(scene);
+    std::vector<rt_u32> before, here;
+    for (unsigned row = 0; row <= grid.rows; ++row, std::swap(before, here)) {
+        here.clear();
+        for (unsigned column = 0; column < grid.parts; ++column) here.push_back(mesh.vertex(grid.at(column, row)));
+        for (unsigned column = 0; column < grid.parts && row > 0; ++column) {
+            const unsigned next = (column + 1) % grid.parts;
+            mesh.triangle(before[column], before[next], here[next]);
+            if (!grid.is_tip(row)) mesh.triangle(before[column], here[next], here[column]);
+        }
+    }
+    mesh.end_and_place();
+}
+
+double error_of(const TurnedMesh& grid) {
+    double error = 0;  // the same in all columns
+    for (unsigned row = 0; row < grid.rows; ++row) {
+        const auto edge = [&](double c0, double r0, double c1, double r1) {
+            const Vec middle = 0.5 * (grid.at(c0, r0) + grid.at(c1, r1));
+            error = std::max(error, length(middle - grid.at(0.5 * (c0 + c1), 0.5 * (r0 + r1))));
+        };
+        edge(0, row, 1, row);
+        edge(0, row, 0, row + 1);
+        if (!grid.is_tip(row + 1)) edge(0, row, 1, row + 1);
+    }
+    return error;
+}
+
+const Turned* turned_shape(const std::string& name) {
+    for (const Turned& shape : kTurned)
+        if (name == shape.name) return &shape;
+    return nullptr;
+}
+
+void add_box(Scene& scene) {
+    MeshWriter mesh(scene);
+    rt_u32 corners[8];
+    for (int i = 0; i < 8; ++i) corners[i] = mesh.vertex({i & 1 ? 0.8 : -0.8, i & 2 ? 1.4 : 0, i & 4 ? 0.5 : -0.5});
+    constexpr int kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (const auto& f : kFaces) {
+        mesh.triangle(corners[f[0]], corners[f[1]], corners[f[2]]);
+        mesh.triangle(corners[f[0]], corners[f[2]], corners[f[3]]);
+    }
+    mesh.end_and_place();
+}
+
 }  // namespace
 
 void add_zoo_scene(const std::string& name, uint64_t triangles, Scene& scene) {
@@ -182,6 +325,31 @@ void add_zoo_scene(const std::string& name, uint64_t triangles, Scene& scene) {
     for (const auto& row : kRows)
         if (name == row.name) return row.add(triangles, scene);
     throw std::out_of_range("no scene `" + name + "`");
+}
+
+const std::vector<MeshedShape>& meshed_shapes() {
+    static const std::vector<MeshedShape> kinds = {{"box", {1}},
+                                                   {"cylinder", {8, 32, 128, 512, 2048}},
+                                                   {"cone", {8, 32, 128, 512, 2048}},
+                                                   {"torus", {8, 32, 128, 512}},
+                                                   {"nurbs", {8, 32, 128, 512}}};
+    return kinds;
+}
+
+double shape_mesh_error(const std::string& name, unsigned parts) {
+    const Turned* const shape = turned_shape(name);
+    return shape ? error_of(TurnedMesh(*shape, parts)) : 0;
+}
+
+double add_shape_mesh(const std::string& name, unsigned parts, Scene& scene) {
+    const Turned* const shape = turned_shape(name);
+    if (shape)
+        add_turned(TurnedMesh(*shape, parts), scene);
+    else if (name == "box")
+        add_box(scene);
+    else
+        throw std::out_of_range("no shape `" + name + "` has a mesh");
+    return shape_mesh_error(name, parts);
 }
 
 }  // namespace clarity::bench

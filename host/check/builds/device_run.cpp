@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 #include "plugin/host_services.hpp"
 #include "render/device_build/device_blocks.hpp"
 

@@ -10,7 +10,7 @@
 #include "check/builds/refit_run.hpp"
 #include "check/builds/result_checks.hpp"
 #include "check/scenes.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 
 namespace clarity::check {
 namespace {

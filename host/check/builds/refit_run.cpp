@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/scoped_fp_mode.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 
 namespace clarity::check {
 namespace {

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "base/memory_text.hpp"
+#include "base/text.hpp"
 
 namespace clarity::check {
 namespace {

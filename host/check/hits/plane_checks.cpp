@@ -1,4 +1,4 @@
-#include "check/hits/plane_checks.hpp"
+#include "check/hits/built_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "check/hits/stack_checks.hpp"
+#include "check/hits/built_checks.hpp"
 
 #include <algorithm>
 #include <array>

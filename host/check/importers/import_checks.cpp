@@ -1,20 +1,23 @@
 #include "check/importers/import_checks.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <set>
 
 #include "base/error.hpp"
-#include "base/lower.hpp"
-#include "base/memory_text.hpp"
 #include "base/numbers.hpp"
-#include "check/importers/fresh_memory.hpp"
+#include "base/text.hpp"
 #include "check/importers/scene_difference.hpp"
 #include "check/process_size.hpp"
-#include "import/scene_digest.hpp"
 #include "import/sink/scene_builder.hpp"
+#include "import/wire.hpp"
 
 namespace fs = std::filesystem;
 
@@ -22,6 +25,40 @@ namespace clarity::check {
 namespace {
 
 using Inputs = std::shared_ptr<const ImportInputs>;
+
+// What memory holds before a program writes to it: zeros as long as it is new, anything later.
+[[gnu::noinline]] void fill_stack(uint8_t byte) {
+    volatile uint8_t below[256 << 10];
+    for (volatile uint8_t& at : below) at = byte;
+}
+
+// glibc keeps up to seven freed blocks of each size up to 1032 bytes, and hands them out again without filling them.
+void fill_kept_blocks(uint8_t byte) {
+    constexpr size_t kLargest = 1032, kStep = 16, kOfEach = 16;
+    for (size_t bytes = 24; bytes <= kLargest; bytes += kStep) {
+        void* blocks[kOfEach];
+        for (void*& block : blocks) {
+            block = std::malloc(bytes);
+            if (!block) continue;
+            std::memset(block, byte, bytes);
+            asm volatile("" : : "r"(block) : "memory");  // or the compiler would leave the filling out
+        }
+        for (void* block : blocks) std::free(block);
+    }
+}
+
+// Fills what malloc() and the stack will give to code that runs next on this thread with copies of one byte, as far as that
+// can be reached: blocks that malloc() keeps for reuse, blocks that it makes (until the next call), and 256 KiB of stack.
+void fill_fresh_memory(uint8_t byte) {
+    mallopt(M_PERTURB, byte ^ 0xFF);  // fills new blocks with the complement
+    fill_kept_blocks(byte);
+    fill_stack(byte);
+}
+
+// malloc() fills nothing any more.
+void leave_fresh_memory() {
+    mallopt(M_PERTURB, 0);
+}
 
 constexpr double kSmallLimit_s = 7;  // processor time for a small file, as the program's own limit
 constexpr const char* kNoSamples = "no sample files: name some with --samples FILE|DIR";

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "base/numbers.hpp"
-#include "import/scene_digest.hpp"
+#include "import/wire.hpp"
 
 namespace clarity::check {
 namespace {

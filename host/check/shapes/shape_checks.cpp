@@ -8,10 +8,8 @@
 #include "base/numbers.hpp"
 #include "check/oclgrind.hpp"
 #include "check/seed.hpp"
-#include "check/shapes/placed_checks.hpp"
 #include "check/shapes/shape_bench.hpp"
 #include "check/shapes/surface_checks.hpp"
-#include "check/shapes/uv_checks.hpp"
 #include "render/tracers/rays/ray_text.hpp"
 
 namespace clarity::check {

@@ -9,4 +9,10 @@ Outcome surface_height(ShapeBench& bench, const Step& step);
 Outcome surface_normal(ShapeBench& bench, const Step& step);
 Outcome surface_leaving(ShapeBench& bench, const Step& step);
 
+// Whether a shape is hit in a scene where rays hit it alone.
+Outcome hits_placed(ShapeBench& bench, const Step& step);
+
+// Whether the texture coordinates of a shape lie on its surface as a picture does.
+Outcome surface_uv(ShapeBench& bench, const Step& step);
+
 }  // namespace clarity::check

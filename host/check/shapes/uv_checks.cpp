@@ -1,4 +1,4 @@
-#include "check/shapes/uv_checks.hpp"
+#include "check/shapes/surface_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "base/host_name.hpp"
+#include "base/machine.hpp"
 
 namespace clarity {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
-#include "base/shell_word.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

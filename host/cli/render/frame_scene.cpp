@@ -7,9 +7,9 @@
 
 #include "base/digest.hpp"
 #include "cli/pose_options.hpp"
-#include "import/scene_digest.hpp"
+#include "import/wire.hpp"
 #include "scene/motion/file_sequence.hpp"
-#include "scene/motion/shutter.hpp"
+#include "scene/motion/pose_time.hpp"
 
 namespace clarity {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
-#include "import/sequence_reader.hpp"
+#include "import/import.hpp"
 #include "render/multi/motion_blur.hpp"
 
 namespace clarity {

@@ -9,7 +9,7 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
-#include "base/plural.hpp"
+#include "base/text.hpp"
 #include "render/film/checkpoint.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/settings/aov.hpp"

@@ -16,11 +16,10 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
-#include "base/plural.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
-#include "cli/render/aov_layers.hpp"
 #include "cli/render/frame_claim.hpp"
 #include "cli/render/frame_output.hpp"
 #include "cli/render/frame_record.hpp"
@@ -39,8 +38,7 @@
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 #include "render/settings/aov.hpp"
-#include "render/view/size_note.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 namespace {

@@ -1,5 +1,6 @@
 #include "cli/render/render_checks.hpp"
 
+#include <charconv>
 #include <string>
 
 #include "base/error.hpp"
@@ -30,6 +31,21 @@ void check_records(const RenderOptions& options, const FrameRange& range) {
                             "`" + frame_path(*other, int(frame)) +
                                 "` is the record of a frame, which is written beside its picture; choose another name");
 }
+
+// Reads numbers and signs from left to right.
+struct Reader {
+    const char *at, *const end;
+    explicit Reader(const std::string& text) : at(text.data()), end(at + text.size()) {}
+    // Accepts digits only, because from_chars would accept a sign.
+    bool number(int& value) {
+        if (at == end || *at < '0' || *at > '9') return false;
+        const auto [next, error] = std::from_chars(at, end, value);
+        at = next;
+        return error == std::errc();
+    }
+    bool sign(char c) { return at != end && *at == c ? (++at, true) : false; }
+    bool done() const { return at == end; }
+};
 
 }  // namespace
 
@@ -77,6 +93,36 @@ void check_render_options(const RenderOptions& options, const Settings& settings
     const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
                                                          options.trace.camera.find_first_of("0123456789+-.") != 0);
     make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
+}
+
+FrameRange parse_frame_range(const std::string& text) {
+    Reader reader(text);
+    FrameRange range;
+    bool good = reader.number(range.first);
+    range.last = range.first;
+    if (good && reader.sign('-')) good = reader.number(range.last);
+    int step = 1;
+    if (good && reader.sign('/')) good = reader.number(step);
+    range.step = step;
+    if (!good || !reader.done())
+        throw Error(Exit::usage, "--frames " + text + ": expected A-B or A-B/STEP, as in 1-24 or 1-24/2");
+    if (range.last < range.first)
+        throw Error(Exit::usage,
+                    "--frames " + text + ": the last frame comes before the first; write the smaller number first");
+    if (range.step < 1) throw Error(Exit::usage, "--frames " + text + ": the step must be at least 1");
+    return range;
+}
+
+FrameRange share_of_frames(const FrameRange& all, const std::string& text) {
+    Reader reader(text);
+    int which = 0, of = 0;
+    if (!reader.number(which) || !reader.sign('/') || !reader.number(of) || !reader.done())
+        throw Error(Exit::usage, "--frames-of " + text + ": expected K/N, as in 2/8 for the second of eight shares");
+    if (which < 1 || of < 1 || which > of)
+        throw Error(Exit::usage, "--frames-of " + text + ": K counts from 1 to N, the number of shares");
+    const long first = all.first + (which - 1L) * all.step;
+    if (first > all.last) return {1, 0, 1};
+    return {static_cast<int>(first), all.last, of * all.step};
 }
 
 }  // namespace clarity

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "base/part_of_progress.hpp"
+#include "base/progress.hpp"
 
 namespace clarity {
 

@@ -6,7 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/elapsed.hpp"
+#include "base/error.hpp"
 #include "base/statistics.hpp"
+#include "render/compare/picture_errors.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
+#include "render/settings/aov.hpp"
 
 namespace clarity {
 namespace {
@@ -186,6 +190,24 @@ std::string stats_json(const RenderStats& stats) {
     if (stats.reference) json["reference"] = reference_json(*stats.reference);
     json["triangles"] = prepared.scene->placed_triangle_count();
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+ReferenceRun::ReferenceRun(const std::string& file, const Settings& settings)
+    : settings_(settings), file_(file), reference_(read_reference(file, settings)) {
+    if (!find_aov(settings.aov).is_color())
+        throw Error(Exit::usage, "--reference " + file + ": is compared with colours; leave out --aov " + settings.aov);
+}
+
+void ReferenceRun::offer(MultiFrameRenderer& frames, unsigned samples, bool finished) {
+    const unsigned last = points_.empty() ? 0 : points_.back().samples;
+    if (samples < 2 * last && !(finished && samples > last)) return;
+    points_.push_back({samples, picture_errors(frames.read_picture(settings_), reference_)});
+}
+
+double ReferenceRun::slope() const {
+    std::vector<std::pair<unsigned, double>> errors;
+    for (const Point& point : points_) errors.emplace_back(point.samples, point.errors.rmse);
+    return error_slope(errors);
 }
 
 }  // namespace clarity

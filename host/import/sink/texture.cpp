@@ -1,11 +1,5 @@
 #include "import/sink/texture.hpp"
 
-#include <algorithm>
-#include <climits>
-#include <cmath>
-#include <cstring>
-#include <memory>
-
 // Static, because the window's libraries may contain their own copy of stb_image.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -18,9 +12,21 @@
 
 #pragma GCC diagnostic pop
 
-#include "base/memory_text.hpp"
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "base/parallel_for.hpp"
 #include "base/pictures/picture_read.hpp"
 #include "base/pictures/shared_exponent.hpp"
+#include "base/pictures/srgb.hpp"
+#include "base/text.hpp"
+#include "rt_plugin.h"
 #include "scene/bright_texture.hpp"
 
 namespace clarity::import {
@@ -98,6 +104,107 @@ uint64_t memory_of_floats(const std::string& bytes) {
     }
 }
 
+constexpr double kHeight = 1.0 / 50;  // of white above black, in widths of the picture
+constexpr int kGrey = 8;              // by which channels of a grey texel may differ, as JPEG has them
+
+int channel(uint32_t texel, int k) {
+    return static_cast<int>(texel >> (8 * k) & 255u);
+}
+bool is_grey(uint32_t texel) {
+    return std::abs(channel(texel, 0) - channel(texel, 1)) <= kGrey && std::abs(channel(texel, 1) - channel(texel, 2)) <= kGrey;
+}
+uint32_t byte_of(double component) {
+    return static_cast<uint32_t>(std::lround((component + 1) / 2 * 255));
+}
+
+constexpr int kFine = 4096;  // steps of linear light, for the way back to sRGB
+
+struct Curves {
+    Curves() {
+        for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(linear_from_srgb(i / 255.0));
+        for (int i = 0; i <= kFine; ++i) byte[i] = static_cast<float>(255 * srgb_from_linear(double(i) / kFine));
+    }
+    // The byte of linear light. Near 0 the curve is straight, or nearly so, between two steps.
+    uint32_t byte_of(float light) const {
+        const float at = std::clamp(light, 0.f, 1.f) * kFine;
+        const int below = std::min(static_cast<int>(at), kFine - 1);
+        const float share = at - static_cast<float>(below);
+        return static_cast<uint32_t>(byte[below] + share * (byte[below + 1] - byte[below]) + 0.5f);
+    }
+    std::array<float, 256> linear;
+    std::array<float, kFine + 1> byte;
+};
+
+// Along one axis: up to three texels of `size` that a texel of the `half` ones covers, and their shares.
+struct Cover {
+    rt_u32 first = 0, count = 0;
+    float share[3] = {0, 0, 0};
+};
+std::vector<Cover> covers(rt_u32 size, rt_u32 half) {
+    std::vector<Cover> out(half);
+    for (rt_u32 i = 0; i < half; ++i) {
+        const double begin = double(i) * size / half, end = double(i + 1) * size / half;
+        Cover& c = out[i];
+        c.first = static_cast<rt_u32>(begin);
+        for (rt_u32 at = c.first; at < size && double(at) < end - 1e-9 && c.count < 3; ++at)
+            c.share[c.count++] =
+                static_cast<float>((std::min(end, at + 1.0) - std::max(begin, double(at))) * half / double(size));
+    }
+    return out;
+}
+
+// Texels of bytes, and of bright textures: how a share of one is added to a sum, and what a sum becomes.
+struct ByteTexels {
+    bool is_linear;
+    const Curves& curves;
+    void add(float share, uint32_t texel, float (&sum)[4]) const {
+        for (int k = 0; k < 4; ++k) {
+            const uint32_t byte = texel >> (8 * k) & 255u;
+            sum[k] += share * (is_linear || k == 3 ? static_cast<float>(byte) / 255 : curves.linear[byte]);
+        }
+    }
+    uint32_t texel(const float (&sum)[4]) const {
+        uint32_t out = 0;
+        for (int k = 0; k < 4; ++k) {
+            const bool plain = is_linear || k == 3;
+            out |= (plain ? static_cast<uint32_t>(std::clamp(sum[k], 0.f, 1.f) * 255 + 0.5f) : curves.byte_of(sum[k]))
+                   << (8 * k);
+        }
+        return out;
+    }
+};
+struct BrightTexels {
+    void add(float share, uint32_t texel, float (&sum)[4]) const {
+        const std::array<float, 3> light = from_shared_exponent(texel);
+        for (size_t k = 0; k < 3; ++k) sum[k] += share * light[k];
+    }
+    uint32_t texel(const float (&sum)[4]) const { return to_shared_exponent(sum); }
+};
+
+template <class Kind>
+void add_smaller(const Kind& kind, std::vector<uint32_t>& texels, rt_texture& texture) {
+    rt_texture from = texture;
+    while (from.width > 1 || from.height > 1) {
+        const rt_texture to = smaller_picture(from);
+        texels.resize(to.first + size_t(to.width) * to.height);
+        const std::vector<Cover> columns = covers(from.width, to.width), rows = covers(from.height, to.height);
+        parallel_for(to.height, [&](uint32_t y) {
+            for (rt_u32 x = 0; x < to.width; ++x) {
+                float sum[4] = {0, 0, 0, 0};
+                for (rt_u32 j = 0; j < rows[y].count; ++j)
+                    for (rt_u32 i = 0; i < columns[x].count; ++i) {
+                        const uint32_t texel =
+                            texels[from.first + size_t(rows[y].first + j) * from.width + columns[x].first + i];
+                        kind.add(rows[y].share[j] * columns[x].share[i], texel, sum);
+                    }
+                texels[to.first + size_t(y) * to.width + x] = kind.texel(sum);
+            }
+        });
+        from = to;
+        ++texture.levels;
+    }
+}
+
 }  // namespace
 
 Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture,
@@ -144,6 +251,40 @@ Problem copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt
     if (byte_count < 4 * uint64_t(width) * height) return "its data in memory is shorter than its width and height need";
     append(bytes, width, height, texels, texture);
     return {};
+}
+
+void make_normals(uint32_t* texels, const rt_texture& picture) {
+    const size_t width = picture.width, height = picture.height, count = width * height;
+    const auto grey = static_cast<size_t>(std::count_if(texels, texels + count, is_grey));
+    if (grey < count - count / 8) return;
+    std::vector<uint8_t> heights(count);
+    for (size_t i = 0; i < count; ++i) heights[i] = static_cast<uint8_t>(channel(texels[i], 0));
+    const double step = kHeight * static_cast<double>(width) / 255 / 2;  // of a byte over two texels
+    for (size_t y = 0; y < height; ++y)
+        for (size_t x = 0; x < width; ++x) {
+            // Pictures repeat. Rows go downwards, and the normal's y upwards.
+            const auto at = [&](size_t column, size_t row) { return double(heights[row % height * width + column % width]); };
+            const double dx = step * (at(x + 1, y) - at(x + width - 1, y)), dy = step * (at(x, y + height - 1) - at(x, y + 1));
+            const double scale = 1 / std::sqrt(dx * dx + dy * dy + 1);
+            texels[y * width + x] = 0xff000000u | byte_of(-dx * scale) | byte_of(-dy * scale) << 8 | byte_of(scale) << 16;
+        }
+}
+
+void make_opacities(uint32_t* texels, const rt_texture& picture, uint32_t space) {
+    for (size_t i = 0; i < size_t(picture.width) * picture.height; ++i) {
+        const auto at = [&](unsigned k) { return texels[i] >> (8 * k) & 255u; };
+        const double brightness = 0.2127 * at(0) + 0.7152 * at(1) + 0.0721 * at(2);
+        const uint32_t opacity = space == RT_SPACE_ALPHA ? at(3) : static_cast<uint32_t>(std::lround(255 - brightness));
+        texels[i] = opacity * 0x01010101u;
+    }
+}
+
+void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture) {
+    static const Curves curves;
+    if (is_bright(texture))
+        add_smaller(BrightTexels{}, texels, texture);
+    else
+        add_smaller(ByteTexels{(texture.flags & RT_TEXTURE_LINEAR) != 0, curves}, texels, texture);
 }
 
 }  // namespace clarity::import

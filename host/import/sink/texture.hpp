@@ -1,4 +1,5 @@
-// texture.hpp -- decodes pictures into texels.
+// texture.hpp -- decodes pictures into texels, and makes of them what materials use: smaller pictures, normals of heights,
+// opacity.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -32,5 +33,24 @@ uint64_t memory_of_texture(const uint8_t* bytes, uint64_t byte_count);
 // Same as decode_texture(), for a picture of width x height RGBA8 texels in memory.
 Problem copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
                      rt_texture& texture);
+
+// Pictures of heights (bump maps) as maps of normals.
+
+// Turns a grey picture of heights, of width x height texels, into a map of normals: see RT_SPACE_HEIGHT. A picture of other
+// colours is one already, and stays as it is.
+void make_normals(uint32_t* texels, const rt_texture& picture);
+
+// Pictures of an opacity that is not their red channel.
+
+// Puts the opacity into all channels of the texels of a picture. space: RT_SPACE_ALPHA or RT_SPACE_CLEARNESS, as rt_plugin.h
+// says.
+void make_opacities(uint32_t* texels, const rt_texture& picture, uint32_t space);
+
+// The smaller pictures of a texture (Williams 1983, "Pyramidal Parametrics").
+
+// Appends the smaller pictures of a texture, down to one of a single texel. The texture's own picture is the last one in
+// `texels`. Each texel is the mean of the part of the picture before that it covers. Colours of sRGB textures are averaged in
+// linear light; alpha, and all of other textures, as plain numbers. Those of bright textures are light already.
+void add_smaller_pictures(std::vector<uint32_t>& texels, rt_texture& texture);
 
 }  // namespace clarity::import

@@ -1,4 +1,4 @@
-// builder_output.hpp -- receives what a builder writes, in memory of either kind: plain, or between guard pages.
+// builder_output.hpp -- runs a builder, and receives what it writes, in memory of either kind: plain, or between guard pages.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -13,10 +13,21 @@
 #include "base/problem.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/plugin_check.hpp"
-#include "render/accel/run_builder.hpp"
 #include "rt_plugin.h"
 
 namespace clarity {
+
+// Calls the builder of any kind of structure in one way: one with slots, one that builds a topology, or one
+// that packs the topology of another.
+
+// The slots that a plugin's builder fills: the structure's own; of a topology one, its nodes.
+const rt_accel& built_slots(const rt_plugin& plugin);
+
+// Calls build(); with a tree, pack(). Of a topology it calls topology(): the nodes are slot 0 of `out`, the refs its leaves. A
+// root may be RT_NONE then. tree: of another builder, for the same input; may be nullptr. On the calling thread; returns the
+// plugin's status.
+int32_t run_builder(const rt_plugin& plugin, const rt_host* host, const rt_build_input* input, const rt_topology* tree,
+                    const rt_build_output* out);
 
 // What a builder wrote. Bytes: AlignedBytes or GuardedBytes.
 template <class Bytes>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/memory_text.hpp"
+#include "base/text.hpp"
 #include "device/device.hpp"
 #include "rt_plugin.h"
 #include "scene/scene.hpp"

@@ -9,7 +9,7 @@
 
 namespace clarity {
 
-// What the builder of a topology wrote (run_builder.hpp), as its layout gets it. It must outlive the return value.
+// What the builder of a topology wrote (builder_output.hpp), as its layout gets it. It must outlive the return value.
 template <class Bytes>
 rt_topology topology_of(const BuilderResultIn<Bytes>& result) {
     rt_topology topology{};

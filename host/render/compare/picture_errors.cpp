@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/pictures/picture_read.hpp"
 #include "render/compare/flip.hpp"
 
 namespace clarity {
@@ -25,6 +26,19 @@ double squared_error(const float* a, const float* b) {
     double square = 0;
     for (int c = 0; c < 3; ++c) square += (double(a[c]) - b[c]) * (double(a[c]) - b[c]) / 3;
     return square;
+}
+
+FloatImage part_of(const FloatImage& whole, int first_x, int first_y, int width, int height) {
+    FloatImage part;
+    part.width = unsigned(width);
+    part.height = unsigned(height);
+    part.channels = whole.channels;
+    const auto at = [&](int row) {
+        return whole.pixels.begin() + (ptrdiff_t(first_y + row) * whole.width + first_x) * ptrdiff_t(whole.channels);
+    };
+    for (int row = 0; row < height; ++row)
+        part.pixels.insert(part.pixels.end(), at(row), at(row) + ptrdiff_t(width) * ptrdiff_t(whole.channels));
+    return part;
 }
 
 }  // namespace
@@ -122,6 +136,19 @@ ByteImage signed_error_picture(const FloatImage& test, const FloatImage& referen
         rgba[4 * i + 3] = 255;
     }
     return {test.width, test.height, std::move(rgba)};
+}
+
+FloatImage read_reference(const std::string& file, const Settings& settings) {
+    FloatImage picture = read_picture(file);
+    const auto text = [](auto width, auto height) { return std::to_string(width) + "x" + std::to_string(height); };
+    const Crop& crop = settings.crop;
+    if (crop.whole_width > 0 && int(picture.width) == crop.whole_width && int(picture.height) == crop.whole_height)
+        picture = part_of(picture, crop.x, crop.y, settings.width, settings.height);
+    const std::string size = text(picture.width, picture.height), wanted = text(settings.width, settings.height);
+    if (size != wanted)
+        throw Error(Exit::usage,
+                    "--reference " + file + ": has " + size + " pixels and the picture " + wanted + "; take --size " + size);
+    return picture;
 }
 
 }  // namespace clarity

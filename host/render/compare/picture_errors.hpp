@@ -1,10 +1,12 @@
 // picture_errors.hpp -- figures of how much a picture differs from a reference.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "render/film/image_io.hpp"
+#include "render/settings/settings.hpp"
 
 namespace clarity {
 
@@ -36,5 +38,11 @@ double error_slope(const std::vector<std::pair<unsigned, double>>& points);
 // darker, white where they are equal, black where a value is not finite. `full`: the error of the full colour; 99 % of pixels
 // have less.
 ByteImage signed_error_picture(const FloatImage& test, const FloatImage& reference, double& full);
+
+// The picture that another one should come near.
+
+// Reads the file of --reference. Of a part of a picture it may show the whole one. Throws Error(failed) if it cannot be read;
+// with a size that is not the picture's, Error(usage).
+FloatImage read_reference(const std::string& file, const Settings& settings);
 
 }  // namespace clarity

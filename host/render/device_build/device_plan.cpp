@@ -5,7 +5,6 @@
 #include "device/kernel_files.hpp"
 #include "plugin/host_services.hpp"
 #include "render/device_build/device_blocks.hpp"
-#include "render/device_build/device_curve.hpp"
 #include "render/device_build/device_sort.hpp"
 
 namespace clarity {

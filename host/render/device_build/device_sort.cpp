@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "device/kernel_files.hpp"
 
 namespace clarity {
 namespace {
@@ -15,6 +16,17 @@ constexpr uint64_t kFewPairs = uint64_t{1} << 17;
 unsigned passes_for(unsigned bits) {
     return (bits + kDigitBits - 1) / kDigitBits;
 }
+
+// One work-group takes so many tiles one after the other, before more groups and two more launches pay.
+constexpr uint64_t kTilesOfOneGroup = 4;
+// Work-groups of a CPU's unit. More of them balance the load, fewer leave less to do for the next level.
+constexpr uint64_t kGroupsPerCpuUnit = 8;
+
+// Work-groups of a device's unit, so that its memory is busy.
+constexpr uint64_t kGroupsPerUnit = 8;
+constexpr uint64_t kLeastBoxes = 512;  // of a work-group
+
+constexpr uint64_t kSerialBoxes = 4096;  // that a work-group of one work-item takes
 
 }  // namespace
 
@@ -98,6 +110,121 @@ void DeviceSort::move(const Pairs& from, const Pairs& to, uint64_t count, Digit 
         move_.setArg(11, next.mask);
     }
     kernels_.launch(move_, tiles_for(count));
+}
+
+DeviceScan::DeviceScan(const BuildKernels& kernels, uint64_t most) : kernels_(kernels), most_(most) {
+    const cl::Program program = kernels.compile_file("scan.cl");
+    for (uint64_t count = most;; count = groups_for(count)) {
+        const uint64_t sums = groups_for(count);
+        levels_.push_back({kernels.buffer(4 * sums), cl::Kernel(program, "scan_sums"), cl::Kernel(program, "scan_tiles")});
+        bytes_ += 4 * sums;
+        if (sums == 1) break;
+    }
+}
+
+uint64_t DeviceScan::tiles_each(uint64_t count) const {
+    const uint64_t tiles = (count + kernels_.scan_tile() - 1) / kernels_.scan_tile();
+    if (tiles <= kTilesOfOneGroup) return kTilesOfOneGroup;
+    const uint64_t groups = uint64_t{kernels_.device().info().compute_units} * kGroupsPerCpuUnit;
+    return kernels_.serial() ? (tiles + groups - 1) / groups : 1;
+}
+
+uint64_t DeviceScan::groups_for(uint64_t count) const {
+    const uint64_t each = tiles_each(count) * kernels_.scan_tile();
+    return std::max<uint64_t>((count + each - 1) / each, 1);
+}
+
+void DeviceScan::run(const cl::Buffer& data, uint64_t count) {
+    if (count > most_)
+        throw Error(Exit::failed, "a scan of " + std::to_string(count) + " numbers was asked for, with memory for " +
+                                      std::to_string(most_) + " (a bug in the builder: please report it)");
+    if (count > 0) scan(data, count, 0);
+}
+
+void DeviceScan::scan(const cl::Buffer& data, uint64_t count, size_t at) {
+    Level& level = levels_[at];
+    const uint64_t groups = groups_for(count);
+    const auto numbers = static_cast<cl_uint>(count), each = static_cast<cl_uint>(tiles_each(count));
+    if (groups > 1) {
+        level.sum.setArg(0, data);
+        level.sum.setArg(1, numbers);
+        level.sum.setArg(2, each);
+        level.sum.setArg(3, level.sums);
+        kernels_.launch(level.sum, groups);
+        scan(level.sums, groups, at + 1);
+    }
+    level.tiles.setArg(0, data);
+    level.tiles.setArg(1, numbers);
+    level.tiles.setArg(2, each);
+    level.tiles.setArg(3, level.sums);
+    level.tiles.setArg(4, cl_uint{groups > 1});
+    kernels_.launch(level.tiles, groups);
+}
+
+DeviceReduce::DeviceReduce(const BuildKernels& kernels)
+    : kernels_(kernels), most_groups_(std::max(1u, kernels.device().info().compute_units) * kGroupsPerUnit) {
+    const cl::Program program = kernels.compile_file("reduce.cl");
+    reduce_boxes_ = cl::Kernel(program, "reduce_boxes");
+    reduce_parts_ = cl::Kernel(program, "reduce_parts");
+    all_parts_ = kernels.buffer(most_groups_ * sizeof(DeviceBounds));
+    parts_ = kernels.buffer(kFewParts * sizeof(DeviceBounds));
+    bytes_ = (most_groups_ + kFewParts) * sizeof(DeviceBounds);
+}
+
+void DeviceReduce::run(const cl::Buffer& boxes, uint64_t first, uint64_t count, const cl::Buffer& result) {
+    join(reduce(boxes, first, count, all_parts_), result);
+}
+
+uint64_t DeviceReduce::run_parts(const cl::Buffer& boxes, uint64_t first, uint64_t count) {
+    if (groups_for(count) <= kFewParts) return reduce(boxes, first, count, parts_);
+    run(boxes, first, count, parts_);
+    return 1;
+}
+
+uint64_t DeviceReduce::groups_for(uint64_t count) const {
+    const uint64_t each = std::max(kLeastBoxes, (count + most_groups_ - 1) / most_groups_);
+    return std::max<uint64_t>((count + each - 1) / each, 1);
+}
+
+uint64_t DeviceReduce::reduce(const cl::Buffer& boxes, uint64_t first, uint64_t count, const cl::Buffer& parts) {
+    const uint64_t groups = groups_for(count);
+    reduce_boxes_.setArg(0, boxes);
+    reduce_boxes_.setArg(1, static_cast<cl_uint>(first));
+    reduce_boxes_.setArg(2, static_cast<cl_uint>(count));
+    reduce_boxes_.setArg(3, static_cast<cl_uint>((count + groups - 1) / groups));
+    reduce_boxes_.setArg(4, parts);
+    kernels_.launch(reduce_boxes_, groups);
+    return groups;
+}
+
+void DeviceReduce::join(uint64_t parts, const cl::Buffer& result) {
+    reduce_parts_.setArg(0, all_parts_);
+    reduce_parts_.setArg(1, static_cast<cl_uint>(parts));
+    reduce_parts_.setArg(2, result);
+    kernels_.launch(reduce_parts_, 1);
+}
+
+DeviceCurve::DeviceCurve(const BuildKernels& kernels, uint64_t most, unsigned axis_bits)
+    : kernels_(kernels), axis_bits_(axis_bits), reduce_(kernels), sort_(kernels, most, SortKeys::bits64) {
+    const cl::Program program = kernels.compile(
+        kernel_text("build/reduce.cl") + "#line 1 \"cl/build/curve.cl\"\n" + kernel_text("build/curve.cl"), "build/curve.cl");
+    codes_ = cl::Kernel(program, "curve_codes");
+}
+
+void DeviceCurve::run(const cl::Buffer& boxes, uint64_t count, const cl::Buffer& keys, const cl::Buffer& order) {
+    if (count == 0) return;
+    const uint64_t parts = reduce_.run_parts(boxes, 0, count), each = kernels_.serial() ? kSerialBoxes : kernels_.group();
+    const DeviceSort::Pairs sorted = {keys, order}, unsorted = sort_.input(sorted, 3 * axis_bits_);
+    codes_.setArg(0, boxes);
+    codes_.setArg(1, static_cast<cl_uint>(count));
+    codes_.setArg(2, static_cast<cl_uint>(each));
+    codes_.setArg(3, cl_uint{axis_bits_});
+    codes_.setArg(4, reduce_.parts());
+    codes_.setArg(5, static_cast<cl_uint>(parts));
+    codes_.setArg(6, unsorted.keys);
+    codes_.setArg(7, unsorted.values);
+    kernels_.launch(codes_, (count + each - 1) / each);
+    sort_.run_into(sorted, count, 3 * axis_bits_);
 }
 
 }  // namespace clarity

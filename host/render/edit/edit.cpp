@@ -10,7 +10,7 @@
 #include "render/edit/sky_edit.hpp"
 #include "render/edit/texture_edit.hpp"
 #include "render/settings/settings.hpp"
-#include "render/view/camera_text.hpp"
+#include "render/view/view.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"

@@ -6,7 +6,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
-#include "base/shell_word.hpp"
+#include "base/text.hpp"
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
 

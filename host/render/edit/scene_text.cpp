@@ -13,7 +13,7 @@
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
 #include "render/edit/sky_edit.hpp"
-#include "render/view/camera_text.hpp"
+#include "render/view/view.hpp"
 #include "scene/light_kinds.hpp"
 
 namespace clarity {

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "base/angle.hpp"
-#include "render/emitters/map_mean.hpp"
-#include "render/emitters/pick_table.hpp"
+#include "render/emitters/sky_table.hpp"
 #include "scene/emissive.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/vec.hpp"

@@ -1,16 +1,6 @@
 // Libraries encode PNG (stb) and EXR (OpenEXR). PFM is a header followed by the floats.
 #include "render/film/image_io.hpp"
 
-#include <algorithm>
-#include <cstring>
-#include <exception>
-
-#include "base/error.hpp"
-#include "base/files/output_file.hpp"
-#include "base/files/pending_write.hpp"
-#include "base/timeline.hpp"
-#include "render/film/png_text.hpp"
-
 // Static, because the window links the stb library too.
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -30,8 +20,48 @@
 #include <OpenEXR/ImfStringAttribute.h>
 #endif
 
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/files/output_file.hpp"
+#include "base/timeline.hpp"
+
 namespace clarity {
 namespace {
+
+// Texts in PNG files: chunks tEXt, and iTXt for texts beyond ASCII (PNG specification, third edition, 11.3.3).
+
+// Signature, and the chunk IHDR, which is always the first: length, name, 13 bytes, checksum.
+constexpr size_t kBehindHeader = 8 + 4 + 4 + 13 + 4;
+
+std::string big_endian(uint32_t value) {
+    return {char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+}
+
+std::string chunk(const std::string& name, const std::string& data) {
+    const std::string checked = name + data;
+    const auto sum = crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size()));
+    return big_endian(static_cast<uint32_t>(data.size())) + checked + big_endian(static_cast<uint32_t>(sum));
+}
+
+// Puts texts into an encoded PNG, before its pixels. Keys: 1 to 79 letters, digits or spaces. Values: UTF-8.
+void add_png_texts(std::string& png, const std::vector<std::pair<std::string, std::string>>& texts) {
+    std::string chunks;
+    for (const auto& [key, value] : texts) {
+        const bool ascii = std::all_of(value.begin(), value.end(), [](char c) { return c >= ' ' && c <= '~'; });
+        // iTXt: no compression, no language, no translated key.
+        chunks += ascii ? chunk("tEXt", key + '\0' + value) : chunk("iTXt", key + std::string(5, '\0') + value);
+    }
+    if (png.size() > kBehindHeader) png.insert(kBehindHeader, chunks);
+}
 
 enum class Format { png, exr, pfm, unknown };
 

@@ -7,7 +7,7 @@
 
 #include "base/progress.hpp"
 #include "device/device.hpp"
-#include "render/film/async_readback.hpp"
+#include "render/film/display_readback.hpp"
 #include "render/film/image_io.hpp"
 #include "render/frame/frame_stats.hpp"
 #include "render/launch/prepared.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/plural.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 

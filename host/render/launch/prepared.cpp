@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "render/kernels/program_cache.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 
 namespace clarity {
 

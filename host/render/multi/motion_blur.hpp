@@ -21,7 +21,7 @@
 #include "render/multi/multi_preparer.hpp"
 #include "render/view/view.hpp"
 #include "scene/motion/pose.hpp"
-#include "scene/motion/shutter.hpp"
+#include "scene/motion/pose_time.hpp"
 
 namespace clarity {
 

@@ -12,7 +12,6 @@
 #include "render/multi/device_threads.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/multi/ranks.hpp"
-#include "render/multi/team_choice.hpp"
 #include "render/multi/tile_scheduler.hpp"
 
 namespace clarity {

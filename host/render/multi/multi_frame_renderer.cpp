@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/part_of_progress.hpp"
+#include "base/progress.hpp"
 #include "device/cl_errors.hpp"
 #include "render/film/film.hpp"
 #include "render/film/pinned_memory_pool.hpp"

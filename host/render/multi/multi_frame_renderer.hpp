@@ -3,7 +3,7 @@
 // With one device this is just a FrameRenderer. Several devices trace tiles (tile_scheduler.hpp), each into a film of its own
 // and from a host thread of its own, and copy their rows into one picture in host memory. One device traces a pixel in all
 // samples. So devices of the same kind produce the picture that one of them would produce, bit for bit. Where the others save
-// no time, the fastest traces alone (team_choice.hpp). If a device fails, a warning is logged and the other devices trace its
+// no time, the fastest traces alone (TeamChoice). If a device fails, a warning is logged and the other devices trace its
 // tiles again.
 #pragma once
 #include <memory>

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "base/plural.hpp"
+#include "base/text.hpp"
 #include "render/noise/noise.hpp"
 
 namespace clarity {

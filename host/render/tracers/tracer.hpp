@@ -67,7 +67,7 @@ struct Tracer : TracerChoice {
     const KernelRow& (*kernel)(const Settings& settings, const Layout& layout) = nullptr;
     // Whether `auto` takes it. Null: never.
     bool (*suits)(const DeviceInfo& device, const Scene& scene) = nullptr;
-    // Opens a program of its kernel. Null: a launch is one kernel over all work-groups (one_kernel.hpp).
+    // Opens a program of its kernel. Null: a launch is one kernel over all work-groups (tracers.cpp).
     std::unique_ptr<FrameTracer> (*open)(std::shared_ptr<Device> device, std::shared_ptr<const TraceProgram> program) = nullptr;
     // Runs its kernels in a worker. Throws Error if they fail. Null: as tracers of frames (smoke.hpp).
     void (*smoke)(const Smoke& smoke) = nullptr;

@@ -1,10 +1,48 @@
 #include <stdexcept>
 
 #include "render/settings/aov.hpp"
-#include "render/tracers/one_kernel.hpp"
 #include "render/tracers/tracer.hpp"
 
 namespace clarity {
+namespace {
+
+// Tracers of frames whose launch is one kernel, with a work-item for each packet. Sets the arguments that the kernel declares,
+// by their names: `frame`, `first_group`, `film` and the scene's; with kCountsRays also `counters` (shadow rays, secondary
+// rays, dropped rays, full stacks of each packet, 32 bits each) and `distances`; without, RT_OVERFLOWS_PARAM.
+class OneKernel : public FrameTracer {
+ public:
+    OneKernel(std::shared_ptr<Device> device, std::shared_ptr<const TraceProgram> program)
+        : FrameTracer(std::move(device), std::move(program)), kernel_(program_->kernel()) {}
+
+    LaunchTimes trace(Launcher& launcher, const FrameLaunch& frame, const std::function<void()>& go_on,
+                      const SideWork& side_work) override {
+        const Layout& layout = frame.prepared.layout;
+        kernel_.set("film", frame.film);
+        counted_ = (frame.begin + frame.groups) * layout.group_packets();
+        if (counts_rays()) {
+            const size_t whole = layout.packets(unsigned(frame.settings.width), unsigned(frame.settings.height));
+            kernel_.set("counters", counters_.fit(device_->context(), std::max<size_t>(whole, counted_) * sizeof(cl_uint4)));
+            kernel_.set("distances", frame.distances);
+        } else if (frame.prepared.settings.debug) {
+            if (frame.begin == 0) overflows_.clear(frame.queue);
+            overflows_.bind(kernel_);
+        }
+        frame.buffers.bind(*frame.prepared.on_device, kernel_);
+        return launcher.run(*device_, frame.queue, kernel_, frame.groups, layout.local_size(), go_on, frame.begin, side_work);
+    }
+    cl::Event begin_count(FilmKernels& film) const override {
+        return film.begin_sum(counters_.get(), counted_, FilmKernels::CounterWidth::bits32);
+    }
+    uint64_t overflows(Queue& queue) const override { return overflows_.read(queue); }
+
+ private:
+    KernelArguments kernel_;
+    GrowingBuffer counters_{CL_MEM_READ_WRITE};
+    unsigned counted_ = 0;       // packets of the last launch and of those before it in the same frame
+    OverflowCounter overflows_;  // used by debug programs without counters
+};
+
+}  // namespace
 
 #define ROW(id) const Tracer& id##_tracer();
 #include "render/tracers/tracers.inl"

@@ -3,11 +3,11 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/files/known_contents.hpp"
+#include "base/files/cache_folder.hpp"
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
-#include "base/physical_memory.hpp"
-#include "base/printable.hpp"
+#include "base/machine.hpp"
+#include "base/text.hpp"
 #include "compile/compile.hpp"
 #include "device/kernel_files.hpp"
 #include "plugin/trust.hpp"

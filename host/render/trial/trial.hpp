@@ -1,9 +1,9 @@
 // trial.hpp -- kernels that were edited, or that a stranger's plugin brings, run in a worker process before they run here.
 //
 // On a CPU no launch can be stopped, and a kernel that reads out of bounds ends the process that launches it. So the worker
-// builds the structure over a small scene (worker/trial_scene.hpp), puts its buffers between guard pages, compiles the kernels
+// builds the structure over a small scene (worker/trial_job.cpp), puts its buffers between guard pages, compiles the kernels
 // with their checks of stacks, and runs them with a limit of time: as their tracer says (Tracer::smoke), or the film. Kernels
-// that pass are known by their text, on disk too (base/files/known_contents.hpp).
+// that pass are known by their text, on disk too (base/files/cache_folder.hpp).
 #pragma once
 #include <memory>
 

@@ -1,5 +1,5 @@
 // trial_job.hpp -- what a trial of kernels in a worker takes. It returns why there was no trial, through no fault of the
-// kernels; an empty text says that they have passed.
+// kernels; an empty text says that they have passed. And shapes of the user's scene.
 #pragma once
 #include <map>
 #include <string>
@@ -9,9 +9,35 @@
 #include "base/files/parcel.hpp"
 #include "render/kernels/scene_features.hpp"
 #include "render/settings/settings.hpp"
-#include "render/trial/trial_shapes.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
+
+// Some shapes of a user's scene, which the scene of a trial gets too: kernels of shapes run on numbers that
+// their own plugin has made.
+
+struct TrialShape {
+    std::string id;  // of the plugin
+    struct Part {
+        ShapePart part;
+        std::vector<float> more;  // its range of Scene::shape_numbers
+        template <class Parcel, class Self>
+        static void visit(Parcel& parcel, Self& self) {
+            parcel(self.part, self.more);
+        }
+    };
+    std::vector<Part> parts;
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.id, self.parts);
+    }
+};
+
+// Up to three shapes of each kind, with up to four parts each; fewer if they have very many numbers. A shape may lose parts.
+std::vector<TrialShape> sample_shapes(const Scene& scene);
+// Adds one of them to a scene, so that it fits into a ball of this centre and radius. kind: index in Scene::shape_kinds.
+void add_shape(Scene& scene, const TrialShape& shape, rt_u32 kind, rt_u32 material, const std::array<float, 3>& center,
+               float radius);
 
 inline constexpr const char* kFilmKernels = "film";
 

@@ -5,7 +5,7 @@
 
 #include "base/numbers.hpp"
 #include "render/settings/settings.hpp"
-#include "render/view/camera_text.hpp"
+#include "render/view/view.hpp"
 #include "scene/camera.hpp"
 #include "scene/motion/matrix.hpp"
 

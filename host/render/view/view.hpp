@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/angle.hpp"
+#include "render/settings/settings.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -31,5 +33,42 @@ inline const SkyValues& sky_of(const Scene& scene, const View& view) {
 // light: "" or "x,y,z", which moves the first light, and makes it a point light if it lies in a direction. Throws Error(usage)
 // if it cannot read either.
 View make_view(const Scene& scene, float aspect, const std::string& camera = {}, const std::string& light = {});
+
+// What users are told where a tracer shows less than the scene has.
+
+// "2 lights with a size light as points at their middles; ...", or an empty text. tracer: the setting's value.
+std::string size_note(const std::vector<rt_light>& lights, const std::string& tracer);
+
+// A camera as text: ex,ey,ez,tx,ty,tz,fov_deg,ux,uy,uz[,aperture,focus]. Shorter forms leave out the up
+// vector, or the field of view as well.
+
+// Text has the coordinates of files, whose differences from Scene::origin are those of the scene.
+std::array<float, 3> scene_point(const std::array<double, 3>& in_file, const std::array<double, 3>& origin);
+// Three numbers with all their digits. between: what stands between them.
+std::string point_text(const float* in_scene, const std::array<double, 3>& origin, const char* between);
+
+struct CameraNumbers {
+    std::array<double, 3> eye{}, target{};  // in the coordinates of files
+    std::optional<double> fov_deg;          // double: radians must survive the conversion to degrees and back exactly
+    std::optional<std::array<float, 3>> up;
+    float aperture = 0, focus = 0;  // of the lens
+};
+// Returns nothing unless the text is 6, 7, 10 or 12 finite numbers with commas between them. Does not check their values.
+std::optional<CameraNumbers> read_camera_numbers(const std::string& text);
+// All numbers, with all their digits; those of the lens if there is one.
+std::string camera_text(const Camera& camera, const std::array<double, 3>& origin = {});
+// "  aperture .02  focus 7" for a text scene, or an empty text for a pinhole.
+std::string lens_words(const Camera& camera);
+
+// Which kinds of lights and surfaces a view has.
+
+// Those of the scene's own view.
+Optics optics_of(const Scene& scene);
+// Those of a view, as far as kernels of these settings' tracer tell them apart.
+Optics optics_of(const Scene& scene, const View& view, const Settings& settings);
+// Whether kernels that were prepared for the scene with these settings know those of the view.
+bool knows(const Settings& prepared, const Scene& scene, const View& view);
+// Settings for a scene that will be traced with that view.
+Settings with_optics(Settings settings, const Scene& scene, const View& view);
 
 }  // namespace clarity

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/motion/matrix.hpp"
+#include "scene/motion/motion.hpp"
 #include "scene/motion/node_transform.hpp"
 #include "scene/scene.hpp"
 
@@ -23,5 +25,12 @@ std::vector<bool> acting_clips(const Motion& motion, const std::string& name);
 
 // Replaces the values that a clip's channels move.
 void play(const Scene& scene, const std::string& clip, double time_s, MovingValues& values);
+
+// The value of a channel at a time.
+
+// The number of a channel with one component at a time, in seconds of the clip's clock.
+double value_at(const Motion& motion, const Channel& channel, double time_s);
+// The unit quaternion of a channel with RT_ALL_COMPONENTS.
+Quaternion quaternion_at(const Motion& motion, const Channel& channel, double time_s);
 
 }  // namespace clarity

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
@@ -15,6 +17,15 @@ constexpr double kNear = 1e-4;  // of a frame: key times of files are rounded, 0
 // A file may have keys at any time.
 long whole(double number) {
     return static_cast<long>(std::clamp(number, -1e9, 1e9));
+}
+
+// The part of sample i is i * step modulo their number. A step near the golden section of it spreads samples that follow each
+// other; one without a common divisor reaches every part.
+uint64_t step_of(uint64_t count) {
+    constexpr double kGolden = 0.6180339887498949;
+    auto step = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(kGolden * static_cast<double>(count))));
+    while (std::gcd(step, count) != 1) ++step;
+    return step;
 }
 
 }  // namespace
@@ -65,6 +76,14 @@ FrameSpan frames_of(const ClipInfo& clip) {
 
 long frame_at(double time_s, double fps) {
     return whole(std::round(time_s * fps));
+}
+
+double sample_time(const Shutter& shutter, unsigned sample) {
+    if (shutter.samples <= 1 || !(shutter.open_s > 0)) return shutter.time_s;
+    const uint64_t count = shutter.samples;
+    // Sample 0 is near the picture's time: it is what a viewer sees first.
+    const uint64_t part = (count / 2 + sample * step_of(count)) % count;
+    return shutter.time_s + shutter.open_s * ((static_cast<double>(part) + 0.5) / static_cast<double>(count) - 0.5);
 }
 
 }  // namespace clarity

@@ -1,4 +1,5 @@
-// pose_time.hpp -- at which time of which clip a scene is shown, and the frames of a clip.
+// pose_time.hpp -- at which time of which clip a scene is shown, the frames of a clip, and the times
+// of samples while a shutter is open.
 #pragma once
 #include <optional>
 #include <string>
@@ -36,5 +37,20 @@ struct FrameSpan {
 FrameSpan frames_of(const ClipInfo& clip);
 // The frame nearest to a time.
 long frame_at(double time_s, double fps);
+
+// The times of a picture's samples while a shutter is open.
+
+// A shutter that is open around the time of a picture: half of it before, half after.
+struct Shutter {
+    double time_s = 0;     // of the picture, on the clip's clock
+    double open_s = 0;     // how long it is open; 0: all samples are at the picture's time
+    unsigned samples = 1;  // of a pixel
+    bool operator==(const Shutter& b) const { return time_s == b.time_s && open_s == b.open_s && samples == b.samples; }
+};
+
+// The time of a sample. The shutter's time is cut into as many equal parts as there are samples, and each sample is in the
+// middle of one. Samples that follow each other are in parts far apart, so that a picture of some of its samples is evenly
+// blurred, too. Depends on the arguments alone.
+double sample_time(const Shutter& shutter, unsigned sample);
 
 }  // namespace clarity

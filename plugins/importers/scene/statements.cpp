@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry.hpp"
 #include "looks.hpp"
-#include "sky.hpp"
+#include "shapes.hpp"
 #include "textures.hpp"
 
 namespace scene_format {

@@ -7,8 +7,9 @@
 #include <cstring>
 
 #include "bvh2_check.hpp"
-#include "bvh8_check.hpp"
-#include "cwbvh_check.hpp"
+#include "harness.hpp"
+#include "linear_types.h"
+#include "wide_check.hpp"
 
 using namespace accel_test;
 
@@ -216,4 +217,31 @@ TEST_P(Builders, ShowTheirLevels) {
     }
     EXPECT_EQ(shown(0, RT_LEVEL_BOTTOM).size() + shown(2, RT_LEVEL_BOTTOM).size(), tree.stats.at("leaves"));
     EXPECT_THROW(shown(3, 0), std::runtime_error);
+}
+
+// The list keeps all primitives in their order.
+
+TEST(Linear, ListsEveryGroupInOrder) {
+    Input input;
+    input.add_group(scattered(10, 1, 0, 1));
+    input.add_group({});
+    input.add_group(scattered(7, 1, 0, 2));
+    const Built built = build(load("linear"), input);
+    ASSERT_EQ(built.status, RT_OK) << built.why;
+    ASSERT_EQ(built.leaves.size(), 17u);
+    const rt_u32 firsts[] = {0, 10, 10}, counts[] = {10, 0, 7};
+    for (int g = 0; g < 3; ++g) {
+        const linear_run& run = built.slot<linear_run>()[built.roots[g]];
+        EXPECT_EQ(run.first, firsts[g]);
+        EXPECT_EQ(run.count, counts[g]);
+        for (rt_u32 i = 0; i < run.count; ++i)
+            EXPECT_EQ(built.leaves[run.first + i], input.prims[input.groups[g].first + i].ref);
+    }
+    EXPECT_EQ(load("linear").accel->levels, nullptr);
+}
+
+TEST(Linear, StopsWhenCancelled) {
+    Input input;
+    input.add_group(scattered(10, 1, 0, 1));
+    EXPECT_EQ(build(load("linear"), input, {{}, 1, [](float) { return false; }}).status, RT_CANCELLED);
 }

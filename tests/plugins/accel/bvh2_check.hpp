@@ -14,7 +14,7 @@ namespace accel_test {
 // and that the reported depth, counts and stack size match the trees.
 std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf = 4, bool larger_first = true);
 
-// Computes the cost that the builder should report: see statistics.hpp of bvh2.
+// Computes the cost that the builder should report: see pack.cpp of bvh2.
 double sah_cost(const Input& input, const Built& built, double traversal_cost = 1, double intersection_cost = 1);
 
 }  // namespace accel_test

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "bvh2_check.hpp"
-#include "bvh8_check.hpp"
+#include "wide_check.hpp"
 
 using namespace accel_test;
 

@@ -9,12 +9,11 @@
 #include "bvh4/node_memory.hpp"
 #include "bvh4/pack.hpp"
 #include "bvh8/pack.hpp"
-#include "bvh8_check.hpp"
 #include "clarity_bvh/assemble.hpp"
 #include "clarity_bvh/build/builder.hpp"
 #include "cwbvh/pack.hpp"
-#include "cwbvh_check.hpp"
 #include "leaf_tally.hpp"
+#include "wide_check.hpp"
 
 using namespace accel_test;
 using namespace clarity::bvh;

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "render/device_build/device_reduce.hpp"
 #include "render/device_build/device_sort.hpp"
 #include "rt_plugin.h"
 

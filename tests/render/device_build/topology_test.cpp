@@ -11,7 +11,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"

@@ -1,5 +1,5 @@
 // pick_table_test.cpp -- the table of emitters deals out all numbers, exactly as it says.
-#include "render/emitters/pick_table.hpp"
+#include "render/emitters/sky_table.hpp"
 
 #include <gtest/gtest.h>
 

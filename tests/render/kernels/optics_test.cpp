@@ -6,7 +6,7 @@
 
 #include "render/kernels/scene_features.hpp"
 #include "render/settings/tracer_choice.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 #include "scene/light_kinds.hpp"
 #include "support/generated.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "render/launch/pace.hpp"
+#include "render/launch/launch.hpp"
 
 using clarity::Pace;
 

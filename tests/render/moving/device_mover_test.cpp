@@ -8,7 +8,7 @@
 #include <set>
 
 #include "moving_scenes.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 #include "render/moving/on_host/host_mover.hpp"
 #include "render/tracers/rays/query_scene.hpp"
 #include "render/tracers/rays/ray_queries.hpp"

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "moving_scenes.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 #include "render/moving/on_device/device_mover.hpp"
 #include "render/moving/on_host/host_mover.hpp"
 #include "render/tracers/rays/query_scene.hpp"

@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "moving_scenes.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/tracers/rays/query_scene.hpp"
 #include "render/tracers/rays/ray_queries.hpp"

@@ -10,7 +10,7 @@
 #include "render/moving/on_host/host_mover.hpp"
 #include "render/multi/motion_blur.hpp"
 #include "render/multi/team.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 #include "scene/motion/pose.hpp"
 #include "support/scratch.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "import/sequence_reader.hpp"
+#include "import/import.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/team.hpp"
 #include "support/scratch.hpp"

@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
-#include "render/view/view_optics.hpp"
+#include "render/view/view.hpp"
 #include "support/scenes.hpp"
 
 namespace clarity::test {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "render/multi/team_choice.hpp"
-
 using namespace clarity;
 
 namespace {

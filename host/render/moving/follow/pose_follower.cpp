@@ -1,12 +1,73 @@
 #include "render/moving/follow/pose_follower.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "render/moving/follow/first_tree.hpp"
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "render/moving/follow/background_build.hpp"
+#include "render/moving/on_host/host_mover.hpp"
+#include "scene/motion/pose.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
 namespace {
+
+// Chooses the tree that is refitted through a clip among those of several of its poses.
+//
+// A tree suits the pose that it was built in. Refitted to others, one of the middle of a motion often serves better than that
+// of its beginning (Wald, Boulos, Shirley 2007, "Ray Tracing Deformable Scenes Using Dynamic Bounding Volume Hierarchies").
+
+constexpr int kCandidates = 5;
+
+std::vector<Pose> poses_of(const Scene& rest, const std::string& clip) {
+    const std::vector<ClipInfo> all = clips(rest);
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const ClipInfo& info) { return clip.empty() || info.name == clip; });
+    if (found == all.end()) throw Error(Exit::usage, "the scene has no clip `" + clip + "`");
+    std::vector<Pose> poses;
+    for (int k = 0; k < kCandidates; ++k)
+        poses.push_back(evaluate(rest, clip, found->begin_s + (k + 0.5) / kCandidates * (found->end_s - found->begin_s)));
+    return poses;
+}
+
+// The sum of expected costs in all poses. built: in the first of them.
+double cost_in(const std::vector<Pose>& poses, const std::shared_ptr<const Scene>& scene,
+               const std::shared_ptr<const AccelData>& built, Progress& progress) {
+    HostMover moving(scene, built);
+    if (moving.cannot()) throw Error(Exit::failed, moving.cannot().text());
+    double sum = 0;
+    for (const Pose& pose : poses) {
+        const MovedStructure moved = moving.move(pose, progress);
+        if (!moved.accel) return INFINITY;  // this tree must be built anew there
+        sum += moved.accel->stat("sah_cost");
+    }
+    return sum;
+}
+
+// Builds a structure in each of five poses, evenly over the clip, refits each to the other four, and returns that whose
+// expected costs of a ray (SAH) have the least sum. Files of sequences are not read: their meshes stay at rest. rest: the scene
+// at rest. Takes as long as five builds and twenty refits, and the memory of two structures and their refits. Throws what
+// `build` throws, Error(failed) if the structure cannot be refitted, and Cancelled.
+BuiltPose choose_first_tree(const Scene& rest, const std::string& clip, const AccelBuilder& build, Progress& progress) {
+    const std::vector<Pose> poses = poses_of(rest, clip);
+    BuiltPose best;
+    double least = 0;
+    for (const Pose& pose : poses) {
+        if (progress.cancelled()) throw Cancelled();
+        const auto scene = std::make_shared<const Scene>(posed(rest, pose));
+        std::shared_ptr<const AccelData> accel = build(*scene, progress);
+        const double cost = cost_in(poses, scene, accel, progress);
+        if (best.accel && !(cost < least)) continue;
+        least = cost;
+        best = {scene, pose, std::move(accel)};
+    }
+    return best;
+}
 
 constexpr size_t kKeptCosts = 120;  // poses
 constexpr size_t kShownTrees = 64;

@@ -21,9 +21,9 @@
 #include "base/aligned_bytes.hpp"
 #include "base/problem.hpp"
 #include "render/moving/moved_instances.hpp"
-#include "render/moving/moved_structure.hpp"
 #include "render/moving/on_device/device_deformer.hpp"
 #include "render/moving/on_device/device_structure.hpp"
+#include "render/moving/pose_mover.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {

@@ -11,9 +11,82 @@
 #include <string>
 #include <vector>
 
-#include "render/moving/on_device/device_groups.hpp"
+#include "base/problem.hpp"
+#include "render/accel/accel_build.hpp"
+#include "render/device_build/build_kernels.hpp"
+#include "render/device_build/device_plan.hpp"
+#include "render/launch/device_scene.hpp"
+#include "rt_device.h"
 
 namespace clarity {
+
+// The groups of a structure whose trees are refitted or built on the device that traces it: where they
+// are, and what all copies of the structure share.
+
+// Where an instance is, as kernels read it: rt_placement of move.cl.
+struct DevicePlacement {
+    float world_from_object[12], object_from_world[12];
+    uint32_t hidden, pad[3];
+};
+
+// Buffers that all structures of a scene share while it moves. They hold the newest pose.
+struct DevicePose {
+    cl::Buffer positions;          // 3 floats a vertex of the Scene, in the space of its group
+    cl::Buffer normals;            // likewise; as DeviceScene has them
+    cl::Buffer corners;            // rt_triangle for each ref
+    cl::Buffer placements;         // DevicePlacement for each instance of the structure
+    cl::Buffer group_of_instance;  // uint
+    cl::Buffer group_boxes;        // rt_block for each group
+    cl::Buffer no_bounds;          // 6 floats: +inf, then -inf
+    cl::Buffer costs;              // a float for each group: expected cost of a ray
+};
+
+// What all copies have in common. Used from one thread at a time.
+class DeviceGroups {
+ public:
+    // built: the structure of `on_device`. Throws Error if kernels cannot be compiled, or memory is missing.
+    DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built,
+                 std::shared_ptr<const DeviceScene> on_device, const DevicePose& pose);
+
+    // Why the structure cannot be refitted on this device; nothing: it can.
+    const Problem& cannot() const { return cannot_; }
+    // Whether its trees can be built there, too: by the structure's own builder.
+    bool can_build() const { return builder_.topology && layout_.pack && layout_.elements; }
+    uint64_t primitives(rt_u32 group) const { return groups_[group].count; }
+    size_t count() const { return groups_.size(); }
+
+ private:
+    friend class DeviceStructure;
+    static constexpr uint64_t kCostGroups = 512;  // work-groups that add costs, at most
+    // Where a tree is in the slots: of each slot of the table, the first element and how many there are.
+    struct Place {
+        std::vector<uint64_t> first, count;
+    };
+    struct Group {
+        Place at_rest;  // of the tree that the host has built; slot 0 alone
+        Place built;    // for the tree that the device builds
+        rt_u32 first_leaf = 0;
+        uint64_t count = 0;  // primitives
+    };
+    Problem find_groups();
+    void place_trees();
+    void make_scratch();
+
+    const BuildKernels& kernels_;
+    const std::shared_ptr<const AccelData> built_;
+    const std::shared_ptr<const DeviceScene> on_device_;
+    const DevicePose& pose_;
+    const rt_device_build layout_, builder_;  // builder_: without functions if the host builds for this layout itself
+    const ParameterValues params_;
+    Problem cannot_;
+    std::vector<Group> groups_;
+    cl::Program program_;                  // move.cl
+    cl::Buffer ranges_;                    // rt_device_tree::ranges of the structure as it was built
+    std::vector<uint64_t> slot_elements_;  // of each slot of the table, with room for trees that the device builds
+    // Of one group at a time.
+    cl::Buffer blocks_, node_costs_, sums_;
+    cl::Buffer boxes_, order_, old_leaves_;  // for builds
+};
 
 class DeviceStructure {
  public:

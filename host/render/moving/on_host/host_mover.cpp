@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
 #include "base/scoped_fp_mode.hpp"
-#include "plugin/extensions.hpp"
+#include "plugin/capabilities.hpp"
 #include "plugin/host_services.hpp"
 #include "render/accel/accel_copy.hpp"
 

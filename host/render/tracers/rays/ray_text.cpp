@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
-#include "base/printable.hpp"
+#include "base/text.hpp"
 
 namespace clarity {
 namespace {

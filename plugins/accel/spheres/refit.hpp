@@ -1,9 +1,0 @@
-// refit.hpp -- the extension `refit` of spheres: new volumes for primitives that moved, in the same tree.
-#pragma once
-#include "rt_plugin.hpp"
-
-namespace spheres {
-
-int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out);
-
-}  // namespace spheres
