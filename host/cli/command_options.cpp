@@ -212,6 +212,11 @@ void add_lab(CLI::App& app, LabCommand& command) {
     single(app.add_option("--work", command.work,
                           "A folder in which plugins are built, and which later runs use again; default: a temporary one"))
         ->type_name("DIR");
+    app.add_option(
+           "--tools", command.tools,
+           "A folder that compilers may read in their sandbox, besides those of the tools that PATH has; may be repeated")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
     single(app.add_option("--device", command.device, "The device that traces, as `clarity devices` lists them"))
         ->type_name("D");
 }

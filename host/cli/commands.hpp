@@ -136,6 +136,7 @@ struct LabCommand {
     std::vector<std::string> only;   // of check: lines
     std::string output, gradescope;  // a folder for records, or a page; Gradescope's file
     std::string device, sdk, work;
+    std::vector<std::string> tools;  // folders
     bool autolab = false, counts_only = false;
 };
 int run_lab(const PluginRegistry& plugins, const LabCommand& command);

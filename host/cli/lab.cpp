@@ -47,6 +47,9 @@ class Desk {
         options.device = command.device;
         options.only = command.only;
         options.times = !command.counts_only;
+        options.tools = command.tools;
+        options.closed = command.words;
+        if (!command.output.empty()) options.closed.push_back(command.output);
         options.sdk =
             command.sdk.empty() ? program_file().parent_path().parent_path().string() : fs::absolute(command.sdk).string();
         if (!fs::exists(options.sdk + "/include/clarity/rt_plugin.h"))

@@ -25,24 +25,25 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t kToolBytes = uint64_t(2) << 30, kFileBytes = uint64_t(64) << 20;  // of each compiler
+constexpr double kTryS = 60;                                                         // for tools that are tried
 constexpr size_t kMostOutput = 6000;  // bytes of a compiler's messages that are kept
 
 // Commands that run one after the other in a worker, and the folders that they may read and run.
 struct Tools {
     std::vector<std::vector<std::string>> commands;
     std::vector<std::string> folders;
-    std::string work;
+    std::string work, path;
+    std::string bubblewrap;  // the program; "": not used
     uint64_t cpu_s = 0;
-    bool bubblewrap = false;
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.commands, self.folders, self.work, self.cpu_s, self.bubblewrap);
+        parcel(self.commands, self.folders, self.work, self.path, self.bubblewrap, self.cpu_s);
     }
 };
 
 std::vector<std::string> in_bubblewrap(const Tools& tools) {
-    std::vector<std::string> words = {"bwrap", "--unshare-all", "--die-with-parent", "--proc", "/proc",
-                                      "--dev", "/dev",          "--tmpfs",           "/tmp"};
+    std::vector<std::string> words = {tools.bubblewrap, "--unshare-all", "--die-with-parent", "--proc", "/proc",
+                                      "--dev",          "/dev",          "--tmpfs",           "/tmp"};
     for (const std::string& folder : tools.folders) words.insert(words.end(), {"--ro-bind-try", folder, folder});
     words.insert(words.end(), {"--bind", tools.work, tools.work, "--chdir", tools.work});
     return words;
@@ -51,10 +52,8 @@ std::vector<std::string> in_bubblewrap(const Tools& tools) {
 void run_tools(ParcelReader& arguments) {
     const auto tools = worker::arguments_in<Tools>(arguments);
     // Nothing of the grader's environment reaches the compilers.
-    const char* const path = std::getenv("PATH");
-    const std::string kept = path ? path : "/usr/bin:/bin";
     clearenv();
-    setenv("PATH", kept.c_str(), 1);
+    setenv("PATH", tools.path.c_str(), 1);
     setenv("HOME", tools.work.c_str(), 1);
     setenv("TMPDIR", tools.work.c_str(), 1);
     setenv("LC_ALL", "C", 1);
@@ -62,7 +61,7 @@ void run_tools(ParcelReader& arguments) {
     worker::WorkerLimits limits;
     limits.cpu_s = tools.cpu_s;
     limits.memory_bytes = kToolBytes;
-    if (tools.bubblewrap) {
+    if (!tools.bubblewrap.empty()) {
         const rlimit memory{kToolBytes, kToolBytes}, file{kFileBytes, kFileBytes}, cpu{tools.cpu_s, tools.cpu_s};
         setrlimit(RLIMIT_AS, &memory);
         setrlimit(RLIMIT_FSIZE, &file);
@@ -71,7 +70,7 @@ void run_tools(ParcelReader& arguments) {
         worker::enter_tool_sandbox(tools.folders, tools.work, limits, kFileBytes);
     }
     for (const auto& command : tools.commands) {
-        std::vector<std::string> words = tools.bubblewrap ? in_bubblewrap(tools) : std::vector<std::string>();
+        std::vector<std::string> words = tools.bubblewrap.empty() ? std::vector<std::string>() : in_bubblewrap(tools);
         words.insert(words.end(), command.begin(), command.end());
         if (!run_tool(words, words.front())) throw Error(Exit::failed, "`" + command[0] + " " + command[1] + "` failed");
     }
@@ -89,6 +88,15 @@ class ToolsJob : public worker::Job {
         if (output.size() < kMostOutput) output += printable_line(line) + "\n";
     }
 };
+
+Tools tools_for(const BuildTools& tools, Sandbox sandbox, const std::string& work, double cpu_s) {
+    Tools job;
+    job.folders = tools.folders, job.path = tools.path;
+    job.work = fs::canonical(work).string();
+    job.cpu_s = static_cast<uint64_t>(cpu_s);
+    if (sandbox == Sandbox::bubblewrap) job.bubblewrap = tools.bubblewrap;
+    return job;
+}
 
 // The regular file `path`, without following a link. Throws Refused.
 std::string submitted(const std::string& path, const Lab::File& file) {
@@ -126,7 +134,7 @@ void blank_comments(std::string& text) {
 
 Sandbox find_sandbox() {
     static const Sandbox found = [] {
-        const int status = std::system("bwrap --unshare-all --ro-bind / / true >/dev/null 2>&1");
+        const int status = std::system("bwrap --unshare-all --ro-bind / / /bin/true >/dev/null 2>&1");
         return status == 0 ? Sandbox::bubblewrap : worker::restricts_files() ? Sandbox::worker : Sandbox::limits;
     }();
     return found;
@@ -134,9 +142,10 @@ Sandbox find_sandbox() {
 const char* sandbox_text(Sandbox sandbox) {
     switch (sandbox) {
         case Sandbox::bubblewrap:
-            return "bubblewrap: compilers see only the system, the SDK and this submission";
+            return "bubblewrap: compilers see only the system, themselves, the SDK and this submission";
         case Sandbox::worker:
-            return "a worker's limits (Landlock, seccomp): compilers read only the system, the SDK and this submission";
+            return "a worker's limits (Landlock, seccomp): compilers read only the system, themselves, the SDK and this "
+                   "submission";
         default:
             return "resource limits alone: neither bubblewrap nor Landlock works here, so a submission may name files of the "
                    "teacher's in #include, and what the compiler says of them is left out";
@@ -170,30 +179,57 @@ void collect(const Lab& lab, const std::string& from, const std::string& to) {
     }
 }
 
-std::string compile(const Lab& lab, const std::string& sources, const std::string& build, const std::string& sdk,
+void try_tools(const BuildTools& tools, Sandbox sandbox, const std::string& work, Progress& progress) {
+    fs::create_directories(work);
+    write_text_file(work + "/try.c", "int main(void) { return 0; }\n");
+    write_text_file(work + "/try.cpp", "#include <vector>\nint main() { return int(std::vector<int>(1)[0]); }\n");
+    const std::vector<std::vector<std::string>> commands = {{tools.cmake, "--version"},
+                                                            {tools.make, "--version"},
+                                                            {tools.c, "try.c", "-o", "try"},
+                                                            {tools.cxx, "try.cpp", "-o", "try"}};
+    for (const auto& command : commands) {
+        Tools job = tools_for(tools, sandbox, work, kTryS);
+        job.commands = {command};
+        ToolsJob run(kTryS);
+        try {
+            run.run(job, progress);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& e) {
+            std::string folders;
+            for (const std::string& folder : tools.own_folders()) folders += (folders.empty() ? "" : ", ") + folder;
+            throw Error(
+                Exit::failed,
+                std::string("a tool that builds submissions does not run in the sandbox: ") + e.what() +
+                    "; besides the system's folders it may read " + (folders.empty() ? "none" : folders) +
+                    "; name others that it needs by --tools FOLDER, or put the system's own CMake, make and g++ first in PATH",
+                run.output);
+        }
+    }
+}
+
+std::string compile(const Lab& lab, const std::string& sources, const std::string& build, const BuildTools& tools,
                     Sandbox sandbox, Progress& progress) {
     const std::string library = build + "/" + lab.id + ".so";
     std::error_code ignored;
     fs::remove(library, ignored);
     fs::create_directories(build);
-    Tools tools;
+    Tools job = tools_for(tools, sandbox, fs::path(build).parent_path(), lab.compile_s);
     if (!fs::exists(build + "/CMakeCache.txt"))
-        tools.commands.push_back(
-            {"cmake", "-S", sources, "-B", build, "-DCMAKE_PREFIX_PATH=" + sdk, "-DCMAKE_BUILD_TYPE=Release"});
-    tools.commands.push_back({"cmake", "--build", build, "--clean-first"});
-    tools.folders = {"/usr", "/bin", "/lib", "/lib64", "/etc", fs::canonical(sdk).string()};
-    tools.work = fs::canonical(fs::path(build).parent_path()).string();
-    tools.cpu_s = static_cast<uint64_t>(lab.compile_s);
-    tools.bubblewrap = sandbox == Sandbox::bubblewrap;
-    ToolsJob job(lab.compile_s);
+        job.commands.push_back({tools.cmake, "-S", sources, "-B", build, "-G", tools.generator,
+                                "-DCMAKE_MAKE_PROGRAM=" + tools.make, "-DCMAKE_C_COMPILER=" + tools.c,
+                                "-DCMAKE_CXX_COMPILER=" + tools.cxx, "-DCMAKE_PREFIX_PATH=" + tools.sdk,
+                                "-DCMAKE_BUILD_TYPE=Release"});
+    job.commands.push_back({tools.cmake, "--build", build, "--clean-first"});
+    ToolsJob run(lab.compile_s);
     try {
-        job.run(tools, progress);
+        run.run(job, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
         fs::remove(build + "/CMakeCache.txt", ignored);  // a configuration that failed would be taken for one
         // Without a sandbox for files a message may quote what the submission has included.
-        throw Refused(std::string("it does not compile: ") + e.what(), sandbox == Sandbox::limits ? "" : job.output);
+        throw Refused(std::string("it does not compile: ") + e.what(), sandbox == Sandbox::limits ? "" : run.output);
     }
     if (!fs::is_regular_file(fs::symlink_status(library))) throw Refused("the build makes no " + lab.id + ".so");
     return library;

@@ -6,6 +6,7 @@
 
 #include "base/progress.hpp"
 #include "lab/lab.hpp"
+#include "lab/tools.hpp"
 #include "worker/job.hpp"
 
 namespace clarity::lab {
@@ -30,9 +31,11 @@ void collect(const Lab& lab, const std::string& from, const std::string& to);
 // The first forbidden word of a text outside of its comments, with its line; "": none.
 std::string forbidden_word(std::string text, const std::vector<std::string>& words);
 
-// Builds the folder `sources` in `build`, which may hold an earlier build. sdk: the folder that Clarity is installed in.
-// Returns the library. Throws Refused with the compiler's messages.
-std::string compile(const Lab& lab, const std::string& sources, const std::string& build, const std::string& sdk,
+// Runs each tool once in the sandbox, in the folder `work`. Throws Error, with what a teacher may do about it.
+void try_tools(const BuildTools& tools, Sandbox sandbox, const std::string& work, Progress& progress);
+// Builds the folder `sources` in `build`, which may hold an earlier build. Returns the library. Throws Refused with the
+// compiler's messages.
+std::string compile(const Lab& lab, const std::string& sources, const std::string& build, const BuildTools& tools,
                     Sandbox sandbox, Progress& progress);
 
 extern const worker::JobKind kToolsJob;

@@ -60,6 +60,12 @@ std::string without_secrets(const std::string& found) {
     return "in this hidden case the build fails";
 }
 
+BuildTools tools_for(const Lab& lab, const GradeOptions& options) {
+    std::vector<std::string> closed = options.closed;
+    closed.insert(closed.end(), {lab.folder, installed_labs(), options.work});
+    return find_build_tools(options.sdk, options.tools, closed, options.work);
+}
+
 std::string tried_text(const Case& one, bool is_surface) {
     if (one.hidden) return is_surface ? "a hidden material" : "a hidden scene";
     if (!is_surface)
@@ -90,7 +96,8 @@ double counts_points(const Lab& lab, double ratio) {
 }
 
 Grader::Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Progress& progress)
-    : lab_(std::move(lab)), options_(std::move(options)), sandbox_(find_sandbox()) {
+    : lab_(std::move(lab)), options_(std::move(options)), sandbox_(find_sandbox()), tools_(tools_for(lab_, options_)) {
+    try_tools(tools_, sandbox_, options_.work + "/tools", progress);
     if (!lab_.layout.empty()) layout_ = library_of_accel(plugins, lab_.layout);
     std::vector<std::string> own;
     for (const auto& entry : fs::recursive_directory_iterator(lab_.folder)) own.push_back(entry.path().string());
@@ -107,7 +114,7 @@ Grader::Grader(Lab lab, const PluginRegistry& plugins, GradeOptions options, Pro
         Lab own = lab_;
         own.forbidden.clear();
         collect(own, lab_.reference(), sources);
-        reference_ = compile(lab_, sources, options_.work + "/reference/build", options_.sdk, sandbox_, progress);
+        reference_ = compile(lab_, sources, options_.work + "/reference/build", tools_, sandbox_, progress);
     } catch (const Refused& e) {
         throw Error(Exit::failed, lab_.reference() + ": the reference solution: " + e.what(), e.details());
     }
@@ -124,7 +131,7 @@ ClosedBuilder Grader::closed(const Libraries& libraries) const {
 Grader::Libraries Grader::build(const std::string& submission, Progress& progress) const {
     const std::string work = options_.work + "/submission";
     collect(lab_, submission, work + "/sources");
-    Libraries made{compile(lab_, work + "/sources", work + "/build", options_.sdk, sandbox_, progress), ""};
+    Libraries made{compile(lab_, work + "/sources", work + "/build", tools_, sandbox_, progress), ""};
     if (!lab_.layout.empty() || !lab_.has_builder()) return made;
     made.table = made.own;
     // Without a reference this is the student's own machine.
@@ -135,7 +142,7 @@ Grader::Libraries Grader::build(const std::string& submission, Progress& progres
         if (file.is_kernel()) kernels.files.push_back(file);
     const std::string table = options_.work + "/table";
     collect(kernels, submission, table + "/sources");
-    made.table = compile(kernels, table + "/sources", table + "/build", options_.sdk, sandbox_, progress);
+    made.table = compile(kernels, table + "/sources", table + "/build", tools_, sandbox_, progress);
     return made;
 }
 

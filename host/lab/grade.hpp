@@ -33,8 +33,10 @@ struct Marks {
 
 struct GradeOptions {
     std::string device;
-    std::string sdk;   // the folder that Clarity is installed in
-    std::string work;  // a folder for builds, which later submissions use again
+    std::string sdk;                  // the folder that Clarity is installed in
+    std::string work;                 // a folder for builds, which later submissions use again
+    std::vector<std::string> tools;   // folders that compilers may read, besides those that are found
+    std::vector<std::string> closed;  // and of which they read nothing: submissions
     bool times = true;
     std::vector<std::string> only;  // lines, by name; empty: all
 };
@@ -67,6 +69,7 @@ class Grader {
     const Lab lab_;
     const GradeOptions options_;
     const Sandbox sandbox_;
+    const BuildTools tools_;
     std::string layout_, reference_;  // libraries
     std::vector<MadeCase> cases_;
     std::string lab_digest_;  // of the lab's own files

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -127,11 +128,16 @@ Problem detail::restrict_files(const std::vector<std::string>& folders, const st
     if (version >= 3) ruleset.handled_access_fs |= 1u << 14;
     const int fd = static_cast<int>(syscall(SYS_landlock_create_ruleset, &ruleset, sizeof ruleset, 0));
     if (fd < 0) return std::string("Landlock: ") + std::strerror(errno);
+    constexpr uint64_t kRightsOfFiles =
+        LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_EXECUTE;
     const auto allow = [&](const std::string& path, uint64_t rights) {
         landlock_path_beneath_attr rule{};
         rule.allowed_access = rights;
         rule.parent_fd = open(path.c_str(), O_PATH | O_CLOEXEC);
         if (rule.parent_fd < 0) return;  // then the path is not readable, which is safe
+        // The kernel refuses a file's rule with rights of folders.
+        struct stat status {};
+        if (fstat(rule.parent_fd, &status) == 0 && !S_ISDIR(status.st_mode)) rule.allowed_access &= kRightsOfFiles;
         syscall(SYS_landlock_add_rule, fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
         close(rule.parent_fd);
     };

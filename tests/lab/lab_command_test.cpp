@@ -189,6 +189,86 @@ TEST(Lab, WithoutBubblewrapAndLandlockCompilersAreStillShutIn) {
     }
 }
 
+// A machine whose CMake is in a Python environment: what PATH has is a script, the program is further away, and nothing of
+// either is in a folder of the system's.
+void move_cmake(const Scratch& scratch) {
+    const std::string program = scratch.path("env/lib/cmake/bin"), root = scratch.path("env/lib/cmake/share");
+    const std::string ask = scratch.write("ask.cmake", "message(\"${CMAKE_COMMAND}\\n${CMAKE_ROOT}\")\n");
+    const std::string copy = "cmake -P '" + ask + "' 2>'" + ask + ".out' && { read c; read r; } <'" + ask +
+                             ".out' && mkdir -p '" + program + "' '" + root + "' && cp \"$c\" '" + program +
+                             "/cmake' && cp -r \"$r\" '" + root + "'";
+    ASSERT_EQ(std::system(copy.c_str()), 0) << copy;
+    scratch.write("env/bin/cmake", "#!/bin/sh\nexec '" + program + "/cmake' \"$@\"\n");
+    fs::permissions(scratch.path("env/bin/cmake"), fs::perms::owner_all);
+    fs::create_directories(scratch.path("links"));
+    for (const std::string name : {"bwrap", "cc", "c++", "make", "as", "ld", "ar", "ranlib", "sh", "true"})
+        for (const char* folder : {"/usr/local/bin/", "/usr/bin/", "/bin/"})
+            if (fs::exists(folder + name) && !fs::is_symlink(fs::symlink_status(scratch.path("links/" + name))))
+                fs::create_symlink(fs::canonical(folder + name), scratch.path("links/" + name));
+}
+
+TEST(Lab, ToolsAreFoundWhereverTheyAre) {
+    install_sdk();
+    const Scratch scratch;
+    move_cmake(scratch);
+    const std::string path = scratch.path("env/bin") + ":" + scratch.path("links");
+    const auto graded = [&](const std::string& first, const std::vector<std::string>& more = {}) {
+        RunOptions options;
+        options.environment["PATH"] = (first.empty() ? "" : scratch.path(first) + ":") + path;
+        std::vector<std::string> words = {"lab", "grade", kLabs + "/median", scratch.path("nothing"), "--sdk", kSdk};
+        words.insert(words.end(), more.begin(), more.end());
+        const ProgramResult result = run_program(words, options);
+        return result.out + result.err;
+    };
+    // Nothing was handed in, and this is told behind the build of the reference solution.
+    const std::string built = "median.cpp is not there";
+    const auto program = [&](const std::string& name, const std::string& text) {
+        fs::permissions(scratch.write(name, "#!/bin/sh\n" + text + "\n"), fs::perms::owner_all);
+    };
+    program("without/bwrap", "exit 1");
+    for (const char* first : {"", "without"}) EXPECT_NE(graded(first).find(built), std::string::npos) << graded(first);
+    // A compiler that runs a program of a folder of which it says nothing.
+    program("else/compiler", "exec " + fs::canonical(scratch.path("links/c++")).string() + " \"$@\"");
+    program("odd/c++", "test \"$1\" = -E -o \"$1\" = -print-search-dirs || exec " + scratch.path("else/compiler") + " \"$@\"");
+    const std::string said = graded("odd");
+    EXPECT_NE(said.find("does not run in the sandbox: `" + scratch.path("odd/c++") + " try.cpp` failed"), std::string::npos)
+        << said;
+    EXPECT_NE(said.find("name others that it needs by --tools"), std::string::npos) << said;
+    const std::string named = graded("odd", {"--tools", scratch.path("else")});
+    EXPECT_NE(named.find(built), std::string::npos) << named;
+}
+
+// A folder that is opened for a tool holds neither the home nor anything that is closed.
+TEST(Lab, ToolsOpenNoHomeAndNoSubmission) {
+    const Scratch scratch;
+    move_cmake(scratch);
+    scratch.write("env/lib/cmake/lib/notes.txt", "of the home");
+    scratch.write("more/submission/a.cpp", ""), scratch.write("more/headers/a.h", "");
+    Environment environment;
+    environment.set("PATH", scratch.path("env/bin") + ":" + scratch.path("links"));
+    const auto opens = [&](const std::string& name, const std::string& more = {}) {
+        const std::vector<std::string> named = more.empty() ? std::vector<std::string>() : std::vector{scratch.path(more)};
+        const auto tools = clarity::lab::find_build_tools(kSdk, named, {scratch.path("more/submission")}, scratch.path(""));
+        const std::string file = scratch.path(name);
+        const auto own = tools.own_folders();
+        return std::any_of(own.begin(), own.end(),
+                           [&](const std::string& folder) { return file == folder || file.rfind(folder + "/", 0) == 0; });
+    };
+    EXPECT_TRUE(opens("env/lib/cmake/bin/cmake"));
+    EXPECT_TRUE(opens("env/lib/cmake/lib/notes.txt"));
+    EXPECT_FALSE(opens("env/lib/notes.txt"));
+    EXPECT_TRUE(opens("more/headers/a.h", "more"));
+    EXPECT_FALSE(opens("more/submission/a.cpp", "more"));
+    EXPECT_THROW(opens("", "none"), clarity::Error);
+    environment.set("HOME", scratch.path("env/lib/cmake"));
+    EXPECT_TRUE(opens("env/lib/cmake/bin/cmake"));
+    EXPECT_FALSE(opens("env/lib/cmake/lib/notes.txt"));
+    environment.set("HOME", scratch.path("more/headers"));
+    EXPECT_FALSE(opens("more/headers/a.h", "more"));
+    environment.set("PATH", scratch.path("links"));
+    EXPECT_THROW(opens(""), clarity::Error) << "there is no CMake";
+}
+
 // Before grading has come to its end there is a score of 0; a lab that cannot be graded keeps it.
 TEST(Lab, ATimeLimitIsNoOtherScore) {
     install_sdk();

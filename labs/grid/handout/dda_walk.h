@@ -9,8 +9,8 @@ int dda_first(dda_walk *walk)
     return 1;
 }
 
-/* Sets walk->cell to the next cell. nearest: the distance of the nearest surface so far. Returns 1; 0 if no further cell can have a
- * nearer one. A cell outside of the grid ends the walk, too.
+/* Sets walk->cell to the next cell. nearest: the distance of the nearest surface so far, along the ray from walk->point. Returns 1; 0 if
+ * no further cell can have a nearer one. A cell outside of the grid ends the walk, too.
  *
  * This one visits every cell of the grid. */
 int dda_next(dda_walk *walk, float nearest)
