@@ -375,9 +375,10 @@ KernelSource kernel_for(const KernelRow& row, const Settings& settings, const La
     out.include(row.file);
 
     source.declarations = kernel_text(row.file);
-    source.macros = {{"RT_CTX_PARAMS", scene_arguments},
-                     {"RT_OVERFLOWS_PARAM", settings.debug ? "overflows," : ""},
-                     {"RT_GROUPS_PARAMS", layout.cpu ? "first_group, group_count, group_share, taken_before, taken," : "first_group,"}};
+    source.macros = {
+        {"RT_CTX_PARAMS", scene_arguments},
+        {"RT_OVERFLOWS_PARAM", settings.debug ? "overflows," : ""},
+        {"RT_GROUPS_PARAMS", layout.cpu ? "first_group, group_count, group_share, taken_before, taken," : "first_group,"}};
     source.text = out.text();
     source.options = "-cl-std=CL1.2";
     if (settings.fast_math) source.options += " -cl-fast-relaxed-math";

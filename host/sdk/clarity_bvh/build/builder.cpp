@@ -9,7 +9,8 @@ namespace clarity::bvh {
 namespace {
 
 // At most 16384 records (0.5 MiB) per task, so that they fit into a core's own cache. Small scenes get smaller tasks, so that
-// none of many cores runs out of work before the end: they are no fewer for fewer cores, as the tree must be the same everywhere.
+// none of many cores runs out of work before the end: they are no fewer for fewer cores, as the tree must be the same
+// everywhere.
 uint32_t task_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 64, 512, 16384));
 }
