@@ -166,7 +166,8 @@ TEST(Grid, NamesATriangleInEachCellThatItMeets) {
 
 TEST(Grid, LeavesOutCellsThatOnlyTheBoxMeets) {
     const Input input = shards(2000, 1, 0);
-    const Built boxes = build(load("grid"), input, {{{"exact", 0.0}}, 2, {}}), exact = build(load("grid"), input);
+    const Built boxes = build(load("grid"), input, {{{"density", 5.0}, {"exact", 0.0}}, 2, {}}),
+                exact = build(load("grid"), input, {{{"density", 5.0}}, 2, {}});
     EXPECT_LT(exact.stats.at("references"), 0.7 * boxes.stats.at("references"));
 }
 
@@ -178,7 +179,7 @@ TEST(Grid, HasAsManyCellsAsAsked) {
     // Primitives in a plane get one layer of cells.
     std::vector<rt_prim> floor = scattered(20000, 10, 0, 3);
     for (rt_prim& p : floor) p.lo[1] = p.hi[1] = 2;
-    const Built built = build(load("grid"), one_group(floor));
+    const Built built = build(load("grid"), one_group(floor), {{{"density", 5.0}}, 2, {}});
     EXPECT_EQ(built.slot<grid_head>()[0].cells[1], 1u);
     EXPECT_NEAR(built.stats.at("nodes") / (5.0 * 20000), 1, 0.1);
 }

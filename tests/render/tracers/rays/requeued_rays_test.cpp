@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "render/tracers/rays/ray_blocks.hpp"
 #include "support/generated.hpp"
@@ -99,16 +100,16 @@ TEST(RayQueries, KnowTheVariantsOfRaysThatComeByTurns) {
     const auto prepared = Workbench::get().prepare(rubble(), settings);
     RayQueries& queries = Workbench::get().queries();
     const RayBlocks some(rays_at_rubble(1000), 1), others(rays_at_rubble(500), 1);
-    std::string trials;
+    std::map<std::string, unsigned> uses;  // of the variant that was chosen; times that differ may lead to more trials later
     for (unsigned turn = 0; turn <= kTries; ++turn)
         for (const RayBlocks* rays : {&some, &others})
             for (const RayQuery query : {RayQuery{false}, RayQuery{true}}) {
                 queries.trace(*prepared, *rays, query);
                 ASSERT_TRUE(turn > 0 || queries.tuning().trial) << "there are several variants";
-                if (turn == kTries && queries.tuning().trial)
-                    trials += std::to_string(rays->ray_count()) + (query.any_hit ? " any-hit rays; " : " rays; ");
+                uses[std::to_string(rays->ray_count()) + (query.any_hit ? " any-hit rays" : " rays")] +=
+                    !queries.tuning().trial;
             }
-    EXPECT_EQ(trials, "") << "are tried as if they came for the first time";
+    for (const auto& [what, count] : uses) EXPECT_GT(count, 0u) << what << " are tried as if they came for the first time";
 }
 
 TEST(Autotuner, UsesTheMinimumTimeWithoutTheWarmUp) {
