@@ -3,10 +3,8 @@
 // Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies". A node takes 64 bytes. n primitives make
 // at most n - 1 nodes. The build measures the depth of the tree and defines the stack size of the traversal (BVH2_STACK) from
 // it. The structure suits static scenes. It is weak where large and small primitives overlap; there builder=spatial helps.
-#include <algorithm>
-#include <vector>
-
 #include "clarity_bvh/assemble.hpp"
+#include "clarity_bvh/levels.hpp"
 #include "clarity_bvh/refit/refit_binary.hpp"
 #include "pack.hpp"
 #include "parameters.hpp"
@@ -28,45 +26,16 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
     return RT_OK;
 }
 
-// Lists the boxes of one level of a group's tree, for drawing.
-
-// Passes the boxes of `level` to the sink: 0 is the root's box, RT_LEVEL_BOTTOM is all leaves. Throws if the group does not
-// exist.
 int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* sink) {
-    if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const auto* nodes = static_cast<const bvh2_node*>(built->slots[0]);
-    const auto show = [&](const float box[6]) { sink->box(sink->ctx, box, box + 3); };
-    const auto is_empty_child = [](rt_u32 child) { return (child & BVH2_LEAF) && BVH2_LEAF_COUNT(child) == 0; };
-
-    const bvh2_node& root = nodes[built->roots[group]];
-    if (level == 0) {
-        float box[6];
-        for (int i = 0; i < 3; ++i) {
-            box[i] = is_empty_child(root.child1) ? root.box0[i] : std::min(root.box0[i], root.box1[i]);
-            box[3 + i] = is_empty_child(root.child1) ? root.box0[3 + i] : std::max(root.box0[3 + i], root.box1[3 + i]);
-        }
-        if (!is_empty_child(root.child0)) show(box);
-        return RT_OK;
-    }
-    struct Visit {
-        rt_u32 node, level;  // level of the node's children
-    };
-    std::vector<Visit> stack{{built->roots[group], 1}};
-    while (!stack.empty()) {
-        const Visit at = stack.back();
-        stack.pop_back();
-        const bvh2_node& node = nodes[at.node];
-        const auto visit = [&](const float box[6], rt_u32 child) {
-            if (is_empty_child(child)) return;
+    clarity::bvh::show_level(host, built, group, level, sink, [&](rt_u32 at, const auto& visit) {
+        const auto visit_child = [&](const float box[6], rt_u32 child) {
             const bool leaf = (child & BVH2_LEAF) != 0;
-            if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level)
-                show(box);
-            else if (!leaf)
-                stack.push_back({child, at.level + 1});
+            if (!leaf || BVH2_LEAF_COUNT(child) > 0) visit(box, leaf ? RT_NONE : child);
         };
-        visit(node.box0, node.child0);
-        visit(node.box1, node.child1);
-    }
+        visit_child(nodes[at].box0, nodes[at].child0);
+        visit_child(nodes[at].box1, nodes[at].child1);
+    });
     return RT_OK;
 }
 

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "clarity_bvh/assemble.hpp"
+#include "clarity_bvh/levels.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/refit/device_refit.hpp"
 #include "clarity_bvh/refit/refit_wide.hpp"
 #include "clarity_bvh/wide/wide_build.hpp"
-#include "clarity_bvh/wide/wide_levels.hpp"
 #include "clarity_bvh/wide/wide_node.hpp"
 #include "node_memory.hpp"
 #include "pack.hpp"

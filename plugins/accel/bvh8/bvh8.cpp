@@ -4,10 +4,10 @@
 // its own record included. Both a single ray and the bounds of a coherent packet are tested against all eight children at once.
 // The tree is shallow. A tree of only a few nodes is traced faster as bvh2, because packets there need no bounds.
 #include "clarity_bvh/assemble.hpp"
+#include "clarity_bvh/levels.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/refit/device_refit.hpp"
 #include "clarity_bvh/refit/refit_wide.hpp"
-#include "clarity_bvh/wide/wide_levels.hpp"
 #include "clarity_bvh/wide/wide_node.hpp"
 #include "incoherent.hpp"
 #include "pack.hpp"

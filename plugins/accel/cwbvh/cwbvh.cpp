@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clarity_bvh/assemble.hpp"
+#include "clarity_bvh/levels.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/refit/device_refit.hpp"
 #include "clarity_bvh/refit/refit.hpp"
@@ -164,68 +165,25 @@ int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device
     return plan_refit(plan, "cwbvh_refit", tree, blocks, costs, {rules.traversal_cost, rules.intersection_cost});
 }
 
-// Lists the boxes of one level of a group's tree, for drawing. These are the quantised boxes that rays
-// are tested against, so they are wider than their contents.
-struct Box {
-    float lo[3], hi[3];
-};
-
-Box rounded(const cwbvh_node& node, rt_u32 slot) {
-    double lo[3], hi[3];
-    box_of(node, slot, lo, hi);
-    Box box;
-    for (int a = 0; a < 3; ++a) {
-        box.lo[a] = static_cast<float>(std::clamp<double>(lo[a], -FLT_MAX, FLT_MAX));
-        box.hi[a] = static_cast<float>(std::clamp<double>(hi[a], -FLT_MAX, FLT_MAX));
-    }
-    return box;
-}
-
-// Calls do_one(box, child) for every child of a node. `child` is RT_NONE for a leaf.
-template <class Body>
-void each_child(const cwbvh_node& node, Body&& do_one) {
-    rt_u32 next = node.first_child;
-    for (rt_u32 slot = 0; slot < 8; ++slot) {
-        if (CWBVH_INNER(&node) >> slot & 1u)
-            do_one(rounded(node, slot), next++);
-        else if (node.primitives >> 4 * slot & 15u)
-            do_one(rounded(node, slot), RT_NONE);
-    }
-}
-
-// Passes the boxes of `level` to the sink: 0 is the root's box, RT_LEVEL_BOTTOM is all leaves. Throws if the group does not
-// exist.
+// The boxes are the quantised ones that rays are tested against, so they are wider than their contents.
 int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* sink) {
-    if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const auto* nodes = static_cast<const cwbvh_node*>(built->slots[0]);
-    const auto show = [&](const Box& box) { sink->box(sink->ctx, box.lo, box.hi); };
-    if (level == 0) {
-        Box whole;
-        std::fill_n(whole.lo, 3, FLT_MAX);
-        std::fill_n(whole.hi, 3, -FLT_MAX);
-        each_child(nodes[built->roots[group]], [&](const Box& box, rt_u32) {
+    show_level(host, built, group, level, sink, [&](rt_u32 at, const auto& visit) {
+        const cwbvh_node& node = nodes[at];
+        rt_u32 next = node.first_child;
+        for (rt_u32 slot = 0; slot < 8; ++slot) {
+            const bool inner = CWBVH_INNER(&node) >> slot & 1u;
+            if (!inner && !(node.primitives >> 4 * slot & 15u)) continue;
+            double lo[3], hi[3];
+            box_of(node, slot, lo, hi);
+            float box[6];
             for (int a = 0; a < 3; ++a) {
-                whole.lo[a] = std::min(whole.lo[a], box.lo[a]);
-                whole.hi[a] = std::max(whole.hi[a], box.hi[a]);
+                box[a] = static_cast<float>(std::clamp<double>(lo[a], -FLT_MAX, FLT_MAX));
+                box[3 + a] = static_cast<float>(std::clamp<double>(hi[a], -FLT_MAX, FLT_MAX));
             }
-        });
-        if (whole.lo[0] <= whole.hi[0]) show(whole);
-        return RT_OK;
-    }
-    struct Visit {
-        rt_u32 node, level;  // level of the node's children
-    };
-    std::vector<Visit> stack{{built->roots[group], 1}};
-    while (!stack.empty()) {
-        const Visit at = stack.back();
-        stack.pop_back();
-        each_child(nodes[at.node], [&](const Box& box, rt_u32 child) {
-            if (level == RT_LEVEL_BOTTOM ? child == RT_NONE : at.level == level)
-                show(box);
-            else if (child != RT_NONE)
-                stack.push_back({child, at.level + 1});
-        });
-    }
+            visit(box, inner ? next++ : RT_NONE);
+        }
+    });
     return RT_OK;
 }
 

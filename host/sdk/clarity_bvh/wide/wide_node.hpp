@@ -51,18 +51,4 @@ void each_child(const WideNode<Width>& node, Body&& do_one) {
     }
 }
 
-// Computes the box around all children. Returns false if there are none.
-template <uint32_t Width>
-bool bounds(const WideNode<Width>& node, float box[6]) {
-    bool any = false;
-    each_child(node, [&](const float child[6], uint32_t) {
-        for (int a = 0; a < 3; ++a) {
-            box[a] = any ? std::min(box[a], child[a]) : child[a];
-            box[3 + a] = any ? std::max(box[3 + a], child[3 + a]) : child[3 + a];
-        }
-        any = true;
-    });
-    return any;
-}
-
 }  // namespace clarity::bvh
