@@ -38,11 +38,7 @@ using namespace clarity::api;
 Pose clarity_tracer::pose_of(const clarity_places& places) const {
     if (places.type != CLARITY_FLOAT32 && places.type != CLARITY_FLOAT64)
         throw Error(Exit::usage, "the places have the unknown type " + std::to_string(places.type));
-    Pose pose;
-    for (const Instance& instance : placed_->instances)
-        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
-    pose.cameras = placed_->cameras;
-    pose.lights = placed_->lights;
+    Pose pose = pose_at_rest(*placed_);
     if (places.positions) {
         if (!of_arrays_)
             throw Error(Exit::usage, "vertices of scenes that files describe stay in their meshes: move the instances");

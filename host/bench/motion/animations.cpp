@@ -184,15 +184,6 @@ const std::vector<std::string>& motion_names() {
     return names;
 }
 
-Pose pose_at_rest(const Scene& scene) {
-    Pose pose;
-    for (const Instance& instance : scene.instances)
-        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
-    pose.cameras = scene.cameras;
-    pose.lights = scene.lights;
-    return pose;
-}
-
 MeshToMove mesh_to_move(const Scene& scene, rt_u32 mesh) {
     const Mesh& range = scene.meshes[mesh];
     const auto begin = scene.positions.begin() + 3 * std::ptrdiff_t(range.first_vertex);

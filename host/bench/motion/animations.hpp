@@ -28,8 +28,6 @@ Pose animated_pose(const Scene& staged, const std::string& animation, unsigned f
 // from the bottom to the top.
 const std::vector<std::string>& motion_names();
 
-// The scene where it is: its instances, cameras and lights.
-Pose pose_at_rest(const Scene& scene);
 // The vertices of a mesh, to be moved, and their bounds.
 struct MeshToMove {
     PosedMesh posed;

@@ -205,11 +205,7 @@ Scene mixed_apart() {
 }
 
 Pose pose_of(const Scene& scene) {
-    Pose pose;
-    for (const Instance& instance : scene.instances)
-        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
-    pose.cameras = scene.cameras;
-    pose.lights = scene.lights;
+    Pose pose = pose_at_rest(scene);
     for (rt_u32 m = 0; m < scene.meshes.size(); ++m) {
         const auto first = scene.positions.begin() + 3 * size_t(scene.meshes[m].first_vertex);
         pose.meshes.push_back({m, {first, first + 3 * size_t(scene.meshes[m].vertex_count)}, {}});

@@ -205,6 +205,15 @@ size_t deform_at_rest(Scene& scene, const std::vector<bool>& as_stored) {
     return unusable;
 }
 
+Pose pose_at_rest(const Scene& scene) {
+    Pose pose;
+    for (const Instance& instance : scene.instances)
+        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
+    pose.cameras = scene.cameras;
+    pose.lights = scene.lights;
+    return pose;
+}
+
 std::vector<bool> moving_instances(const Scene& scene) {
     return moving_instances(scene, std::vector<bool>(scene.motion.clips.size(), true));
 }

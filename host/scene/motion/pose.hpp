@@ -29,6 +29,8 @@ struct Pose {
     std::vector<PosedMesh> meshes;
     std::vector<Deformation> deformations;
 };
+// A scene where it is: its instances, cameras and lights.
+Pose pose_at_rest(const Scene& scene);
 // The deformation of a mesh whose vertices were left out; nullptr: it has none, or its vertices are there.
 const Deformation* left_out(const Pose& pose, rt_u32 mesh);
 // The meshes that deform, ascending.

@@ -191,7 +191,7 @@ TEST(DeviceMoverOfPosesWithoutVertices, GivesTheBytesOfTheHost) {
     ASSERT_TRUE(motion.can_deform());
     DeviceMover without(Workbench::get().shared_device(), scene, built, prepared->on_device);
     HostMover host(scene, built);
-    Pose pose = pose_of(*scene);
+    Pose pose = pose_at_rest(*scene);
     const auto expect_leaves = [&](const Pose& given, const Pose& whole) {
         const MovedOnDevice moved = motion.move(given);
         ASSERT_TRUE(moved.on_device) << moved.why;

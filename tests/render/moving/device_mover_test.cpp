@@ -82,18 +82,18 @@ TEST_P(DeviceMoverTest, GivesTheBytesOfTheHost) {
     HostMover host(rings_apart(), built_);
     for (const float phase : {0.0f, 1.0f, 2.0f, 5.0f}) {
         SCOPED_TRACE(phase);
-        const Pose pose = phase > 0 ? waved(*rings_apart(), phase) : pose_of(*rings_apart());
+        const Pose pose = phase > 0 ? waved(*rings_apart(), phase) : pose_at_rest(*rings_apart());
         const MovedOnDevice moved = motion->move(pose);
         ASSERT_TRUE(moved.on_device) << moved.why;
         expect_same(*moved.on_device, *host.move(pose, progress).accel);
     }
     // Copies that lag behind by several poses are brought up to date.
-    for (int i = 0; i < 3; ++i) expect_same(*motion->move(pose_of(*rings_apart())).on_device, *built_);
+    for (int i = 0; i < 3; ++i) expect_same(*motion->move(pose_at_rest(*rings_apart())).on_device, *built_);
 }
 
 TEST_P(DeviceMoverTest, OnlyWhatMovedIsRefitted) {
     const auto motion = this->motion();
-    Pose pose = pose_of(*rings_apart());
+    Pose pose = pose_at_rest(*rings_apart());
     motion->move(pose);
     uint64_t refitted = 0;
     for (int i = 0; i < 3; ++i) {
@@ -116,7 +116,7 @@ TEST_P(DeviceMoverTest, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
 
 TEST_P(DeviceMoverTest, CostsTellHowMuchATreeHasSuffered) {
     const auto motion = this->motion();
-    Pose pose = pose_of(*rings_apart());
+    Pose pose = pose_at_rest(*rings_apart());
     EXPECT_EQ(motion->move(pose).worst_cost_ratio, 1);
     PosedMesh mesh{0, {}, {}};
     std::mt19937 random(1);
@@ -138,7 +138,7 @@ TEST_P(DeviceMoverTest, CostsTellHowMuchATreeHasSuffered) {
 
 TEST_P(DeviceMoverTest, SaysWhenABuildIsNeeded) {
     Progress progress;
-    Pose pose = pose_of(*rings_apart());
+    Pose pose = pose_at_rest(*rings_apart());
     pose.instances[3].world_from_object[0] = 0;
     EXPECT_NE(motion()->move(pose).why.find("`placed 3` is scaled to nothing"), std::string::npos);
     const auto flat = build(rings(), *plugin_);
@@ -219,7 +219,7 @@ TEST_F(DeviceRays, HitTheSameInTreesThatTheDeviceBuilds) {
     using Update = DeviceMover::Update;
     start("lbvh");
     ASSERT_TRUE(motion_->can_build());
-    const Pose poses[] = {waved(*rings_apart(), 1), waved(*rings_apart(), 3), pose_of(*rings_apart())};
+    const Pose poses[] = {waved(*rings_apart(), 1), waved(*rings_apart(), 3), pose_at_rest(*rings_apart())};
     std::vector<rt_hit> expected[3];
     for (int p = 0; p < 3; ++p) expected[p] = fresh_hits(poses[p]);
     // Trees that were built, refitted, built once more, and refitted in copies that take over the tree of another copy.
@@ -241,7 +241,7 @@ TEST_F(DeviceRays, HitTheSameInTreesThatTheDeviceBuilds) {
 
 TEST_F(DeviceRays, CostsCountFromTheLastBuild) {
     start("lbvh");
-    Pose pose = pose_of(*rings_apart());
+    Pose pose = pose_at_rest(*rings_apart());
     PosedMesh mesh{0, {}, {}};
     std::mt19937 random(1);
     std::uniform_real_distribution<float> any(-3, 3);

@@ -57,7 +57,7 @@ TEST_P(DeviceRefit, GivesTheBytesOfTheHost) {
     HostMover host(scene_of_trees(), built);
     for (const float phase : {0.0f, 1.0f, 2.0f, 5.0f, 0.0f}) {
         SCOPED_TRACE(phase);
-        Pose pose = phase > 0 ? waved(*scene_of_trees(), phase) : pose_of(*scene_of_trees());
+        Pose pose = phase > 0 ? waved(*scene_of_trees(), phase) : pose_at_rest(*scene_of_trees());
         if (phase == 5)  // the ring lies in a plane
             for (size_t v = 0; v < pose.meshes[0].positions.size(); v += 3) pose.meshes[0].positions[v + 1] = 0.25f;
         if (phase == 2)  // the ball is a point

@@ -53,13 +53,13 @@ TEST(HostMover, ThePoseOfTheBuildGivesTheBytesOfTheBuild) {
         SCOPED_TRACE(plugin->id);
         const auto built = build(rings(), *plugin);
         HostMover moving(rings(), built);
-        const MovedStructure moved = moving.move(pose_of(*rings()), progress);
+        const MovedStructure moved = moving.move(pose_at_rest(*rings()), progress);
         ASSERT_TRUE(moved.accel) << moved.why;
         expect_same(*moved.accel, *built);
         EXPECT_DOUBLE_EQ(moved.worst_cost_ratio, 1);
         // There and back again.
         ASSERT_TRUE(moving.move(waved(*rings(), 1), progress).accel);
-        expect_same(*moving.move(pose_of(*rings()), progress).accel, *built);
+        expect_same(*moving.move(pose_at_rest(*rings()), progress).accel, *built);
     }
 }
 
@@ -143,15 +143,15 @@ TEST(HostMover, MemoryIsUsedAgain) {
     }
     EXPECT_LE(different.size(), 2u);
     // Buffers that lag behind by several poses are brought up to date.
-    const auto now = moving.move(pose_of(*rings()), progress).accel;
+    const auto now = moving.move(pose_at_rest(*rings()), progress).accel;
     expect_same(*now, *build(rings(), *Workbench::get().plugins().accel("bvh2")));
 }
 
 TEST(HostMover, OnlyWhatMovedIsRefitted) {
     Progress progress;
     HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
-    moving.move(pose_of(*rings()), progress);
-    Pose pose = pose_of(*rings());
+    moving.move(pose_at_rest(*rings()), progress);
+    Pose pose = pose_at_rest(*rings());
     EXPECT_EQ(moving.move(pose, progress).refitted, 0u);
     pose.instances[5].world_from_object = moved_to(0, 6, 0);
     const MovedStructure placed = moving.move(pose, progress);
@@ -167,8 +167,8 @@ TEST(HostMover, AMeshThatIsKeptApartMovesAlone) {
     auto scene = std::make_shared<Scene>(*rings());
     scene->instances[1].apart = true;
     HostMover moving(scene, build(scene, plugin));
-    moving.move(pose_of(*rings()), progress);
-    Pose pose = pose_of(*rings());
+    moving.move(pose_at_rest(*rings()), progress);
+    Pose pose = pose_at_rest(*rings());
     pose.meshes.push_back(waved(*rings(), 1).meshes[1]);
     const MovedStructure deformed = moving.move(pose, progress);
     ASSERT_EQ(deformed.groups.size(), 2u) << "its own tree, and the world that holds its instance";
@@ -185,7 +185,7 @@ TEST(HostMover, AnObjectBesideALargeStillMeshMovesAlone) {
     large.instances[1].apart = true;
     const ScenePtr scene = shared_scene(std::move(large));
     HostMover moving(scene, build(scene, plugin));
-    Pose pose = pose_of(*scene);
+    Pose pose = pose_at_rest(*scene);
     moving.move(pose, progress);
     pose.instances[1].world_from_object = moved_to(5, 1, 0);
     EXPECT_EQ(moving.move(pose, progress).refitted, 2u) << "the boxes of both";
@@ -205,7 +205,7 @@ TEST(HostMover, TreesOfAllParametersGiveTheBytesOfTheBuild) {
             build_accel(*rings(), *plugins.accel(settings.accel), settings.accel_params, progress, {}));
         HostMover moving(rings(), built);
         ASSERT_TRUE(moving.move(waved(*rings(), 1), progress).accel);
-        expect_same(*moving.move(pose_of(*rings()), progress).accel, *built);
+        expect_same(*moving.move(pose_at_rest(*rings()), progress).accel, *built);
     }
 }
 
@@ -216,15 +216,15 @@ TEST(HostMover, CostsTellHowMuchATreeHasSuffered) {
         SCOPED_TRACE(plugin->id);
         const auto built = build(rings(), *plugin);
         HostMover moving(rings(), built);
-        moving.move(pose_of(*rings()), progress);
-        Pose pose = pose_of(*rings());
+        moving.move(pose_at_rest(*rings()), progress);
+        Pose pose = pose_at_rest(*rings());
         PosedMesh mesh{0, {}, {}};
         std::mt19937 random(1);
         std::uniform_real_distribution<float> any(-3, 3);
         for (rt_u32 v = 0; v < 3 * rings()->meshes[0].vertex_count; ++v) mesh.positions.push_back(any(random));
         pose.meshes.push_back(mesh);
         EXPECT_GT(moving.move(pose, progress).worst_cost_ratio, 2);
-        const MovedStructure back = moving.move(pose_of(*rings()), progress);
+        const MovedStructure back = moving.move(pose_at_rest(*rings()), progress);
         EXPECT_NEAR(back.worst_cost_ratio, 1, 1e-6);
         EXPECT_NEAR(back.accel->stat("sah_cost"), built->stat("sah_cost"), 1e-6);
     }
@@ -253,7 +253,7 @@ TEST(HostMover, HiddenInstancesAreNotHit) {
         if (std::find(tried.begin(), tried.end(), plugin->id) == tried.end()) continue;
         SCOPED_TRACE(plugin->id);
         HostMover moving(scene, build(scene, *plugin));
-        Pose pose = pose_of(*scene);
+        Pose pose = pose_at_rest(*scene);
         pose.instances[4].visible = true;
         pose.instances[1].visible = pose.instances[6].visible = false;
         pose.instances[6].world_from_object = {};  // wherever it is
@@ -265,7 +265,7 @@ TEST(HostMover, HiddenInstancesAreNotHit) {
             fresh.instances[i].apart = false;
         }
         expect_same_hits(scene, moved.accel, shared_scene(std::move(fresh)), *plugin);
-        pose.instances[6] = pose_of(*scene).instances[6];
+        pose.instances[6] = pose_at_rest(*scene).instances[6];
         pose.instances[1].visible = true;
         const MovedStructure back = moving.move(pose, progress);
         ASSERT_TRUE(back.accel) << back.why;
@@ -277,7 +277,7 @@ TEST(HostMover, SaysWhenABuildIsNeeded) {
     Progress progress;
     HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     const auto refused = [&](auto&& change, const char* why) {
-        Pose pose = pose_of(*rings());
+        Pose pose = pose_at_rest(*rings());
         change(pose);
         const MovedStructure moved = moving.move(pose, progress);
         EXPECT_FALSE(moved.accel) << why;
@@ -289,7 +289,7 @@ TEST(HostMover, SaysWhenABuildIsNeeded) {
     refused([](Pose& pose) { pose.instances.pop_back(); }, "instances");
     refused([](Pose& pose) { pose.meshes.push_back({0, {0, 0, 0}, {}}); }, "another number of vertices");
     HostMover linear(rings(), build(rings(), *Workbench::get().plugins().accel("linear")));
-    EXPECT_NE(linear.move(pose_of(*rings()), progress).why.find("does not offer `refit`"), std::string::npos);
+    EXPECT_NE(linear.move(pose_at_rest(*rings()), progress).why.find("does not offer `refit`"), std::string::npos);
 }
 
 // An instance without depth is moved into the world's tree, while its mesh has a tree of its own for the others. Their vertices
@@ -302,7 +302,7 @@ TEST(HostMover, RefusesAMeshThatIsPlacedFlatAndRound) {
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
     HostMover moving(scene, build(scene, plugin));
     EXPECT_NE(moving.cannot().text().find("`placed 3` has no volume"), std::string::npos) << moving.cannot();
-    EXPECT_FALSE(moving.move(pose_of(*scene), progress).accel);
+    EXPECT_FALSE(moving.move(pose_at_rest(*scene), progress).accel);
 
     Scene once = *rings();  // a mesh that is placed once may be pressed flat
     for (int row = 0; row < 3; ++row) once.instances[1].world_from_object[4 * row + 2] = 0;
@@ -314,7 +314,7 @@ TEST(HostMover, VerticesMayBeWrittenInPlace) {
     Progress progress;
     HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     EXPECT_EQ(moving.vertices(0), nullptr) << "before the first move";
-    moving.move(pose_of(*rings()), progress);
+    moving.move(pose_at_rest(*rings()), progress);
     EXPECT_EQ(moving.vertices(1), nullptr) << "it is transformed";
     float* const vertices = moving.vertices(0);
     ASSERT_NE(vertices, nullptr);
@@ -322,7 +322,7 @@ TEST(HostMover, VerticesMayBeWrittenInPlace) {
     std::copy(pose.meshes[0].positions.begin(), pose.meshes[0].positions.end(), vertices);
     moving.touch(0);
     const auto in_place = moving.refit(progress).accel;
-    Pose same = pose_of(*rings());
+    Pose same = pose_at_rest(*rings());
     same.meshes.push_back(pose.meshes[0]);
     HostMover other(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
     expect_same(*in_place, *other.move(same, progress).accel);
@@ -335,9 +335,10 @@ TEST(HostMover, GoesOnAfterACancelledMove) {
     Progress progress;
     Cancelling cancelling;
     HostMover moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
-    moving.move(pose_of(*rings()), progress);
+    moving.move(pose_at_rest(*rings()), progress);
     EXPECT_THROW(moving.move(waved(*rings(), 1), cancelling), Cancelled);
-    expect_same(*moving.move(pose_of(*rings()), progress).accel, *build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    expect_same(*moving.move(pose_at_rest(*rings()), progress).accel,
+                *build(rings(), *Workbench::get().plugins().accel("bvh2")));
 }
 
 }  // namespace

@@ -100,14 +100,14 @@ TEST_P(MovingLights, FollowPosesOnTheDevice) {
     DeviceMover mover(Workbench::get().shared_device(), scene, prepared->accel, prepared->on_device, nullptr,
                       BuildForm::automatic);
     ASSERT_EQ(mover.cannot(), "");
-    Pose pose = pose_of(*scene);
+    Pose pose = pose_at_rest(*scene);
     pose.instances[0].world_from_object = kThen;
     pose.instances[1].world_from_object = kThenSmall;
     for (const auto update : {DeviceMover::Update::refit, DeviceMover::Update::build}) {
         if (update == DeviceMover::Update::build && !mover.can_build()) continue;
         // To and fro, so that the buffers of an earlier pose are used again.
         for (int i = 0; i < 4; ++i) {
-            const MovedOnDevice back = mover.move(pose_of(*scene), update), moved = mover.move(pose, update);
+            const MovedOnDevice back = mover.move(pose_at_rest(*scene), update), moved = mover.move(pose, update);
             ASSERT_TRUE(back.on_device && moved.on_device) << moved.why;
             if (i == 0 || i == 3)
                 expect_same(picture(*preparer_.prepare(scene, settings(), progress_, mover.accel(), {moved.on_device, true})),
@@ -121,7 +121,7 @@ TEST_P(MovingLights, FollowPosesOnTheHost) {
     const auto prepared = preparer_.prepare(scene, settings(), progress_);
     const FloatImage before = picture(*prepared), built = picture(*preparer_.prepare(posed, settings(), progress_));
     HostMover mover(scene, prepared->accel);
-    Pose pose = pose_of(*scene);
+    Pose pose = pose_at_rest(*scene);
     pose.instances[0].world_from_object = kThen;
     pose.instances[1].world_from_object = kThenSmall;
     const MovedStructure moved = mover.move(pose, false, progress_);

@@ -63,17 +63,9 @@ inline std::vector<rt_ray> rays_at_rings(int count) {
     return rays;
 }
 
-inline Pose pose_of(const Scene& scene) {
-    Pose pose;
-    for (const Instance& instance : scene.instances)
-        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
-    pose.cameras = scene.cameras;
-    pose.lights = scene.lights;
-    return pose;
-}
 // All vertices follow a wave, and the instances from number 2 on move.
 inline Pose waved(const Scene& scene, float phase) {
-    Pose pose = pose_of(scene);
+    Pose pose = pose_at_rest(scene);
     for (rt_u32 m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
         PosedMesh posed{m,

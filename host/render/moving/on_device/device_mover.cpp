@@ -71,9 +71,7 @@ void DeviceMover::start() {
             std::copy_n(&scene_->triangles[3 * size_t(build.attribute_triangle[i])], 3, &corners[3 * i]);
         pose_.corners = filled(corners.data(), corners.size() * sizeof(rt_u32));
     }
-    instances_.clear();
-    for (const Instance& instance : scene_->instances)
-        instances_.push_back({instance.mesh, instance.world_from_object, instance.visible});
+    instances_ = pose_at_rest(*scene_).instances;
     placements_.resize(build.instances.size());
     for (size_t i = 0; i < placements_.size(); ++i) {
         std::copy_n(build.world_from_object[i].begin(), 12, placements_[i].world_from_object);

@@ -83,13 +83,11 @@ void HostMover::start(Progress& progress) {
         ++primitives_of_group_[group];
     }
 
-    instances_.clear();
+    instances_ = pose_at_rest(*scene_).instances;
     object_from_world_.assign(build.instances.size(), kIdentity);
     world_from_object_ = build.world_from_object;
     hidden_.assign(build.instances.size(), 0);
     for (size_t i = 0; i < scene_->instances.size(); ++i) {
-        const Instance& instance = scene_->instances[i];
-        instances_.push_back({instance.mesh, instance.world_from_object, instance.visible});
         const rt_u32 number = build.number_of_instance[i];
         if (number == RT_NONE) continue;
         std::copy_n(build.instances[number].object_from_world, 12, object_from_world_[number].begin());
