@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
@@ -14,6 +15,15 @@ namespace {
 constexpr double kPieceMs = 200, kFirstPieceMs = 50;
 constexpr unsigned kFirstGroups = 4, kGrowth = 4;
 constexpr double kTellingMs = 5;  // shorter pieces mostly measure the launch itself
+
+// How many groups a thread takes at a time. Of short ones it takes several, because threads wait for each other's taking; of
+// large shares they would wait for the last one. group_ms: of one group, by all threads together; infinite: not known.
+unsigned groups_of_share(unsigned groups, unsigned threads, double group_ms) {
+    constexpr double kShare_ms = 0.03;
+    constexpr unsigned kSharesEach = 16;
+    const double share = std::min(kShare_ms / (group_ms * threads), double(groups) / (kSharesEach * threads));
+    return share > 1 ? unsigned(share) : 1;
+}
 
 }  // namespace
 
@@ -55,25 +65,21 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_cou
 LaunchTimes Launcher::run(const Device& device, Queue& queue, KernelArguments& kernel, unsigned group_count,
                           unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
     const bool takes = kernel.has("taken");
-    if (takes && !taken_known_) {
+    cl::Buffer taken = std::exchange(taken_, cl::Buffer());
+    if (takes && !taken()) {
         cl_uint none = taken_before_ = 0;
-        taken_ = cl::Buffer(queue.getInfo<CL_QUEUE_CONTEXT>(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizeof none, &none);
+        taken = cl::Buffer(queue.getInfo<CL_QUEUE_CONTEXT>(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizeof none, &none);
     }
-    taken_known_ = false;  // after a launch that has not ended
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
         kernel.set("first_group", cl_uint(begin + first));
         unsigned groups = count;
         if (takes) {
             const unsigned threads = std::max(1u, device.info().compute_units);
-            // Threads that take shorter work wait for each other's taking; of larger shares they wait for the last one.
-            constexpr double kShare_ms = 0.03;
-            constexpr unsigned kSharesEach = 16;
-            const double share = std::min(kShare_ms / (expected_ms(1) * threads), double(count) / (kSharesEach * threads));
-            const unsigned share_groups = share > 1 ? unsigned(share) : 1, shares = (count + share_groups - 1) / share_groups;
+            const unsigned share = groups_of_share(count, threads, expected_ms(1)), shares = (count + share - 1) / share;
             groups = std::min(shares, threads);
-            kernel.set("group_count", cl_uint(count)).set("group_share", cl_uint(share_groups));
-            kernel.set("taken_before", taken_before_).set("taken", taken_);
+            kernel.set("group_count", cl_uint(count)).set("group_share", cl_uint(share));
+            kernel.set("taken_before", taken_before_).set("taken", taken);
             taken_before_ += shares + groups;  // the last that each takes is none
         }
         queue.enqueueNDRangeKernel(kernel.kernel(), cl::NullRange, cl::NDRange(size_t(groups) * group_size),
@@ -81,7 +87,7 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, KernelArguments& k
         return Piece{event, event};
     };
     const LaunchTimes times = run(device, queue, group_count, group_count, enqueue, go_on, side_work);
-    taken_known_ = takes;
+    taken_ = taken;
     return times;
 }
 

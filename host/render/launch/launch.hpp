@@ -74,10 +74,10 @@ class Launcher {
 
  private:
     Pace pace_;
-    // How many groups kernels have tried to take in all their launches, on the device and, so that nothing need clear it, here.
+    // How many shares kernels have tried to take in all their launches, on the device and, so that nothing need clear it, here.
+    // Null after a launch that has not ended: nobody knows what that one has taken.
     cl::Buffer taken_;
     cl_uint taken_before_ = 0;
-    bool taken_known_ = false;
 };
 
 }  // namespace clarity
