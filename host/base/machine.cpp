@@ -2,6 +2,10 @@
 
 #include <unistd.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace clarity {
 namespace {
 
@@ -16,6 +20,12 @@ std::string read_host_name() {
 }
 
 }  // namespace
+
+void give_free_memory_back() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
 
 const std::string& host_name() {
     static const std::string& name = *new std::string(read_host_name());

@@ -16,4 +16,7 @@ inline uint64_t physical_memory_bytes() {
     return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+// Gives the system what is free in the heaps of all threads. Takes some ms. Does nothing where the C library cannot.
+void give_free_memory_back();
+
 }  // namespace clarity

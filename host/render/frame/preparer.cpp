@@ -2,6 +2,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/machine.hpp"
 #include "device/cl_errors.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/film/denoiser.hpp"
@@ -17,10 +18,6 @@
 #include <chrono>
 #include <future>
 #include <utility>
-
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 namespace clarity {
 namespace {
@@ -71,9 +68,7 @@ DeviceInfo Preparer::close_device() {
     }
     programs_.reset();
     device_.reset();
-#ifdef __GLIBC__
-    malloc_trim(0);  // PoCL's compiler leaves tens of megabytes of free memory in holes
-#endif
+    give_free_memory_back();  // PoCL's compiler leaves tens of megabytes in holes
     return info_;
 }
 
