@@ -170,34 +170,26 @@ void warn_of_taken_id(const PluginRegistry& plugins, const std::string& id) {
                                        ": of two libraries with one id, the first that is found is used (`clarity plugins`)");
 }
 
-std::string in_shell(const std::string& text) {
-    if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@,") == std::string::npos)
-        return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
 // How a shell finds this program: by its name, if the folder is in PATH.
 std::string program_name() {
     const fs::path program = program_file();
     const char* path = std::getenv("PATH");
     const std::string folders = ":" + std::string(path ? path : "") + ":";
     const bool found = folders.find(":" + program.parent_path().string() + ":") != std::string::npos;
-    return found ? program.filename().string() : in_shell(program.string());
+    return found ? program.filename().string() : shell_word(program.string());
 }
 
 void print_next_steps(const std::string& folder, const std::string& id) {
     const fs::path prefix = program_prefix();
     std::string found_in;
     if (!is_installed())
-        found_in = " -DCMAKE_PREFIX_PATH=PREFIX   # once: cmake --install " + in_shell(prefix.string()) + " --prefix PREFIX";
+        found_in = " -DCMAKE_PREFIX_PATH=PREFIX   # once: cmake --install " + shell_word(prefix.string()) + " --prefix PREFIX";
     else if (prefix != "/usr" && prefix != "/usr/local")
-        found_in = " -DCMAKE_PREFIX_PATH=" + in_shell(prefix.string());
+        found_in = " -DCMAKE_PREFIX_PATH=" + shell_word(prefix.string());
     print_text(
         "%s is a plugin now. Build it and check it; its README.md continues.\n"
         "  cd %s\n  cmake -S . -B build%s\n  cmake --build build\n  %s check ./build/%s.so --quick\n",
-        folder.c_str(), in_shell(folder).c_str(), found_in.c_str(), program_name().c_str(), id.c_str());
+        folder.c_str(), shell_word(folder).c_str(), found_in.c_str(), program_name().c_str(), id.c_str());
 }
 
 }  // namespace
