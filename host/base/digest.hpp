@@ -1,5 +1,5 @@
 // digest.hpp -- a digest of 128 bits that tells contents apart: XXH3 of Yann Collet's xxHash, about as fast as memory is read.
-// It is no protection against somebody who wants two contents to look alike.
+// It is no protection against contents that are made to look alike.
 #pragma once
 struct XXH3_state_s;
 
@@ -42,7 +42,7 @@ std::string digest_of(const std::string& content);
 // The same of a file, which is read piece by piece; empty if it cannot be read.
 std::string digest_of_file(const std::string& path);
 
-// A hash that tells contents apart. It is no protection against somebody who wants two to be alike.
+// A hash that tells contents apart. It is no protection against contents that are made to look alike.
 
 // FNV-1a of 64 bits. seed: the hash of what comes before.
 inline uint64_t hash_bytes(const void* data, size_t bytes, uint64_t seed = 14695981039346656037ull) {

@@ -66,7 +66,7 @@ struct BaselineKind {
 // The kinds this program was built with. If there are none, `why` receives the reason.
 std::vector<BaselineKind> baseline_kinds(std::string* why);
 
-// A baseline whose triangles move.
+// A baseline with triangles that move.
 
 class MovingBaseline {
  public:

@@ -54,7 +54,7 @@ std::vector<rt_ray> rays_around(const rt_ray& ray) {
 }
 
 // Writes `path`, a PNG, whole or not at all. The camera is at the ray's origin and looks along it, with its limits. Red pixels
-// are those whose answer is wrong, the others show what the reference hits: brighter where it is nearer. Throws Error.
+// have a wrong answer; the others show what the reference hits: brighter where it is nearer. Throws Error.
 ReportPicture write_report_picture(const std::string& path, CheckedScene& scene, const Variant& variant, const rt_ray& ray,
                                    bool any_hit) {
     const std::vector<rt_ray> rays = rays_around(ray);

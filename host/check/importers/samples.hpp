@@ -20,7 +20,7 @@ struct Mutant {
 };
 
 // `count` copies of a file, each damaged in one way: cut short, bytes replaced, a block left out, doubled or zeroed, a number
-// of a text replaced by an impossible one. Before them come copies whose first numbers are impossible. seed: see seed.hpp.
+// of a text replaced by an impossible one. Before them come copies with impossible first numbers. seed: see seed.hpp.
 std::vector<Mutant> mutants_of(const std::string& bytes, unsigned count, uint64_t seed);
 
 // Content that no format has: one byte, zeros, random bytes, brackets without end, one endless line.

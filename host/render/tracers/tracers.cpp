@@ -6,7 +6,7 @@
 namespace clarity {
 namespace {
 
-// Tracers of frames whose launch is one kernel, with a work-item for each packet. Sets the arguments that the kernel declares,
+// Tracers of frames that launch one kernel over the groups of packets. Sets the arguments that the kernel declares,
 // by their names: `frame`, `first_group`, `film` and the scene's; with kCountsRays also `counters` (shadow rays, secondary
 // rays, dropped rays, full stacks of each packet, 32 bits each) and `distances`; without, RT_OVERFLOWS_PARAM.
 class OneKernel : public FrameTracer {

@@ -100,9 +100,9 @@ class CellFinder {
     }
 
     // Calls body(cell, meets) for cells near primitive i: their numbers, and whether the primitive meets them. Huge ones are in
-    // a cell of their own behind all others. `meets` is no branch here, because nobody can predict it. Nor can anybody predict
-    // how many cells a small primitive is near: up to four are in a table, and their planes are not asked, since they would
-    // hardly save a cell.
+    // a cell of their own behind all others. `meets` is no branch here, because a processor cannot predict it, nor how many
+    // cells a small primitive is near. Up to four are in a table, and their planes are not asked, since they would hardly save
+    // a cell.
     template <class Body>
     void each(const Prims& of, rt_u32 i, const Body& body) const {
         const rt_prim& p = of.prims[i];

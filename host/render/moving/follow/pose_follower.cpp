@@ -49,9 +49,9 @@ double cost_in(const std::vector<Pose>& poses, const std::shared_ptr<const Scene
     return sum;
 }
 
-// Builds a structure in each of five poses, evenly over the clip, refits each to the other four, and returns that whose
-// expected costs of a ray (SAH) have the least sum. Files of sequences are not read: their meshes stay at rest. rest: the scene
-// at rest. Takes as long as five builds and twenty refits, and the memory of two structures and their refits. Throws what
+// Builds a structure in each of five poses, evenly over the clip, refits each to the other four, and returns the one
+// with the least sum of expected costs of a ray (SAH). Files of sequences are not read: their meshes stay at rest. rest: the
+// scene at rest. Takes as long as five builds and twenty refits, and the memory of two structures and their refits. Throws what
 // `build` throws, Error(failed) if the structure cannot be refitted, and Cancelled.
 BuiltPose choose_first_tree(const Scene& rest, const std::string& clip, const AccelBuilder& build, Progress& progress) {
     const std::vector<Pose> poses = poses_of(rest, clip);

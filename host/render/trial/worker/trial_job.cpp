@@ -215,7 +215,7 @@ class TrialProgress : public Progress {
     const TrialSteps& say_step_;
 };
 
-// A copy of a structure whose arrays lie between guard pages. Kernels on a CPU read them in place.
+// A copy of a structure, with its arrays between guard pages. Kernels on a CPU read them in place.
 std::shared_ptr<const AccelData> guarded(const AccelData& built, std::list<GuardedBytes>& memory) {
     const rt_accel& accel = *built.layout->accel;
     rt_u32 slot = 0;
