@@ -217,8 +217,9 @@ RT_INLINE void rt_prepare_for_triangles(rt_rays *r, uint bits)
     {
         const vint zero = rt_vint(0), one = rt_vint(1), two = rt_vint(2);
         r->axis_x = rt_select(is_z, zero, rt_select(is_y, two, one));
-        r->axis_y = rt_select(is_z, one, rt_select(is_y, zero, two));
         r->axis_z = rt_select(is_z, two, rt_select(is_y, one, zero));
+        /* The third of 0, 1, 2. Selected like the others, it is 255 in oclgrind 21.10 where it should be 1 (docs/testing.md). */
+        r->axis_y = rt_vint(3) - r->axis_x - r->axis_z;
     }
     r->px = rt_select(is_z, r->ox, rt_select(is_y, r->oz, r->oy));
     r->py = rt_select(is_z, r->oy, rt_select(is_y, r->ox, r->oz));
