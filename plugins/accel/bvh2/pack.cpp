@@ -142,14 +142,9 @@ void pack(const rt_host* host, const rt_build_input& input, Topology& topology, 
 }
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-    const uint64_t count = count_primitives(host, *input);
     const Rules rules = rules_of(input->params);
-    const uint64_t bytes = TopologyBuilder::bytes(rules, count);
-    with_memory_for(host, count, bytes, [&] {
-        TopologyBuilder builder(host, *input, rules, count, 1.0f);
-        const Topology topology = builder.run([out](uint64_t refs) { return rt::leaves(out, refs); }, [](const Part&) {});
-        write(host, *input, topology, bytes, out);
-    });
+    const Topology topology = build_topology(host, *input, rules, [out](uint64_t refs) { return rt::leaves(out, refs); });
+    write(host, *input, topology, build_bytes(rules, count_primitives(host, *input)), out);
     return RT_OK;
 }
 
