@@ -153,15 +153,6 @@ TEST(Rays, RandomRaysOnTheBunny) {
         for (const int lanes : {1, 16}) expect_as_oracle(scene, oracle, random_rays(*scene, 200000, 3), accel, lanes, 2);
 }
 
-TEST(Rays, RandomRaysOnTreesAfterReinsertion) {
-    for (const ScenePtr& scene : {shapes(), geometry_of(load_scene(source_file("scenes/primitives.scene")))}) {
-        const Oracle oracle(scene);
-        for (const char* id : {"bvh2", "bvh4", "bvh8", "cwbvh"})
-            for (const int lanes : {1, 16})
-                expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 6), std::string(id) + ",reinsert=8", lanes, 0);
-    }
-}
-
 TEST(Rays, HitsAreWithinTheirInterval) {
     std::vector<rt_ray> rays = random_rays(*shapes(), 20000, 4);
     std::mt19937 random(5);

@@ -83,6 +83,7 @@ void report(const rt_build_output* out, const WideBuild& build, uint64_t node_by
     rt::stat(out, "references", static_cast<double>(build.references));
     rt::stat(out, "children", static_cast<double>(build.statistics.children) / nodes);
     rt::stat(out, "sah_cost", build.statistics.sah_cost);
+    build.statistics.expected.report(out);
     rt::stat(out, "node_bytes", bytes);
     rt::stat(out, "bytes_per_primitive",
              build.primitives > 0 ? (bytes + static_cast<double>(build.references * sizeof(rt_packed_prim))) /
