@@ -34,6 +34,16 @@ namespace {
 constexpr size_t kFirstBatch = size_t{1} << 14, kMostBatch = size_t{1} << 22;
 constexpr double kBatchMs = 50;
 
+// Packed rays lie in few large pieces, because each costs a launch and a wait for it; the launcher cuts what takes long. A
+// piece has a small share of the device's memory: its answers may need a buffer, too.
+size_t packed_at_once(const DeviceInfo& device) {
+    constexpr uint64_t kShare = 64, kMost = uint64_t{1} << 27;  // kernels count in 32 bits
+    const uint64_t room = std::min(device.global_bytes / kShare, device.max_allocation_bytes) / sizeof(rt_ray);
+    size_t rays = kMostBatch;
+    while (2 * rays <= std::min(room, kMost)) rays *= 2;
+    return rays;
+}
+
 // Buffers are made once for all batches that rays may have, in few sizes: the memory of a buffer that has become too small is
 // kept (base/aligned_bytes.hpp), so buffers that grow with the batches take twice as much. Pages that no batch uses are no
 // memory on a CPU.
@@ -175,11 +185,15 @@ std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, P
     const std::lock_guard<std::mutex> lock(keeping_->calls);
     progress.stage("packing rays");
     auto packed = std::make_unique<clarity_packed>(clarity_packed{id_, device_, {}, rays.count});
-    for (size_t first = 0; first < rays.count; first += kMostBatch) {
-        if (!progress.report(float(first) / float(rays.count))) throw Cancelled();
-        const size_t count = std::min(kMostBatch, size_t(rays.count) - first);
-        packed->pieces.push_back(
-            {count, queries_.pack_on_device(count, prepared_->layout.lanes, reader(rays, first)), new_packing()});
+    const size_t at_once = packed_at_once(device_->info());
+    for (size_t first = 0; first < rays.count; first += at_once) {
+        const size_t count = std::min(at_once, size_t(rays.count) - first);
+        const auto read = [&, read_all = reader(rays, first)](size_t begin, size_t some, rt_ray* to) {
+            if (begin % kFirstBatch == 0) progress.report(float(first + begin) / float(rays.count));
+            if (!progress.cancelled()) read_all(begin, some, to);
+        };
+        packed->pieces.push_back({count, queries_.pack_on_device(count, prepared_->layout.lanes, read), new_packing()});
+        if (progress.cancelled()) throw Cancelled();
     }
     return packed;
 }

@@ -7,10 +7,11 @@ import weakref
 
 import numpy as np
 
-from ._binding import constants, header, library, struct
+from ._binding import constants, layout, library
 from ._calls import check
 from ._errors import UsageError
 
+_RAYS, _HITS = layout("clarity_rays"), layout("clarity_hits")
 _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float64): constants["CLARITY_FLOAT64"]}
 
 
@@ -38,38 +39,31 @@ class Rays:
     """Arrays of rays in one shape. Nothing is copied unless types are mixed, or an array of several axes has to be repeated."""
 
     def __init__(self, origins, directions, t_min=None, t_max=None, mask=None):
-        self.origins, self.directions = as_array(origins, "origins"), as_array(directions, "directions")
-        for name in ("origins", "directions"):
-            shape = getattr(self, name).shape
-            if not shape or shape[-1] != 3:
-                raise UsageError(f"{name}: expected an array of shape (..., 3), found {shape}")
-        values = {}
-        if t_min is not None:
-            values["t_min"] = as_array(t_min, "t_min")
-        if t_max is not None:
-            values["t_max"] = as_array(t_max, "t_max")
-        self.dtype = self.origins.dtype
-        if values or self.directions.dtype != self.dtype:
-            # A number has no type of its own.
-            arrays = [self.origins, self.directions] + [limit for limit in values.values() if limit.ndim]
-            self.dtype = max(array.dtype for array in arrays)
-            self.origins, self.directions = np.asarray(self.origins, self.dtype), np.asarray(self.directions, self.dtype)
-            values = {name: np.asarray(limit, self.dtype) for name, limit in values.items()}
-        self.shape = self._common_shape([self.origins.shape[:-1], self.directions.shape[:-1]] + [limit.shape for limit in values.values()])
-        self.count = math.prod(self.shape)
+        origins, directions = as_array(origins, "origins"), as_array(directions, "directions")
+        limits = [None, None]
+        shape, dtype = origins.shape[:-1], origins.dtype
+        alike = directions.dtype is dtype and directions.shape == origins.shape and origins.shape[-1:] == (3,)
+        if not alike or t_min is not None or t_max is not None:
+            limits = [limit if limit is None else as_array(limit, name) for name, limit in (("t_min", t_min), ("t_max", t_max))]
+            given = [origins, directions] + [limit for limit in limits if limit is not None]
+            shape = self._common_shape(given)
+            dtype = max(array.dtype for array in given if array.ndim)  # a number has no type of its own
+            origins, directions = np.asarray(origins, dtype), np.asarray(directions, dtype)
+            limits = [limit if limit is None else np.asarray(limit, dtype) for limit in limits]
+        self.origins, self.directions, self.shape, self.count = origins, directions, shape, math.prod(shape)
         self._lent = []
-        for name in tuple(values):
-            values[name], steps = self._flattened(values[name], 0)
-            values[name + "_step"] = steps[0]
-        values["origins"], values["origin_steps"] = self._flattened(self.origins, 1)
-        values["directions"], values["direction_steps"] = self._flattened(self.directions, 1)
-        self.struct = struct("clarity_rays", type=_TYPES[self.dtype], count=self.count, mask=mask_of(mask), **values)
+        origin, origin_steps = self._flattened(origins, 1)
+        direction, direction_steps = self._flattened(directions, 1)
+        (begin, begin_step), (end, end_step) = [(0, (0,)) if limit is None else self._flattened(limit, 0) for limit in limits]
+        steps = origin_steps + direction_steps + begin_step + end_step
+        self.struct = _RAYS.pack(_RAYS.size, _TYPES[dtype], self.count, origin, direction, begin, end, *steps, mask_of(mask), 0, 0)
 
     @staticmethod
-    def _common_shape(shapes):
-        shape = max(shapes, key=len)
-        if all(other == shape or not other for other in shapes):
-            return shape
+    def _common_shape(arrays):
+        for name, array in zip(("origins", "directions"), arrays):
+            if array.shape[-1:] != (3,):
+                raise UsageError(f"{name}: expected an array of shape (..., 3), found {array.shape}")
+        shapes = [array.shape[:-1] for array in arrays[:2]] + [array.shape for array in arrays[2:]]
         try:
             return np.broadcast_shapes(*shapes)
         except ValueError:
@@ -103,14 +97,17 @@ class Packed:
         self.points = rays.points
         self._handle = handle
         weakref.finalize(self, library.clarity_packed_free, handle)
-        self.struct = struct("clarity_rays", count=self.count, packed=handle)
+        self.struct = self._struct(None)
+
+    def _struct(self, mask):
+        return _RAYS.pack(_RAYS.size, 0, self.count, *(0,) * 10, mask_of(mask), 0, self._handle)
 
     def masked(self, mask):
         if mask is None:
             return self
         other = copy.copy(self)  # the first one frees the rays
         other._first = self
-        other.struct = struct("clarity_rays", count=self.count, packed=self._handle, mask=mask_of(mask))
+        other.struct = self._struct(mask)
         return other
 
     def __len__(self):
@@ -137,7 +134,10 @@ def mask_of(mask):
 
 
 def address_of(array):
-    return array.__array_interface__["data"][0]
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))  # in a quarter of the time
+    except (TypeError, ValueError):  # an array with gaps, that cannot be written, or empty
+        return array.__array_interface__["data"][0]
 
 
 class Hit:
@@ -153,40 +153,29 @@ class Hit:
     Hits of many rays stay on the device that found them. An array is copied when it is first read; on a CPU it is the memory that
     the device wrote to. `out=` fills the arrays again that were read."""
 
-    def __init__(self, shape, brief=False):
-        self._begin(shape, brief)
-        for number, (_, dtype, more) in enumerate(_ARRAYS[: _BRIEF if brief else None]):
-            self._arrays[number] = np.empty(self.shape + more, dtype)
-
-    @classmethod
-    def _on_device(cls, shape, brief, tracer):
-        hit = cls.__new__(cls)
-        hit._begin(shape, brief)
-        hit._kept = _Kept(brief, tracer)
-        return hit
-
-    def _begin(self, shape, brief):
+    def __init__(self, shape, brief=False, *, _tracer=None):
         self.shape, self.brief = tuple(shape), brief
         self._arrays = [None] * len(_ARRAYS)
-        self._kept = None  # the hits on a device: arrays are None that nobody has read
+        # Where the hits are. Arrays are None that nobody has read. Without a memory they are the caller's.
+        self._memory = _Memory(math.prod(shape), brief) if _tracer is None else Kept(brief, _tracer)
         self._rays = None
         self._made = None
 
     def _array(self, number):
         array = self._arrays[number]
-        if array is None and self._kept is not None and (number < _BRIEF or not self.brief):
+        if array is None and self._memory is not None and (number < _BRIEF or not self.brief):
             _, dtype, more = _ARRAYS[number]
-            array = self._arrays[number] = self._kept.array(number, self.shape + more, dtype)
+            array = self._arrays[number] = self._memory.array(number, self.shape + more, dtype)
         return array
 
-    def _leave_device(self):
+    def _leave_memory(self):
         """From now on the arrays are arrays as any others."""
         for number in range(len(_ARRAYS)):
             self._array(number)
-        self._kept = None
+        self._memory = None
 
     def _set(self, number, array):
-        self._leave_device()
+        self._leave_memory()
         self._arrays[number] = array
 
     @property
@@ -206,42 +195,62 @@ class Hit:
 
     def _check(self, shape, tracer):
         """Whether hits of rays of this shape can be written here."""
-        if self._kept is not None:
-            if self._kept.tracer == tracer and self.shape == shape:
+        if self._memory is not None:
+            if self._memory.tracer in (None, tracer) and self.shape == shape:
                 return
-            self._leave_device()
+            self._leave_memory()
         for number, (name, dtype, more) in enumerate(_ARRAYS):
             if self._arrays[number] is not None or number < _BRIEF:
                 check_out(self._arrays[number], shape + more, dtype, f"out.{name}")
 
-    def _struct_for(self, rays):
-        """What the library is told. It is kept for these arrays: to make it is a third of a call with one ray."""
-        self._rays = rays
+    def _struct(self):
+        """What the library is told of hits that are not on a device. It is kept for these arrays."""
+        if self._memory is not None:
+            return self._memory.struct
         t, prim, uv, instance = arrays = self._arrays
         made = self._made
         if not made or made[0] is not t or made[1] is not prim or made[2] is not uv or made[3] is not instance:
-            t, prim, uv, instance = places = [None if array is None else address_of(array) for array in arrays]
-            self._made = made = *arrays, header.structs["clarity_hits"](_HITS_BYTES, 0, t, prim, instance, uv)
+            self._made = made = *arrays, _struct_of_hits(*(0 if array is None else address_of(array) for array in arrays))
         return made[4]
 
 
 # In the order of the library's numbers; the first _BRIEF are those of brief hits.
 _ARRAYS = (("t", np.float32, ()), ("prim", np.int32, ()), ("uv", np.float32, (2,)), ("instance", np.int32, ()))
 _BRIEF = 2
-_HITS_BYTES = ctypes.sizeof(header.structs["clarity_hits"])
+_PLACES = (0, 1, 2, 4)  # where they begin in one memory, in numbers a hit
 
 for _number, (_name, _, _) in enumerate(_ARRAYS):
     setattr(
         Hit,
         _name,
         property(
-            lambda self, number=_number: self._arrays[number] if self._kept is None else self._array(number),
+            lambda self, number=_number: self._arrays[number] if self._memory is None else self._array(number),
             lambda self, array, number=_number: self._set(number, array),
         ),
     )
 
 
-class _Kept:
+def _struct_of_hits(t, prim, uv, instance):
+    return _HITS.pack(_HITS.size, 0, t, prim, instance, uv)
+
+
+class _Memory:
+    """Hits of any tracer in memory of numpy's, array by array: to make one array is a tenth of a call with one ray."""
+
+    tracer = None
+
+    def __init__(self, count, brief):
+        self._bytes = 4 * count
+        self._numbers = np.empty((2 if brief else 5) * count or 1, np.float32)
+        begin = address_of(self._numbers)
+        t, prim, uv, instance = begin, begin + self._bytes, begin + 2 * self._bytes, begin + 4 * self._bytes
+        self.struct = _struct_of_hits(t, prim, 0, 0) if brief else _struct_of_hits(t, prim, uv, instance)
+
+    def array(self, number, shape, dtype):
+        return np.ndarray(shape, dtype, self._numbers, _PLACES[number] * self._bytes)
+
+
+class Kept:
     """Hits on the device of a tracer. Their arrays lie in memory of the library."""
 
     def __init__(self, brief, tracer):

@@ -11,7 +11,7 @@ import numpy as np
 from ._binding import constants, library, struct, texts
 from ._calls import call, check, end_log, start_log
 from ._errors import UsageError
-from ._rays import AllHits, Hit, Packed, Rays, address_of, array_of, as_array, check_out, rays_of
+from ._rays import AllHits, Hit, Kept, Packed, Rays, address_of, array_of, as_array, check_out, rays_of
 
 # Rays that are traced before a person waits: no thread is started for them. A start takes up to 0.1 ms, in which a GPU traces a
 # million rays; so a tracer learns how fast it is.
@@ -123,12 +123,12 @@ class Tracer:
         few = self._few.get(name, 0)
         if rays.count <= few and progress is None:
             if rays.count < _FEW:
-                return check(function(self._handle, ctypes.byref(rays.struct), to, None))
+                return check(function(self._handle, rays.struct, to, None))
             begin = time.perf_counter()
-            check(function(self._handle, ctypes.byref(rays.struct), to, None))
+            check(function(self._handle, rays.struct, to, None))
         else:
             begin = time.perf_counter()
-            call(function, self._handle, ctypes.byref(rays.struct), to, progress=progress)
+            call(function, self._handle, rays.struct, to, progress=progress)
         if not few:
             self._few[name] = _FEW if rays.count else 0
         elif rays.count >= _FEW:
@@ -149,15 +149,15 @@ class Tracer:
         shape, which is filled and returned. Hits of many rays stay on the device until they are read."""
         rays = rays_of(origins, directions, t_min, t_max, mask)
         if out is None:
-            hit = Hit(rays.shape, brief) if rays.count < _FEW else Hit._on_device(rays.shape, brief, self._handle)
+            hit = Hit(rays.shape, brief, _tracer=None if rays.count < _FEW else self._handle)
         else:
             hit = out
             hit._check(rays.shape, self._handle)
-        if hit._kept is None:
-            self._trace(library.clarity_closest, rays, ctypes.byref(hit._struct_for(rays)), progress)
+        hit._rays = rays
+        if type(hit._memory) is Kept:
+            self._trace(library.clarity_keep, rays, hit._memory.handle, progress)
         else:
-            hit._rays = rays
-            self._trace(library.clarity_keep, rays, hit._kept.handle, progress)
+            self._trace(library.clarity_closest, rays, hit._struct(), progress)
         return hit
 
     def move(self, vertices=None, *, instances=None, progress=None):
@@ -192,7 +192,7 @@ class Tracer:
         handle = ctypes.c_void_p()
 
         def made(watch):
-            return library.clarity_pack(self._handle, ctypes.byref(rays.struct), watch, ctypes.byref(handle))
+            return library.clarity_pack(self._handle, rays.struct, watch, ctypes.byref(handle))
 
         try:
             call(made, progress=progress)
@@ -212,14 +212,14 @@ class Tracer:
         """An array of int64: how many hits each ray has with t_min <= t < t_max."""
         rays = rays_of(origins, directions, t_min, t_max, mask)
         counts = np.empty(rays.shape, np.int64) if out is None else check_out(out, rays.shape, np.int64, "out")
-        call(library.clarity_count, self._handle, ctypes.byref(rays.struct), address_of(counts), progress=progress)
+        call(library.clarity_count, self._handle, rays.struct, address_of(counts), progress=progress)
         return counts
 
     def all(self, origins, directions, t_min=None, t_max=None, *, mask=None, progress=None):
         """All hits of each ray, not only the nearest, as an AllHits: ray, t, prim = rt.all(origins, directions)."""
         rays = rays_of(origins, directions, t_min, t_max, mask)
         found = struct("clarity_all_hits")
-        call(library.clarity_all, self._handle, ctypes.byref(rays.struct), ctypes.byref(found), progress=progress)
+        call(library.clarity_all, self._handle, rays.struct, ctypes.byref(found), progress=progress)
         return AllHits(rays, found)
 
     def render(self, width, height, *, camera=None, light=None, out=None, progress=None, **settings):

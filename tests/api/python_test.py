@@ -174,6 +174,8 @@ class Hits(Case):
                 np.testing.assert_array_equal(rt.any(rays), expected.mask)
                 np.testing.assert_array_equal(rt.closest(rays, mask=255).t, expected.t)
         self.assertEqual(rt.closest(rt.pack(np.empty((0, 3)), [0, 0, 1])).t.shape, (0,))
+        with self.assertRaises(clarity.Cancelled):
+            rt.pack(origins, directions, progress=lambda stage, fraction: False)
         for words, wrong in (
             ("another tracer", lambda: scene.on(accel="bvh2").any(rays)),
             ("nothing beside them", lambda: rt.any(rays, directions)),
@@ -289,9 +291,9 @@ print(ten - before, peak() - before)
         ray = np.array([0.5, 0.5, 3], np.float32), np.array([0, 0, -1], np.float32)
         hit, packed = rt.closest(*ray), rt.pack(*ray)
         for name, trace, limit in (
-            ("new arrays", lambda: rt.closest(*ray), 55),
-            ("into arrays", lambda: rt.closest(*ray, out=hit), 51),
-            ("packed", lambda: rt.closest(packed, out=hit), 29),
+            ("new arrays", lambda: rt.closest(*ray), 43),
+            ("into arrays", lambda: rt.closest(*ray, out=hit), 34),
+            ("packed", lambda: rt.closest(packed, out=hit), 17),
         ):
             steps = []
             sys.setprofile(lambda frame, event, what: steps.append(what) if event in ("call", "c_call") else None)

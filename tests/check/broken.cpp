@@ -1,5 +1,5 @@
-// broken.cpp -- a small binary BVH with one defect, which the macro DEFECT names. `clarity check` must find each, and none in
-// the plugin with the defect `none`.
+// broken.cpp -- a small binary BVH with one defect: own_defect.hpp. `clarity check` must find each, and none in the plugin with
+// the defect `none`.
 #include <algorithm>
 #include <atomic>
 #include <cfloat>
@@ -13,23 +13,15 @@
 #include <thread>
 #include <vector>
 
+#include "own_defect.hpp"
 #include "rt_device.hpp"
 // needs the types of rt_types.h, so it must follow the headers above:
 #include "broken_types.h"
 
-#define STRING_OF(x) #x
-#define STRING(x) STRING_OF(x)
-
 namespace {
 
-constexpr const char* kDefect = STRING(DEFECT);
-constexpr bool same(const char* a, const char* b) {
-    for (; *a && *a == *b; ++a, ++b) {
-    }
-    return *a == *b;
-}
-constexpr bool is(const char* defect) {
-    return same(kDefect, defect);
+bool is(const char* defect) {
+    return own_defect("") == defect;
 }
 
 // Defects of the traversal, which are macros there.
@@ -382,12 +374,15 @@ constexpr rt_cl_file kFiles[] = {
 #include "broken.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<broken_node>("broken_nodes", "broken_node")};
-constexpr rt_cl_file kTraversal = is("redefines_lanes") ? rt_cl_file{"broken.cl",
-                                                                     "#define RT_LANES 4\nvoid RT_TRAVERSE(const rt_ctx *ctx, "
-                                                                     "uint root, const rt_rays *ray, rt_hits *hit) {}\n"}
-                                                        : rt::file(kFiles, "broken.cl");
-constexpr rt_accel kAccel =
-    rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), kTraversal, rt::guarded<build>, rt::guarded<levels>, rt::Traits());
+rt_accel accel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), rt::file(kFiles, "broken.cl"), rt::guarded<build>,
+                           rt::guarded<levels>, rt::Traits());
+
+// The host reads rt_plugin_v1 from the file, so it is a constant. What it points to may change while the library is loaded.
+__attribute__((constructor)) void take_defect() {
+    if (is("redefines_lanes"))
+        accel.traverse.text =
+            "#define RT_LANES 4\nvoid RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit) {}\n";
+}
 
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
 constexpr rt_device_build kDeviceBuild =
@@ -396,5 +391,5 @@ constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::extension(kDe
 
 }  // namespace
 
-const rt_plugin rt_plugin_v1 = rt::with_extensions(
-    rt::accel_plugin("broken", "A defect: " STRING(DEFECT), "1.0.0", nullptr, kParams, kAccel), kExtensions);
+const rt_plugin rt_plugin_v1 =
+    rt::with_extensions(rt::accel_plugin("broken", "A defect", "1.0.0", nullptr, kParams, accel), kExtensions);

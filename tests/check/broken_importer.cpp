@@ -1,21 +1,18 @@
-// broken_importer.cpp -- an importer with one defect, DEFECT, for the tests of `clarity check`. A `.tri` file has the number of
-// its triangles in the first line, then one triangle a line: nine numbers.
+// broken_importer.cpp -- an importer with one defect (own_defect.hpp), for the tests of `clarity check`. A `.tri` file has the
+// number of its triangles in the first line, then one triangle a line: nine numbers.
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "own_defect.hpp"
 #include "rt_plugin.hpp"
-
-#define TEXT_OF(x) #x
-#define TEXT(x) TEXT_OF(x)
 
 namespace {
 
 bool is(const char* defect) {
-    return std::strcmp(TEXT(DEFECT), defect) == 0;
+    return own_defect("importer_") == defect;
 }
 
 // Memory that holds what was there before. The compiler must not know that nothing was written.

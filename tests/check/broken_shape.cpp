@@ -1,22 +1,17 @@
-// broken_shape.cpp -- a ball, stretched along y, with one defect, which DEFECT names. `none` is sound.
+// broken_shape.cpp -- a ball, stretched along y, with one defect: own_defect.hpp. `none` is sound.
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <iterator>
 #include <utility>
 
+#include "own_defect.hpp"
 #include "rt_plugin.hpp"
-
-#define TEXT_(x) #x
-#define TEXT(x) TEXT_(x)
 
 namespace {
 
 // Whether this library has the defect.
-constexpr bool has(const char* defect) {
-    const char* own = TEXT(DEFECT);
-    while (*own && *own == *defect) ++own, ++defect;
-    return *own == *defect;
+bool has(const char* defect) {
+    return own_defect("shape_") == defect;
 }
 
 // Defects of the kernels: broken_shape.cl gets their number, counted from 1.
@@ -26,7 +21,7 @@ constexpr const char* kInKernels[] = {
     "hole",        "nan",          "lanes_8",          "zero_radius",   "uv_seam",    "uv_off_centre",  "uv_world_centre",
     "uv_twice",    "uv_constant",  "uv_one_direction", "uv_steps",      "uv_halves",  "uv_never_ends",  "uv_mirrored_half",
     "axis",        "slim",         "uv_clamped"};
-constexpr float number_of_defect() {
+float number_of_defect() {
     float number = 0;
     for (size_t i = 0; i < std::size(kInKernels); ++i)
         if (has(kInKernels[i])) number = float(i + 1);
@@ -34,9 +29,9 @@ constexpr float number_of_defect() {
 }
 
 enum { kCenter, kRadius, kStretch };
-constexpr rt_key keys[] = {
+rt_key keys[] = {
     rt::key(RT_KEY_POINT, "center", "x y z", 0, 0, 0),
-    rt::number_key("radius", "along x and z", has("zero_radius") ? 0 : 1e-3, 1e3, 1),
+    rt::number_key("radius", "along x and z", 1e-3, 1e3, 1),
     rt::number_key("stretch", "factor along y", 0.2, 5, 1.5),
 };
 
@@ -68,8 +63,14 @@ int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape
 constexpr rt_cl_file files[] = {
 #include "broken_shape.inc"
 };
-constexpr rt_cl_file file = {"broken_shape.cl", has("does_not_compile") ? "vfloat broken_shape_hit(" : files[0].text};
-constexpr rt_primitive primitive = rt::primitive(keys, file, nullptr, rt::guarded<prepare>);
+constexpr rt_cl_file file = {"broken_shape.cl", files[0].text};
+rt_primitive primitive = rt::primitive(keys, file, nullptr, rt::guarded<prepare>);
+
+// The host reads rt_plugin_v1 from the file, so it is a constant. What it points to may change while the library is loaded.
+__attribute__((constructor)) void take_defect() {
+    if (has("zero_radius")) keys[kRadius].min = 0;
+    if (has("does_not_compile")) primitive.kernels.text = "vfloat broken_shape_hit(";
+}
 
 }  // namespace
 

@@ -213,9 +213,10 @@ TEST(PathLightTree, HasLessNoise) {
 
 // What a ray finds must be weighted with the chance that the tree gives it.
 TEST(PathLightTree, AWrongDensityIsFound) {
-    const PathPicture table = traced("mis", "table", "1");
+    const PathPicture table = quick() ? PathPicture() : traced("mis", "table", "1");
     const FaultyKernel planted("shading/emission.h", "pick[l] = rt_pick_of(ctx, e, &point);",
                                "pick[l] = e->pick + 0.0f * point.at[0];");
+    if (quick()) return;  // the text is there
     EXPECT_GT(worst_block(table, traced("mis", "tree", "1")), 8);
 }
 

@@ -55,6 +55,9 @@ class Workbench {
 
 // CLARITY_QUICK_TESTS is set.
 bool quick();
+// It is 1, as ./test sets it, and not `faults`, as where a planted fault must be found: of several ways to one end, such as
+// tracers, some are enough.
+bool few_ways();
 // The numbers of lanes that tests of kernels try.
 std::vector<int> lane_counts();
 // Of a structure: the narrowest and the widest if its traversal is written for one ray, since the host spreads packets over it

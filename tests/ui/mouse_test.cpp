@@ -252,8 +252,11 @@ TEST_F(Mouse, TheWheelMovesTheCameraCloser) {
 
 TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
     const auto was = window->state();
-    window->double_click(at(1.2, -0.4));
-    window->settle();
+    // On a busy machine more than the time of a double click may pass between the two; then they are two clicks.
+    for (int i = 0; i < 3 && window->state()["target"] == was["target"]; ++i) {
+        window->double_click(at(1.2, -0.4));
+        window->settle();
+    }
     const auto now = window->state();
     EXPECT_LT(distance(now["target"], {1.2, -0.4, 0}), 0.05);
     EXPECT_LT(distance(now["eye"], now["target"]), 0.9 * distance(was["eye"], was["target"]));

@@ -41,8 +41,9 @@ void add_ball(Scene& scene) {
     for (rt_u32 j = 0; j < kUp; ++j)
         for (rt_u32 i = 0; i < kAround; ++i) {
             const rt_u32 at = j * (kAround + 1) + i, above = at + kAround + 1;
-            if (j > 0) scene.triangles.append(std::begin({at, at + 1, above + 1}), std::end({at, at + 1, above + 1}));
-            if (j + 1 < kUp) scene.triangles.append(std::begin({at, above + 1, above}), std::end({at, above + 1, above}));
+            const rt_u32 lower[] = {at, at + 1, above + 1}, upper[] = {at, above + 1, above};
+            if (j > 0) scene.triangles.append(std::begin(lower), std::end(lower));
+            if (j + 1 < kUp) scene.triangles.append(std::begin(upper), std::end(upper));
         }
     Mesh mesh;
     mesh.name = "ball";
@@ -143,6 +144,12 @@ bool is_power_of_two(unsigned n) {
     return (n & (n - 1)) == 0;
 }
 
+// The same picture while that of newer numbers is awaited.
+std::shared_ptr<const Preview> not_done(Preview preview) {
+    preview.done = false;
+    return std::make_shared<const Preview>(std::move(preview));
+}
+
 }  // namespace
 
 PreviewThread::Ball::Ball(const PreviewJob& job)
@@ -181,6 +188,7 @@ void PreviewThread::show(const PreviewJob& job) {
         if (is_known) return;
         // What is being compiled goes on: kernels serve other balls, too, and whoever clicks around would never see one.
         if (!job_ || !(Ball(*job_) == Ball(job)) || (latest_ && !latest_->failure.empty())) latest_.reset();
+        if (latest_ && latest_->done) latest_ = not_done(*latest_);
         job_ = job;
         begun_.reset();
     }
@@ -266,7 +274,7 @@ void PreviewThread::run() {
             const bool is_current = same_values(job_->values, job.values) && job_->size == job.size;
             if (is_current) begun_ = preview;
             is_news = preview->done || is_power_of_two(preview->samples);
-            if (is_news) latest_ = preview;
+            if (is_news) latest_ = is_current ? preview : not_done(*preview);
         }
         if (is_news) wake_();
     }

@@ -26,7 +26,7 @@ struct Preview {
     ByteImage image;  // empty: nothing is traced yet
     unsigned samples = 0;
     std::string failure;  // why there is no picture, or no further sample; empty: there is
-    bool done = false;    // no further sample follows
+    bool done = false;    // no further sample follows, and these are the numbers asked for
 };
 
 // The thread. All public members may be called from any thread; only release() waits.

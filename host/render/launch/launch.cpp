@@ -36,7 +36,7 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_cou
         go_on();
         const unsigned count = pace_.next(group_count - first, most);
         const auto start = std::chrono::steady_clock::now();
-        const double used_ms = processor_ms();
+        const double used_ms = device.info().cpu ? processor_ms() : 0;
         const Piece piece = enqueue(first, count);
         cl::Event last;
         if (side_work.behind && first + count == group_count) last = side_work.behind();
@@ -54,7 +54,7 @@ LaunchTimes Launcher::run(const Device& device, Queue& queue, unsigned group_cou
         if (last()) wall = std::max(traced, wall - std::max(0.0, span_ms(piece.first, last, traced) - traced));
         times.wall_ms += wall;
         times.device_ms += traced;
-        times.processor_ms += processor_ms() - used_ms;
+        if (device.info().cpu) times.processor_ms += processor_ms() - used_ms;
         ++times.launches;
         pace_.took(count, wall);
     }

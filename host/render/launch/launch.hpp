@@ -36,8 +36,8 @@ class Pace {
     unsigned last_ = 0, pieces_ = 0;
 };
 
-// Times in ms by the device's and the host's clock, and the number of launches. processor_ms: of all threads of this process
-// meanwhile; of a CPU it is what the kernels took, however busy the machine is.
+// Times in ms by the device's and the host's clock, and the number of launches. processor_ms: of a CPU, that of all threads of
+// this process meanwhile: what the kernels took, however busy the machine is.
 struct LaunchTimes {
     double device_ms = 0, wall_ms = 0, processor_ms = 0;
     unsigned launches = 0;

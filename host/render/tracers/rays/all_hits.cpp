@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "device/cl_errors.hpp"
-#include "render/launch/frame_constants.hpp"
 #include "render/tracers/rays/ray_kernels.hpp"
 #include "render/tracers/rays/ray_queries.hpp"
 #include "render/trial/trial.hpp"
@@ -86,9 +85,7 @@ AllHits RayQueries::trace_all(const Prepared& prepared, const std::vector<rt_ray
         const Layout& layout = prepared.layout;
         all_hits_launcher_.forget();
         const auto program = tried_program(programs_, prepared, all_hits(), progress);
-        rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
-        frame.ray_mask = query.mask;
-        view_.write(device_->queue(), *prepared.scene, *prepared.on_device, {frame}, View());
+        write_frame(prepared, query.mask);
         for (size_t begin = 0; begin < rays.size(); begin += kRaysAtOnce) {
             const size_t count = std::min(kRaysAtOnce, rays.size() - begin);
             std::vector<std::vector<rt_hit>> found(query.count_only ? 0 : count);

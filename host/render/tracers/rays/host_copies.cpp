@@ -124,7 +124,8 @@ void read_answers(HostCopies& copies, const Answers& answers, const AnswersTo& t
         else
             std::memset(to.arrays[k], array == AnswerArray::uv ? 0 : -1, bytes);
     };
-    if (answers.count == 0) return;
+    const bool wanted = std::any_of(std::begin(to.arrays), std::end(to.arrays), [](const void* array) { return array; });
+    if (answers.count == 0 || !wanted) return;
     const bool at_once = answers.bytes() > 0 && answers.bytes() <= kSmall;
     const auto each = [&](const char* all) {
         for (size_t k = 0; k < kAnswerArrays; ++k)

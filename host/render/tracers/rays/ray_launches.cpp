@@ -30,14 +30,16 @@ void RayQueries::Counted::take(Queue& queue, const std::function<void(cl_uint pa
 KernelArguments& RayQueries::kernel_of(const Launch& launch, const char* entry) {
     const auto [found, fresh] = looked_up_.kernels.try_emplace({&launch.program, entry ? entry : ""});
     KernelArguments& kernel = found->second;
-    if (fresh) kernel = launch.program.kernel(entry);
+    if (fresh) {
+        kernel = launch.program.kernel(entry);
+        view_.bind(*launch.prepared.on_device, kernel);
+    }
     kernel.set("fields", launch.answers.fields)
         .set("stride", cl_uint(launch.answers.stride))
         .set("before", cl_uint(launch.answers.before));
     kernel.set("rays", launch.in).set("answers", launch.answers.buffer);
     if (kernel.has("any_hit")) kernel.set("any_hit", cl_uint(launch.any_hit));
     overflows_.bind(kernel);
-    view_.bind(*launch.prepared.on_device, kernel);
     return kernel;
 }
 

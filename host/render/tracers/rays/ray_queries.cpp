@@ -48,7 +48,7 @@ cl_uint RayQueries::answer_fields(const Prepared& prepared, const RayQuery& quer
 TraceProgram& RayQueries::program_of(const Prepared& prepared, uint64_t number, const KernelRow& row, Progress& progress) {
     const uint64_t revision = kernel_text_revision();
     if (number == 0 || number != looked_up_.prepared || revision != looked_up_.text_revision)
-        looked_up_ = {number, revision, {}, {}};
+        looked_up_ = {number, revision, {}, {}, {}};
     std::shared_ptr<TraceProgram>& program = looked_up_.programs[&row];
     if (!program) program = tried_program(programs_, prepared, row, progress);
     return *program;
@@ -79,6 +79,13 @@ RayQueries::Choice& RayQueries::choice_for(const Prepared& prepared, uint64_t pa
     return choice;
 }
 
+void RayQueries::write_frame(const Prepared& prepared, rt_u32 mask) {
+    looked_up_.mask.reset();
+    rt_frame frame = make_frame(View(), prepared.settings, prepared.layout, *prepared.accel, 0);
+    frame.ray_mask = mask;
+    view_.write(device_->queue(), *prepared.scene, *prepared.on_device, {frame}, View());
+}
+
 double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQuery& query, Answers& answers) {
     tuning_ = {};
     answers.count = rays.count;
@@ -97,9 +104,8 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
     const TraceProgram& program = program_of(prepared, rays.prepared, row, query.progress ? *query.progress : never_cancelled);
     if (!few) tuning_ = {autotuner.variant(), autotuner.trying(), false};
     Queue& queue = device_->queue();
-    rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
-    frame.ray_mask = query.mask;
-    view_.write(queue, *prepared.scene, *prepared.on_device, {frame}, View());
+    if (looked_up_.mask != query.mask) write_frame(prepared, query.mask);
+    looked_up_.mask = query.mask;
     if (!answers.buffer()) {
         answers.stride = answer_stride(rays.count);
         answers.buffer =

@@ -3,6 +3,7 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "device/device.hpp"
@@ -72,10 +73,14 @@ class RayQueries {
     };
     // answers: gets those of this query. If it has a buffer already, they are written there.
     double trace(const Prepared& prepared, const Given& rays, const RayQuery& query, Answers& answers);
+    // The frame that kernels read, for rays of this mask.
+    void write_frame(const Prepared& prepared, rt_u32 mask);
     void write_rays(const cl::Buffer& in, size_t count, unsigned lanes, const ReadRays& read);
-    // To make a kernel's text and to find its program by it takes longer than to trace a million rays.
+    // What stays from query to query of one Prepared: to make a kernel's text and to find its program by it takes longer than
+    // to trace a million rays, and the frame and the scene's arguments take longer than a launch.
     struct LookedUp {
         uint64_t prepared = 0, text_revision = 0;
+        std::optional<rt_u32> mask;  // of the frame on the device; without one, that is another query's
         std::map<const KernelRow*, std::shared_ptr<TraceProgram>> programs;
         std::map<std::pair<const TraceProgram*, std::string>, KernelArguments> kernels;  // by their entries
     };

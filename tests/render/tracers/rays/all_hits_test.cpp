@@ -22,9 +22,13 @@ constexpr size_t kAtOnce = kHitsAtOnce;
 
 // In quick tests, too, one that traces single rays and names a primitive in several places.
 std::vector<std::string> structures() {
-    std::vector<std::string> ids = Workbench::get().accels();
+    std::vector<std::string> ids = few_ways() ? Workbench::get().fast_accels() : Workbench::get().accels();
     if (std::find(ids.begin(), ids.end(), "kdtree") == ids.end()) ids.push_back("kdtree");
     return ids;
+}
+
+std::vector<int> lanes_of(const std::string& accel) {
+    return few_ways() ? std::vector<int>{accel == "kdtree" ? 1 : 16} : std::vector<int>{1, 16};
 }
 
 AllHits hits_of(const ScenePtr& scene, const std::vector<rt_ray>& rays, const std::string& accel, int lanes,
@@ -171,7 +175,7 @@ void expect_everywhere(const ScenePtr& scene, const std::vector<rt_ray>& rays, b
         ASSERT_NO_FATAL_FAILURE(expect_as_reference(scene, rays, expected));
     }
     for (const std::string& accel : structures())
-        for (const int lanes : {1, 16}) {
+        for (const int lanes : lanes_of(accel)) {
             const std::string what = accel + ", " + std::to_string(lanes) + " lanes";
             ASSERT_NO_FATAL_FAILURE(expect_same(hits_of(scene, rays, accel, lanes), expected, what));
             // Counting is a kernel of its own, and the same for all kinds of primitives: shapes are counted by one structure.
@@ -233,7 +237,7 @@ TEST(AllHits, AtEdgesAndWhereAListIsFull) {
                                           ray_of({0.5f, 0.25f, 1}, {0, 0, -1}, 2), ray_of({0.5f, 0.25f, 1}, {0, 0, -1}, 0, 2),
                                           ray_of({2, 0, 1}, {0, 0, -1})};
         for (const std::string& accel : structures())
-            for (const int lanes : {1, 16}) {
+            for (const int lanes : lanes_of(accel)) {
                 const AllHits all = hits_of(scene, rays, accel, lanes);
                 const std::string what = accel + ", " + std::to_string(lanes) + " lanes, " + std::to_string(count) + " plates";
                 EXPECT_EQ(all.count(0), 2 * count) << what;
@@ -254,7 +258,7 @@ TEST(AllHits, OfDuplicates) {
     std::vector<rt_ray> rays(40, ray_of({0.5f, 0.25f, 1}, {0, 0, -1}));
     for (size_t i = 0; i < rays.size(); i += 3) rays[i].t_max = -1;
     for (const std::string& accel : structures())
-        for (const int lanes : {1, 16}) {
+        for (const int lanes : lanes_of(accel)) {
             const AllHits all = hits_of(scene, rays, accel, lanes);
             for (size_t i = 0; i < rays.size(); ++i) {
                 ASSERT_EQ(all.count(i), i % 3 ? 2 * kCopies : 0) << accel << ", " << lanes << " lanes, ray " << i;

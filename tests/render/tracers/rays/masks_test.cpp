@@ -126,6 +126,7 @@ TEST(Masks, OfPicturesGoByTheKindOfRays) {
         {{"tracer", "path"}},
     };
     for (const auto& way : ways) {
+        if (few_ways() && &way != &ways.front() && &way != &ways.back()) continue;
         const std::string what = way[0].second + ", " + (way.size() > 1 ? way[1].second : "its own") + " lanes";
         const auto of = [&](rt_u32 mask, bool visible = true) {
             return picture(over_a_floor(mask, visible), way, false).pixels;
