@@ -143,14 +143,18 @@ RT_INLINE bool rt_slice_cells(const rt_slice_axis *axis, float from, float to, i
     return true;
 }
 
+/* Where rays enter a slice, or leave it, times sign. */
+RT_INLINE float rt_slice_side(const rt_slices *s, int slice, int leave)
+{
+    return s->sign * fma((float)(slice + (s->step > 0 ? leave : 1 - leave)), s->size, s->low);
+}
+
 /* Finds the cells that rays may be in from one slice to another, in the order of visits. Returns false if all are outside of the grid. */
 RT_INLINE bool rt_find_slice_cells(rt_slices *s, int first, int last)
 {
-    const int far_side = s->step > 0 ? 1 : 0;
-    const float near = s->sign * fma((float)(first + 1 - far_side), s->size, s->low);
-    const float far = s->sign * fma((float)(last + far_side), s->size, s->low);
-    const float from = clamp((near - s->begin) * s->a_span, 0.0f, 1.0f), to = clamp((far - s->begin) * s->a_span, 0.0f, 1.0f);
-    return near <= s->end && rt_slice_cells(&s->u, from, to, &s->first_u, &s->last_u) &&
+    const float from = clamp((rt_slice_side(s, first, 0) - s->begin) * s->a_span, 0.0f, 1.0f),
+                to = clamp((rt_slice_side(s, last, 1) - s->begin) * s->a_span, 0.0f, 1.0f);
+    return rt_slice_cells(&s->u, from, to, &s->first_u, &s->last_u) &&
            rt_slice_cells(&s->v, from, to, &s->first_v, &s->last_v);
 }
 
@@ -177,7 +181,7 @@ RT_INLINE bool rt_next_slice(rt_slices *s, const global uchar *filled, const rt_
     }
     for (;;) {
         s->slice += s->step;
-        if (s->slice < 0 || s->slice >= s->count) return false;
+        if (s->slice < 0 || s->slice >= s->count || !(rt_slice_side(s, s->slice, 0) <= s->end)) return false;
         if ((s->slice ^ s->seen) >> 2 != 0) {
             const int last = s->step > 0 ? s->slice | 3 : s->slice & ~3;
             s->seen = s->slice;
