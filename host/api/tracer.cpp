@@ -190,10 +190,10 @@ std::unique_ptr<clarity_packed> clarity_tracer::pack(const clarity_rays& rays, P
         const size_t count = std::min(at_once, size_t(rays.count) - first);
         const auto read = [&, read_all = reader(rays, first)](size_t begin, size_t some, rt_ray* to) {
             if (begin % kFirstBatch == 0) progress.report(float(first + begin) / float(rays.count));
-            if (!progress.cancelled()) read_all(begin, some, to);
+            if (progress.cancelled()) throw Cancelled();
+            read_all(begin, some, to);
         };
         packed->pieces.push_back({count, queries_.pack_on_device(count, prepared_->layout.lanes, read), new_packing()});
-        if (progress.cancelled()) throw Cancelled();
     }
     return packed;
 }

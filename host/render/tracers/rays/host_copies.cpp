@@ -10,7 +10,8 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kSmall = size_t{1} << 16;  // bytes; up to here the driver's own copy is as fast, and all arrays come in one
+// Bytes; up to here the driver's own copy is as fast, and all arrays come in one. To wait for it takes longer than the copy.
+constexpr size_t kSmall = size_t{1} << 16;
 constexpr size_t kPiece = size_t{1} << 22;  // bytes; a multiple of a block of rays of any number of lanes
 constexpr size_t kPart = size_t{1} << 18;   // bytes that one core copies
 constexpr const char* kWaiting = "a copy between the device and the host";
@@ -40,21 +41,28 @@ void copy_memory(void* to, const void* from, size_t bytes) {
 
 }  // namespace
 
+HostCopies::~HostCopies() {
+    try {
+        if (sent_()) sent_.wait();
+    } catch (const cl::Error&) {  // the device is lost: nothing reads this memory any more
+    }
+}
+
 void HostCopies::read(const cl::Buffer& from, size_t begin, size_t bytes,
                       const std::function<void(const void*, size_t, size_t)>& take) {
     if (bytes == 0) return;
     const Queue& queue = device_->queue();
     read_ += bytes;
-    if (device_->info().cpu) {
-        void* const mapped = queue.enqueueMapBuffer(from, CL_TRUE, CL_MAP_READ, begin, bytes);
-        take(mapped, 0, bytes);
-        queue.enqueueUnmapMemObject(from, mapped);
-        return;
-    }
     if (bytes <= kSmall) {
         small_.resize(kSmall);
         queue.enqueueReadBuffer(from, CL_TRUE, begin, bytes, small_.data());
         take(small_.data(), 0, bytes);
+        return;
+    }
+    if (device_->info().cpu) {
+        void* const mapped = queue.enqueueMapBuffer(from, CL_TRUE, CL_MAP_READ, begin, bytes);
+        take(mapped, 0, bytes);
+        queue.enqueueUnmapMemObject(from, mapped);
         return;
     }
     std::array<Flight, 2> flights;
@@ -80,16 +88,22 @@ void HostCopies::write(const cl::Buffer& to, size_t bytes, const std::function<v
     if (bytes == 0) return;
     const Queue& queue = device_->queue();
     written_ += bytes;
-    if (device_->info().cpu) {
-        void* const mapped = queue.enqueueMapBuffer(to, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
-        make(mapped, 0, bytes);
-        queue.enqueueUnmapMemObject(to, mapped);
+    if (bytes <= kSmall) {
+        if (sent_()) sent_.wait();
+        small_sent_.resize(kSmall);
+        make(small_sent_.data(), 0, bytes);
+        queue.enqueueWriteBuffer(to, CL_FALSE, 0, bytes, small_sent_.data(), nullptr, &sent_);
         return;
     }
-    if (bytes <= kSmall) {
-        small_.resize(kSmall);
-        make(small_.data(), 0, bytes);
-        queue.enqueueWriteBuffer(to, CL_TRUE, 0, bytes, small_.data());
+    if (device_->info().cpu) {
+        void* const mapped = queue.enqueueMapBuffer(to, CL_TRUE, CL_MAP_WRITE_INVALIDATE_REGION, 0, bytes);
+        try {
+            make(mapped, 0, bytes);
+        } catch (...) {
+            queue.enqueueUnmapMemObject(to, mapped);
+            throw;
+        }
+        queue.enqueueUnmapMemObject(to, mapped);
         return;
     }
     std::array<Flight, 2> flights;

@@ -16,6 +16,7 @@ namespace clarity {
 class HostCopies {
  public:
     explicit HostCopies(std::shared_ptr<Device> device) : device_(device), pinned_(device) {}
+    ~HostCopies();
     // take: gets the pieces of `bytes` bytes from `begin` on in their order, and how many bytes were before.
     void read(const cl::Buffer& from, size_t begin, size_t bytes,
               const std::function<void(const void* piece, size_t before, size_t bytes)>& take);
@@ -29,7 +30,8 @@ class HostCopies {
  private:
     const std::shared_ptr<Device> device_;
     PinnedMemoryPool pinned_;
-    std::vector<unsigned char> small_;
+    std::vector<unsigned char> small_, small_sent_;
+    cl::Event sent_;  // until then the device may read small_sent_
     uint64_t read_ = 0, written_ = 0;
 };
 
