@@ -8,7 +8,7 @@ target_include_directories(clarity_sdk INTERFACE $<INSTALL_INTERFACE:${CMAKE_INS
 set_target_properties(clarity_bvh PROPERTIES EXPORT_NAME bvh)
 install(TARGETS clarity_sdk clarity_bvh EXPORT clarityTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT sdk)
 install(DIRECTORY host/sdk/clarity_bvh host/sdk/clarity_space DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
-install(FILES host/sdk/rt_plugin.h host/sdk/rt_refit.h host/sdk/rt_surface.h host/sdk/rt_surface.hpp host/sdk/rt_device.h host/sdk/rt_device.hpp host/sdk/rt_digest.h host/sdk/rt_plugin.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
+install(FILES host/sdk/rt_plugin.h host/sdk/rt_refit.h host/sdk/rt_surface.h host/sdk/rt_surface.hpp host/sdk/rt_device.h host/sdk/rt_device.hpp host/sdk/rt_digest.h host/sdk/rt_plugin.hpp host/sdk/rt_cost.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
 # `clarity new-plugin` finds the templates at ../share/clarity/template relative to itself, in a build folder too.
 install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/clarity)

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace clarity::test {
@@ -14,6 +15,10 @@ std::array<float, 3> Picture::at(int x, int y) const {
 Picture trace(const Scene& scene, const View& view, int width, int height, int depth,
               const std::vector<std::pair<std::string, std::string>>& pairs) {
     Settings settings = make_settings(pairs);
+    // Those that most of these tests name, so that quick ones share programs.
+    if (few_ways() &&
+        std::none_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.first == "lanes" || p.first == "tracer"; }))
+        settings.lanes = 8;
     settings.width = width;
     settings.height = height;
     settings.depth = depth;

@@ -41,15 +41,23 @@ constexpr rt_param duplicates_param() {
     return rt::float_param("duplicates", "Duplicates",
                            "what builder=spatial may add to the primitives, as a share of their number", 0, 4, 0.3);
 }
+// Rules::reinsert.
+constexpr rt_param reinsert_param() {
+    return rt::int_param("reinsert", "Reinsertion",
+                         "passes that move subtrees to better places, at most; 0: none; several times slower to build, faster "
+                         "to trace where rays part",
+                         0, 100, 0);
+}
 
 // A table that begins with the parameters of wide trees has them in this order, so that wide_rules() finds them. A plugin may
 // append its own from kOwnParams on.
-enum WideParam { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder, kDuplicates, kOwnParams };
+enum WideParam { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder, kDuplicates, kReinsert, kOwnParams };
 // The rules of rt_build_input::params, in the order of WideParam.
 inline Rules wide_rules(const double* params) {
     return {static_cast<uint32_t>(params[kMaxLeaf]),    static_cast<uint32_t>(params[kBins]),
             static_cast<float>(params[kTraversalCost]), static_cast<float>(params[kIntersectionCost]),
-            static_cast<Method>(params[kBuilder]),      static_cast<float>(params[kDuplicates])};
+            static_cast<Method>(params[kBuilder]),      static_cast<float>(params[kDuplicates]),
+            static_cast<uint32_t>(params[kReinsert])};
 }
 
 }  // namespace clarity::bvh

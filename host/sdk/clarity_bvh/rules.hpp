@@ -20,8 +20,9 @@ struct Rules {
     float traversal_cost;     // of a node to a ray; any unit that intersection_cost shares
     float intersection_cost;  // of a primitive to a ray
     Method method = Method::sah;
-    float duplicates = 0;  // references that spatial splits may add, as a fraction of the number of primitives
-    bool halves = false;   // split by count, without the heuristic: the baseline that shows what the heuristic gains
+    float duplicates = 0;   // references that spatial splits may add, as a fraction of the number of primitives
+    uint32_t reinsert = 0;  // passes of reinsertion at most (build/reinsert.hpp); 0: none
+    bool halves = false;    // split by count, without the heuristic: the baseline that shows what the heuristic gains
 };
 
 constexpr uint32_t kMaxBins = 32;

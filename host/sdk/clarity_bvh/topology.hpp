@@ -11,7 +11,7 @@
 
 #include "clarity_bvh/base/bounds.hpp"
 #include "clarity_bvh/base/scratch.hpp"
-#include "rt_plugin.h"
+#include "rt_cost.hpp"
 
 namespace clarity::bvh {
 
@@ -106,10 +106,8 @@ struct Topology {
 // The quality of a topology.
 struct Quality {
     uint64_t leaves = 0;
-    // Expected cost of a ray that hits the root's box, by the surface area heuristic. Each node and primitive counts with its
-    // probability of a visit (its surface over the root's) times its cost. It is the mean over all groups, weighted by their
-    // numbers of primitives. An instance costs as much as a primitive.
-    double sah_cost = 0;
+    rt::ExpectedCost expected;
+    double sah_cost = 0;  // weighted by the given costs
 };
 // Measures the trees on the calling thread. `groups` are those of the build's input.
 Quality measure(const Topology& topology, const rt_group* groups, float traversal_cost, float intersection_cost);

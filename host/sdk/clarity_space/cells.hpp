@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clarity_space/primitives.hpp"
+#include "rt_cost.hpp"
 
 namespace clarity::space {
 
@@ -64,6 +65,18 @@ void cell_box(const Head& head, size_t cell, float lo[3], float hi[3]) {
         lo[k] = std::fma(float(at[k]), head.size[k], head.box[k]);
         hi[k] = at[k] + 1 == head.cells[k] ? head.box[k + 3] : std::fma(float(at[k] + 1), head.size[k], head.box[k]);
     }
+}
+
+// Adds the cells of a grid, and their primitives: those of cell c are starts[c] to starts[c + 1] - 1 of a list. The last list
+// is of primitives that are huge: every ray tests them. whole: the surface of the box around all primitives.
+template <class Head>
+void add_cells(const Head& head, const rt_u32* starts, double whole, rt::Surfaces& sums) {
+    const float origin[3] = {0, 0, 0};
+    const double cell = std::min(rt::surface_of(origin, head.size), whole);
+    const size_t cells = cell_count(head);
+    sums.add_node(cell * double(cells));
+    sums.add_leaf(cell, double(starts[cells]) - starts[0]);
+    sums.add_leaf(whole, double(starts[cells + 1]) - starts[cells]);
 }
 
 // The cells that a primitive's box meets, along each axis.

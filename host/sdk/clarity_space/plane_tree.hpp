@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "clarity_space/tree.hpp"
+#include "rt_cost.hpp"
 
 namespace clarity::space {
 
@@ -28,12 +29,14 @@ struct PlaneTree {
     std::vector<Node> nodes;
     std::vector<rt_u32> list;
     rt_u32 depth = 0, leaves = 0;  // leaves: those with primitives
+    rt::Surfaces surfaces{};       // of the nodes' cells; the builder adds those of inner nodes
 
     static bool is_leaf(const Node& node) { return (node.code & kLeaf) == kLeaf; }
 
-    // Makes an existing node a leaf with these items, each of which has a `prim`.
+    // Makes an existing node a leaf with these items, each of which has a `prim`. surface: of its cell.
     template <class Items>
-    void make_leaf(size_t place, const Items& items) {
+    void make_leaf(size_t place, const Items& items, double surface) {
+        surfaces.add_leaf(surface, double(items.size()));
         nodes[place].at.first = rt_u32(list.size());
         nodes[place].code = rt_u32(items.size()) << Bits | kLeaf;
         for (const auto& item : items) list.push_back(item.prim);
@@ -57,6 +60,7 @@ struct PlaneTree {
         list.insert(list.end(), from.list.begin(), from.list.end());
         depth = std::max(depth, from.depth);
         leaves += from.leaves;
+        surfaces.add(from.surfaces);
     }
 };
 
@@ -109,6 +113,7 @@ rt_u32 put_trees(const rt_host* host, const rt_build_input& in, const rt_build_o
     auto* const heads = rt::alloc<Head>(out, 0, in.group_count);
     put_leaves(host, in, out, primitive_count(host, in));
     Tree all;
+    rt::ExpectedCost expected;
     rt_u32 before = 0;  // positions in leaf order before the group's
     for (rt_u32 g = 0; g < in.group_count; ++g) {
         std::copy_n(boxes[g].lo, 3, heads[g].box);
@@ -116,6 +121,7 @@ rt_u32 put_trees(const rt_host* host, const rt_build_input& in, const rt_build_o
         heads[g].node = rt_u32(all.nodes.size());
         all.nodes.emplace_back();
         for (rt_u32& prim : trees[g].list) prim += before;
+        expected.add_group(in.groups[g].count, rt::surface_of(boxes[g].lo, boxes[g].hi), trees[g].surfaces);
         all.append(heads[g].node, trees[g]);
         trees[g] = Tree();
         if (all.nodes.size() >= Tree::kMostNodes || all.list.size() > 0xFFFFFFF0u)
@@ -130,6 +136,7 @@ rt_u32 put_trees(const rt_host* host, const rt_build_input& in, const rt_build_o
     rt::stat(out, "leaves", all.leaves);
     rt::stat(out, "references", double(all.list.size()));
     rt::stat(out, "depth", all.depth);
+    expected.report(out);
     return all.depth;
 }
 

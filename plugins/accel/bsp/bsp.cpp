@@ -94,7 +94,8 @@ class Builder {
         if (items.size() > 1024) rt::progress(host_, 0.5f);  // to notice a cancelled build
         tree.depth = std::max(tree.depth, depth);
         const Plane plane = depth < rules_.max_depth ? best_plane(items, cell) : Plane();
-        if (!(plane.cost < rules_.intersection * double(items.size()))) return tree.make_leaf(place, items);
+        if (!(plane.cost < rules_.intersection * double(items.size()))) return tree.make_leaf(place, items, cell.surface());
+        tree.surfaces.add_node(cell.surface());
         const size_t child = tree.nodes.size();
         tree.nodes.resize(child + 2);
         tree.nodes[place].at.split = plane.at;

@@ -9,6 +9,7 @@
 #include "clarity_bvh/pack_binary.hpp"
 #include "clarity_bvh/rules.hpp"
 #include "parameters.hpp"
+#include "rt_cost.hpp"
 #include "rt_plugin.h"
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
@@ -19,19 +20,10 @@ namespace {
 
 using namespace clarity::bvh;
 
-// Measures the quality of a finished tree from its nodes.
 struct Statistics {
     uint64_t leaves = 0;
-    // Expected cost of a ray that hits the root's box. Each node and primitive counts with its probability of a visit (its
-    // surface over the root's) times its cost by the rules. It is the mean over all groups, weighted by their numbers of
-    // primitives. An instance costs as much as a primitive.
-    double sah_cost = 0;
+    rt::ExpectedCost expected;
 };
-
-double area(const float box[6]) {
-    const double x = double{box[3]} - box[0], y = double{box[4]} - box[1], z = double{box[5]} - box[2];
-    return 2 * (x * y + y * z + z * x);
-}
 
 double root_area(const bvh2_node& root) {
     float box[6];
@@ -40,28 +32,28 @@ double root_area(const bvh2_node& root) {
         box[i] = one ? root.box0[i] : std::min(root.box0[i], root.box1[i]);
         box[3 + i] = one ? root.box0[3 + i] : std::max(root.box0[3 + i], root.box1[3 + i]);
     }
-    return area(box);
+    return rt::surface_of(box);
 }
 
 struct MeasuredPart {
     uint32_t group;
     rt_u32 begin, end;
     uint64_t leaves = 0;
-    double node_area = 0, primitive_area = 0;
+    rt::Surfaces surfaces{};
     void add(const float box[6], rt_u32 child) {
         if (!(child & BVH2_LEAF)) {
-            node_area += area(box);
+            surfaces.add_node(rt::surface_of(box));
         } else if (BVH2_LEAF_COUNT(child) > 0) {
             ++leaves;
-            primitive_area += area(box) * BVH2_LEAF_COUNT(child);
+            surfaces.add_leaf(rt::surface_of(box), BVH2_LEAF_COUNT(child));
         }
     }
 };
 
 // Measures the trees, on all cores. The nodes of group g begin at roots[g] and end where those of the next group begin, or at
 // node_count.
-Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
-                   const std::vector<rt_u32>& roots, const rt_group* groups) {
+Statistics measure(const rt_host* host, const bvh2_node* nodes, rt_u32 node_count, const std::vector<rt_u32>& roots,
+                   const rt_group* groups) {
     constexpr rt_u32 kPart = 8192;
     std::vector<MeasuredPart> parts;
     for (uint32_t g = 0; g < roots.size(); ++g) {
@@ -76,21 +68,17 @@ Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nod
     });
 
     Statistics result;
-    double cost = 0, primitives = 0;
     size_t at = 0;
     for (uint32_t g = 0; g < roots.size(); ++g) {
         const double whole = root_area(nodes[roots[g]]);
-        double node_area = whole, primitive_area = 0;
+        rt::Surfaces sums;
+        sums.add_node(whole);
         for (; at < parts.size() && parts[at].group == g; ++at) {
             result.leaves += parts[at].leaves;
-            node_area += parts[at].node_area;
-            primitive_area += parts[at].primitive_area;
+            sums.add(parts[at].surfaces);
         }
-        if (!(whole > 0)) continue;  // no ray hits a point or a line
-        cost += groups[g].count * (rules.traversal_cost * node_area + rules.intersection_cost * primitive_area) / whole;
-        primitives += groups[g].count;
+        result.expected.add_group(groups[g].count, whole, sums);
     }
-    result.sah_cost = primitives > 0 ? cost / primitives : 0;
     return result;
 }
 
@@ -121,12 +109,14 @@ void write(const rt_host* host, const rt_build_input& input, const Topology& top
         },
         convert);
     for (rt_u32 g = 0; g < roots.size(); ++g) rt::root(out, g, roots[g]);
-    const Statistics statistics = measure(host, rules_of(input.params), nodes, count, roots, input.groups);
+    const Rules rules = rules_of(input.params);
+    const Statistics statistics = measure(host, nodes, count, roots, input.groups);
     rt::stat(out, "nodes", count);
     rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
     rt::stat(out, "depth", topology.depth);
     rt::stat(out, "references", static_cast<double>(topology.ref_count));
-    rt::stat(out, "sah_cost", statistics.sah_cost);
+    rt::stat(out, "sah_cost", statistics.expected.weighted(rules.traversal_cost, rules.intersection_cost));
+    statistics.expected.report(out);
     rt::stat(out, "build_bytes", static_cast<double>(build_bytes));
     // The traversal needs one stack entry a level, and one more to tell a full stack from an overflow. The size is a multiple
     // of 8, because a new value recompiles the kernels.
@@ -142,14 +132,9 @@ void pack(const rt_host* host, const rt_build_input& input, Topology& topology, 
 }
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-    const uint64_t count = count_primitives(host, *input);
     const Rules rules = rules_of(input->params);
-    const uint64_t bytes = TopologyBuilder::bytes(rules, count);
-    with_memory_for(host, count, bytes, [&] {
-        TopologyBuilder builder(host, *input, rules, count, 1.0f);
-        const Topology topology = builder.run([out](uint64_t refs) { return rt::leaves(out, refs); }, [](const Part&) {});
-        write(host, *input, topology, bytes, out);
-    });
+    const Topology topology = build_topology(host, *input, rules, [out](uint64_t refs) { return rt::leaves(out, refs); });
+    write(host, *input, topology, build_bytes(rules, count_primitives(host, *input)), out);
     return RT_OK;
 }
 

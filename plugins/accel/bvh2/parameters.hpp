@@ -6,7 +6,7 @@
 
 namespace bvh2 {
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit, kBuilder, kDuplicates };
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit, kBuilder, kDuplicates, kReinsert };
 inline constexpr const char* kSplits[] = {"sah", "median", nullptr};
 inline constexpr rt_param kParams[] = {
     clarity::bvh::max_leaf_param(BVH2_LEAF_MAX, 4),
@@ -17,6 +17,7 @@ inline constexpr rt_param kParams[] = {
                    kSplits, 0),
     clarity::bvh::builder_param(),
     clarity::bvh::duplicates_param(),
+    clarity::bvh::reinsert_param(),
 };
 
 inline clarity::bvh::Rules rules_of(const double* params) {
@@ -26,6 +27,7 @@ inline clarity::bvh::Rules rules_of(const double* params) {
             static_cast<float>(params[kIntersectionCost]),
             static_cast<clarity::bvh::Method>(params[kBuilder]),
             static_cast<float>(params[kDuplicates]),
+            static_cast<uint32_t>(params[kReinsert]),
             params[kSplit] == 1};
 }
 

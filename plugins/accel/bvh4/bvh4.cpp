@@ -128,6 +128,7 @@ constexpr rt_param kParams[] = {
     intersection_param(1),
     builder_param(),
     duplicates_param(),
+    reinsert_param(),
 };
 static_assert(std::size(kParams) == kOwnParams, "in the order of WideParam");
 

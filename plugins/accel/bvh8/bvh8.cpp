@@ -71,6 +71,7 @@ constexpr rt_param kParams[] = {
     intersection_param(kLeafCost),
     builder_param(),
     duplicates_param(),
+    reinsert_param(),
     rt::enum_param(
         "incoherent", "Incoherent rays",
         "how a CPU traces packets whose rays part: packets: together; single: each alone; auto: alone where the tree "

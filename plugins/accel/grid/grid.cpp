@@ -16,6 +16,7 @@
 
 #include "clarity_space/cells.hpp"
 #include "clarity_space/tree.hpp"
+#include "rt_cost.hpp"
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "grid_types.h"
@@ -78,10 +79,15 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     auto* const block = rt::alloc<uint8_t>(out, 3, blocks);
     put_leaves(host, *in, out, count);
     rt_u32 cell = 0, place = 0, first = 0;  // the group's first cell, and its first places in the list and in leaf order
+    rt::ExpectedCost expected;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         heads[g].first = cell;
         filled += sorts[g]->write(host, start + cell, list + place, place, first);
         fill_blocks(host, heads[g], start + cell, block + heads[g].first_block);
+        const double whole = rt::surface_of(heads[g].box);
+        rt::Surfaces sums;
+        add_cells(heads[g], start + cell, whole, sums);
+        expected.add_group(in->groups[g].count, whole, sums);
         cell += rt_u32(sorts[g]->lists() + 1), place += rt_u32(sorts[g]->references()), first += in->groups[g].count;
         sorts[g].reset();
         rt::root(out, g, g);
@@ -89,6 +95,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     rt::stat(out, "nodes", double(starts - 2 * in->group_count));
     rt::stat(out, "leaves", double(filled));
     rt::stat(out, "references", double(references));
+    expected.report(out);
     return RT_OK;
 }
 

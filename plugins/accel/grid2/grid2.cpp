@@ -11,6 +11,7 @@
 
 #include "clarity_space/cells.hpp"
 #include "clarity_space/tree.hpp"
+#include "rt_cost.hpp"
 #include "rt_plugin.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "grid2_types.h"
@@ -110,6 +111,15 @@ class Builder {
             numbers[cell] = starts[cell + 1] > starts[cell] ? rt_u32(number++) : RT_NONE;
     }
 
+    rt::Surfaces surfaces() const {
+        const double whole = rt::surface_of(coarse.box);
+        rt::Surfaces sums;
+        add_cells(coarse, std::vector<rt_u32>(numbers.size() + 1).data(), whole, sums);
+        for (const Grids& part : parts)
+            for (const grid2_grid& fine : part.grids) add_cells(fine, &part.cells[fine.first], whole, sums);
+        return sums;
+    }
+
  private:
     // The box of a fine grid holds what is in the cell of its primitives' boxes, so rays miss it where the cell is empty.
     grid2_grid fine_grid(const Prims& prims, size_t cell, const rt_u32* some, rt_u32 count, double density) const {
@@ -148,8 +158,10 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     auto* const list = rt::alloc<rt_u32>(out, 2, references);
     put_leaves(host, *in, out, count);
     rt_u32 at = 0, place = 0, name = 0, first = 0;  // in these three arrays, and in leaf order
+    rt::ExpectedCost expected;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         const Builder& group = groups[g];
+        expected.add_group(in->groups[g].count, rt::surface_of(group.coarse.box), group.surfaces());
         rt::root(out, g, at);
         grid[at] = group.coarse;
         grid[at++].first = place;
@@ -164,6 +176,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     rt::stat(out, "nodes", double(places));
     rt::stat(out, "leaves", double(filled));
     rt::stat(out, "references", double(references));
+    expected.report(out);
     return RT_OK;
 }
 

@@ -104,9 +104,10 @@ class Builder {
         tree.depth = std::max(tree.depth, depth);
         const Plane plane = depth < rules_.max_depth ? best_plane(items, box) : Plane();
         if (!(plane.cost < rules_.intersection * double(items.size()))) {
-            tree.make_leaf(place, items);
+            tree.make_leaf(place, items, rt::surface_of(box.lo, box.hi));
             return;
         }
+        tree.surfaces.add_node(rt::surface_of(box.lo, box.hi));
         const size_t child = tree.nodes.size();
         tree.nodes.resize(child + 2);
         tree.nodes[place].at.split = plane.at;

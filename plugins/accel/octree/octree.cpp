@@ -13,6 +13,7 @@
 
 #include "clarity_space/primitives.hpp"
 #include "clarity_space/tree.hpp"
+#include "rt_cost.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "octree_types.h"
 
@@ -50,6 +51,7 @@ struct Tree {
     std::vector<octree_node> nodes = std::vector<octree_node>(1);
     std::vector<rt_u32> list{};
     rt_u32 depth = 0, leaves = 0;
+    rt::Surfaces surfaces{};
 
     void build(rt_u32 count) {
         std::vector<rt_u32> all(count);
@@ -71,6 +73,16 @@ struct Tree {
         // The cells at the root's border reach as far as the box: nothing is outside of all cells.
         for (int k = 0; k < 3; ++k) root.lo[k] = inner.lo[k], root.hi[k] = float(inner.lo[k] + longest);
         part(0, std::move(all), root, 0);
+    }
+
+    // Of what is within the box: rays do not see the rest of the cube.
+    double surface(const Cell& cell) const {
+        Cell within = cell;
+        for (int k = 0; k < 3; ++k) {
+            within.lo[k] = std::clamp(cell.lo[k], head.box[k], head.box[k + 3]);
+            within.hi[k] = std::clamp(cell.hi[k], head.box[k], head.box[k + 3]);
+        }
+        return rt::surface_of(within.lo, within.hi);
     }
 
     void part(size_t place, std::vector<rt_u32> here, const Cell& cell, rt_u32 level) {
@@ -95,8 +107,10 @@ struct Tree {
             nodes[place].code = OCTREE_LEAF | rt_u32(here.size());
             list.insert(list.end(), here.begin(), here.end());
             leaves += !here.empty();
+            surfaces.add_leaf(surface(cell), double(here.size()));
             return;
         }
+        surfaces.add_node(surface(cell));
         std::vector<rt_u32>().swap(here);
         const size_t first = nodes.size();
         nodes.resize(first + 8);
@@ -149,6 +163,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     rt_u32* list = rt::alloc<rt_u32>(out, 2, references);
     clarity::space::put_leaves(host, *in, out, count);
     rt_u32 node = 0, name = 0, before = 0, depth = 0, leaves = 0;
+    rt::ExpectedCost expected;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         const Tree& tree = trees[g];
         heads[g] = tree.head;
@@ -161,6 +176,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
         for (const rt_u32 prim : tree.list) *list++ = before + prim;
         node += rt_u32(tree.nodes.size()), name += rt_u32(tree.list.size()), before += in->groups[g].count;
         depth = std::max(depth, tree.depth), leaves += tree.leaves;
+        expected.add_group(in->groups[g].count, rt::surface_of(tree.head.box), tree.surfaces);
         rt::root(out, g, g);
     }
     rt::define(out, "OCTREE_STACK", (7 * depth + 16) / 16 * 16);
@@ -168,6 +184,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     rt::stat(out, "leaves", leaves);
     rt::stat(out, "references", double(references));
     rt::stat(out, "depth", depth);
+    expected.report(out);
     return RT_OK;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "clarity_bvh/refit/refit.hpp"
+#include "rt_cost.hpp"
 #include "rt_plugin.hpp"
 #include "sphere_tree.hpp"
 #include "volumes.hpp"
@@ -299,18 +300,31 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     uint64_t leaf_count = 0, turned = 0;
     uint32_t depth = 0;
     Levels level_of(nodes);
-    for (uint32_t g = 0; g < input->group_count; ++g)
+    rt::ExpectedCost expected;
+    for (uint32_t g = 0, first = 0; g < input->group_count; first += input->groups[g++].count) {
+        Box box;
+        for (uint32_t i = first; i < first + input->groups[g].count; ++i) box.add(items[i].box);
+        const double whole = rt::surface_of(box.lo, box.hi);
+        rt::Surfaces sums;
         for (uint32_t head = plan.roots[g], i = head + 1; i < nodes[head].link; ++i) {
             const uint32_t level = level_of.next(i);
+            const double surface = std::min(volumes.surface(i), whole);
             turned += volumes.is_turned(i);
-            if (nodes[i].count == 0) continue;
+            sums.add_leaf(surface, nodes[i].count);
+            if (nodes[i].count == 0) {
+                sums.add_node(surface);
+                continue;
+            }
             ++leaf_count;
             depth = std::max(depth, level + 1);
         }
+        expected.add_group(input->groups[g].count, whole, sums);
+    }
     rt::define(out, "SPHERES_VOLUME", kind);
     rt::stat(out, "nodes", static_cast<double>(plan.size));
     rt::stat(out, "leaves", static_cast<double>(leaf_count));
     rt::stat(out, "depth", depth);
+    expected.report(out);
     rt::stat(out, "meshes", static_cast<double>(plan.jobs.size()));
     if (kind == SPHERES_ORIENTED) rt::stat(out, "turned boxes", static_cast<double>(turned));
     return RT_OK;

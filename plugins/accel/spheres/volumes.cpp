@@ -4,6 +4,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "rt_cost.hpp"
+
 namespace spheres {
 namespace {
 
@@ -183,6 +185,14 @@ float Volumes::size(rt_u32 at) const {
     if (kind_ == SPHERES_SPHERE) return v[3];
     if (kind_ == SPHERES_ORIENTED) return std::max({v[3], v[4], v[5]});
     return std::max({v[3] - v[0], v[4] - v[1], v[5] - v[2]});
+}
+
+double Volumes::surface(rt_u32 at) const {
+    const float* const v = nodes_[at].volume;
+    if (kind_ == SPHERES_SPHERE) return 4 * 3.14159265358979 * v[3] * v[3];
+    if (kind_ == SPHERES_BOX) return rt::surface_of(v);
+    const double half[3] = {v[3], v[4], v[5]};
+    return 8 * half_surface(half);
 }
 
 double half_surface(const double half[3]) {

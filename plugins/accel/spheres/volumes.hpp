@@ -40,6 +40,7 @@ class Volumes {
     bool is_everywhere(rt_u32 at) const { return nodes_[at].volume[3] >= kEverywhere; }
     // Whether the node's axes are not those of space.
     bool is_turned(rt_u32 at) const;
+    double surface(rt_u32 at) const;
     // A length of the order of the volume's size.
     float size(rt_u32 at) const;
 

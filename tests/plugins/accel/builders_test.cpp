@@ -72,6 +72,7 @@ TEST_P(Builders, KeepToTheirParameters) {
     }
     for (const int bins : {2, 3, 5, 16, 31, 32}) expect_sound(input, {{{"bins", bins}}, 2, {}});
     expect_sound(input, {{{"builder", 1}}, 2, {}});
+    expect_sound(input, {{{"reinsert", 4}}, 2, {}});
     expect_sound(input, {{{"traversal_cost", 2.5}, {"intersection_cost", 0.5}}, 2, {}});
     // The costs determine how large leaves become.
     const double leaf = GetParam().leaf_max;

@@ -196,8 +196,9 @@ TEST(HostMover, TreesOfAllParametersGiveTheBytesOfTheBuild) {
     const PluginRegistry& plugins = Workbench::get().plugins();
     for (const char* choice :
          {"bvh2,max_leaf=1", "bvh2,max_leaf=7,builder=morton", "bvh4,max_leaf=1", "bvh4,builder=morton", "bvh8,max_leaf=1",
-          "bvh8,builder=morton", "cwbvh,max_leaf=1", "cwbvh,builder=morton", "spheres,top_level=true",
-          "spheres,lone_spheres=true", "spheres,max_depth=0", "spheres,max_leaf=256", "spheres,max_leaf=1"}) {
+          "bvh8,builder=morton", "cwbvh,max_leaf=1", "cwbvh,builder=morton", "bvh2,reinsert=8", "bvh4,reinsert=8",
+          "bvh8,reinsert=8", "cwbvh,reinsert=8", "spheres,top_level=true", "spheres,lone_spheres=true", "spheres,max_depth=0",
+          "spheres,max_leaf=256", "spheres,max_leaf=1"}) {
         SCOPED_TRACE(choice);
         Settings settings;
         choose_accel(plugins, choice, settings);

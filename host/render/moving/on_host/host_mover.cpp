@@ -309,7 +309,7 @@ MovedStructure HostMover::refit_into_spare(Progress& progress) {
         then += static_cast<double>(primitives_of_group_[g]) * built_cost_[g];
     }
     for (auto& [label, value] : buffer.accel->stats)
-        if (label == "sah_cost" && then > 0) value = built_->stat(label) * now / then;
+        if (label.rfind("sah_", 0) == 0 && then > 0) value = built_->stat(label) * now / then;
     result.accel = buffer.accel;
     return result;
 }

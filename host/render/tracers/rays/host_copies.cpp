@@ -42,6 +42,7 @@ void copy_memory(void* to, const void* from, size_t bytes) {
 }  // namespace
 
 HostCopies::~HostCopies() {
+    if (device_->loss()->stuck()) never_release(std::make_shared<std::vector<unsigned char>>(std::move(small_)));
     try {
         if (sent_()) sent_.wait();
     } catch (const cl::Error&) {  // the device is lost: nothing reads this memory any more
@@ -53,9 +54,11 @@ void HostCopies::read(const cl::Buffer& from, size_t begin, size_t bytes,
     if (bytes == 0) return;
     const Queue& queue = device_->queue();
     read_ += bytes;
+    const auto ahead = std::exchange(ahead_, {});
     if (bytes <= kSmall) {
         small_.resize(kSmall);
-        queue.enqueueReadBuffer(from, CL_TRUE, begin, bytes, small_.data());
+        if (begin != 0 || from() != ahead.first || bytes > ahead.second)
+            queue.enqueueReadBuffer(from, CL_TRUE, begin, bytes, small_.data());
         take(small_.data(), 0, bytes);
         return;
     }
@@ -82,6 +85,16 @@ void HostCopies::read(const cl::Buffer& from, size_t begin, size_t bytes,
         wait_for(*device_, flight.done, kWaiting);
         take(flight.memory.get(), flight.before, flight.bytes);
     }
+}
+
+cl::Event HostCopies::read_ahead(const cl::Buffer& from, size_t bytes) {
+    cl::Event done;
+    ahead_ = {};
+    if (bytes > kSmall) return done;
+    small_.resize(kSmall);
+    device_->queue().enqueueReadBuffer(from, CL_FALSE, 0, bytes, small_.data(), nullptr, &done);
+    ahead_ = {from(), bytes};
+    return done;
 }
 
 void HostCopies::write(const cl::Buffer& to, size_t bytes, const std::function<void(void*, size_t, size_t)>& make) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "device/device.hpp"
@@ -20,6 +21,8 @@ class HostCopies {
     // take: gets the pieces of `bytes` bytes from `begin` on in their order, and how many bytes were before.
     void read(const cl::Buffer& from, size_t begin, size_t bytes,
               const std::function<void(const void* piece, size_t before, size_t bytes)>& take);
+    // Enqueues the read of the first bytes, for one call of read() after the event. Null: they are too many for that.
+    cl::Event read_ahead(const cl::Buffer& from, size_t bytes);
     // make: fills them in.
     void write(const cl::Buffer& to, size_t bytes, const std::function<void(void* piece, size_t before, size_t bytes)>& make);
     // What these calls have copied.
@@ -31,7 +34,8 @@ class HostCopies {
     const std::shared_ptr<Device> device_;
     PinnedMemoryPool pinned_;
     std::vector<unsigned char> small_, small_sent_;
-    cl::Event sent_;  // until then the device may read small_sent_
+    std::pair<cl_mem, size_t> ahead_{};  // from where, and how many bytes, in small_
+    cl::Event sent_;                     // until then the device may read small_sent_
     uint64_t read_ = 0, written_ = 0;
 };
 

@@ -56,8 +56,9 @@ LaunchTimes RayQueries::trace_at_once(const Launch& launch) {
     KernelArguments& kernel = kernel_of(launch);
     kernel.set(each ? "count" : "blocks", cl_uint(launch.blocks));
     const unsigned in_group = each ? layout.local_size() * each : layout.group_packets() * layout.blocks();
-    return launch.launcher.run(*device_, device_->queue(), kernel, (launch.blocks + in_group - 1) / in_group,
-                               layout.local_size(), [&] { launch.go_on(); });
+    return launch.launcher.run(
+        *device_, device_->queue(), kernel, (launch.blocks + in_group - 1) / in_group, layout.local_size(),
+        [&] { launch.go_on(); }, 0, launch.side_work);
 }
 
 LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
@@ -82,7 +83,8 @@ LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
         return piece;
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launch.launcher.run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
+    return launch.launcher.run(
+        *device_, queue, groups, groups, enqueue, [&] { launch.go_on(); }, launch.side_work);
 }
 
 LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
@@ -103,7 +105,8 @@ LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launch.launcher.run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); });
+    return launch.launcher.run(
+        *device_, queue, groups, groups, enqueue, [&] { launch.go_on(); }, launch.side_work);
 }
 
 }  // namespace clarity

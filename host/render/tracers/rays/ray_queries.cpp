@@ -114,8 +114,10 @@ double RayQueries::trace(const Prepared& prepared, const Given& rays, const RayQ
     const cl::Buffer in = rays.upload();
     const bool debug = prepared.settings.debug;
     if (debug) overflows_.clear(queue);
-    const LaunchTimes times = trace(
-        {prepared, program, static_cast<unsigned>(blocks), query.any_hit, in, answers, query.progress, choice.launchers[&row]});
+    SideWork side_work;
+    if (rays.answers_are_read) side_work.behind = [&] { return copies_->read_ahead(answers.buffer, answers.bytes()); };
+    const LaunchTimes times = trace({prepared, program, static_cast<unsigned>(blocks), query.any_hit, in, answers,
+                                     query.progress, choice.launchers[&row], std::move(side_work)});
     tuning_.processor_ms = times.processor_ms;
     overflowed_ = debug ? overflows_.read(queue) : 0;
     if (!query.quiet) report_overflows(overflowed_, prepared.accel->plugin->id);
@@ -137,7 +139,8 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
             return in;
         };
         Answers answers;
-        const double ms = trace(prepared, {rays.ray_count(), 0, rays.lanes(), rays.packing(), 0, upload}, query, answers);
+        const double ms =
+            trace(prepared, {rays.ray_count(), 0, rays.lanes(), rays.packing(), 0, false, upload}, query, answers);
         if (!hits || hits->empty()) return ms;
         const Queue& queue = device_->queue();
         void* const mapped = queue.enqueueMapBuffer(answers.buffer, CL_TRUE, CL_MAP_READ, 0, answers.bytes());
@@ -163,7 +166,7 @@ double RayQueries::trace(const Prepared& prepared, const RayArrays& rays, RayQue
             write_rays(in, rays.count, lanes, rays.read);
             return in;
         };
-        return trace(prepared, {rays.count, rays.room, lanes, rays.packing, rays.prepared, upload}, query, answers);
+        return trace(prepared, {rays.count, rays.room, lanes, rays.packing, rays.prepared, !rays.all, upload}, query, answers);
     });
 }
 

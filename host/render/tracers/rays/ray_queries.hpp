@@ -69,6 +69,7 @@ class RayQueries {
         size_t count, room;
         unsigned lanes;
         uint64_t packing, prepared;
+        bool answers_are_read;  // soon: few of them at once
         std::function<cl::Buffer()> upload;
     };
     // answers: gets those of this query. If it has a buffer already, they are written there.
@@ -95,6 +96,7 @@ class RayQueries {
         const Answers& answers;
         const Progress* progress;
         Launcher& launcher;
+        SideWork side_work;
         void go_on() const {
             if (progress && progress->cancelled()) throw Cancelled();
         }

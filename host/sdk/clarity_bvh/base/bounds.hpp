@@ -34,4 +34,20 @@ inline float unit_scale(const Bounds& box) {
     return longest > 2.0 / FLT_MAX ? static_cast<float>(2 / longest) : FLT_MAX;
 }
 
+// Added to each side length, so that lines and points cost more than nothing. Too small to matter for anything that has an
+// area.
+constexpr float kLeastSide = 1e-12f;
+
+// Half the surface of a box, by unit_scale(). Halves the coordinates before it subtracts them, so that no length overflows.
+inline float half_area(Vec4 lo, Vec4 hi, float scale) {
+    const Vec4 half = splat(0.5f);
+    alignas(16) float e[4];
+    store(e, splat(kLeastSide) + splat(scale) * (half * xyz(hi) - half * xyz(lo)));
+    return e[0] * e[1] + e[2] * (e[0] + e[1]);
+}
+// Reads seven numbers.
+inline float half_area(const float box[6], float scale) {
+    return half_area(load_any(box), load_any(box + 3), scale);
+}
+
 }  // namespace clarity::bvh

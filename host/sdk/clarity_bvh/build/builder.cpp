@@ -1,12 +1,16 @@
 #include "clarity_bvh/build/builder.hpp"
 
 #include <cstdio>
+#include <memory>
 #include <numeric>
 
+#include "clarity_bvh/build/reinsert.hpp"
 #include "rt_plugin.hpp"
 
 namespace clarity::bvh {
 namespace {
+
+constexpr float kBuiltShare = 0.1f;  // of the time of a build with reinsertion
 
 // At most 16384 records (0.5 MiB) per task, so that they fit into a core's own cache. Small scenes get smaller tasks, so that
 // none of many cores runs out of work before the end: they are no fewer for fewer cores, as the tree must be the same
@@ -303,9 +307,29 @@ void fail_for_memory(const rt_host* host, uint64_t primitive_count, uint64_t byt
     throw rt::fail(host, why);
 }
 
-Topology build_topology(const rt_host* host, const rt_build_input& input, const Rules& rules, const RefMemory& refs) {
-    TopologyBuilder builder(host, input, rules, count_primitives(host, input), 1.0f);
-    return builder.run(refs, [](const Part&) {});
+uint64_t build_bytes(const Rules& rules, uint64_t primitive_count) {
+    const uint64_t built = TopologyBuilder::bytes(rules, primitive_count);
+    return rules.reinsert == 0 ? built : std::max(built, reinsert_bytes(primitive_count));
+}
+
+Topology build_topology(const rt_host* host, const rt_build_input& input, const Rules& rules, const RefMemory& refs,
+                        float share) {
+    const uint64_t count = count_primitives(host, input);
+    return with_memory_for(host, count, build_bytes(rules, count), [&] {
+        if (rules.reinsert == 0) return TopologyBuilder(host, input, rules, count, share).run(refs, [](const Part&) {});
+        // Leaves of one primitive each: every primitive may find its place, and reinsert() joins them.
+        Rules single = rules;
+        single.max_leaf = 1;
+        std::unique_ptr<Scratch<uint32_t>> single_refs;
+        Topology tree = TopologyBuilder(host, input, single, count, kBuiltShare * share)
+                            .run(
+                                [&](uint64_t ref_count) {
+                                    single_refs = std::make_unique<Scratch<uint32_t>>(ref_count);
+                                    return single_refs->data();
+                                },
+                                [](const Part&) {});
+        return reinsert(host, std::move(tree), rules, single_refs->data(), refs, kBuiltShare * share, share);
+    });
 }
 
 }  // namespace clarity::bvh

@@ -19,8 +19,12 @@
 namespace clarity::bvh {
 
 // Builds the trees of all groups by the rules. Throws rt::Stopped, with the host told why, if there are more than
-// kMaxPrimitives; rt::Cancelled if the user cancels; std::bad_alloc if memory is short. `input` is read during the call only.
-Topology build_topology(const rt_host* host, const rt_build_input& input, const Rules& rules, const RefMemory& refs);
+// kMaxPrimitives or if memory is short; rt::Cancelled if the user cancels. `input` is read during the call only. Reports
+// progress from 0 to `share`.
+Topology build_topology(const rt_host* host, const rt_build_input& input, const Rules& rules, const RefMemory& refs,
+                        float share = 1.0f);
+// Returns an upper bound of the memory of build_topology(), in bytes, nodes of the topology included.
+uint64_t build_bytes(const Rules& rules, uint64_t primitive_count);
 
 // Returns the number of primitives of all groups. Throws rt::Stopped, with the host told why, if they are more than
 // kMaxPrimitives.

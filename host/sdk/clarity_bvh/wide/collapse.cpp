@@ -6,25 +6,10 @@
 namespace clarity::bvh {
 namespace {
 
-// Added to each side length, so that lines and points cost more than nothing. Too small to matter for anything that has an
-// area.
-constexpr float kLeast = 1e-12f;
-
-// Halves the coordinates before it subtracts them, so that no length overflows.
-float half_area(Vec4 lo, Vec4 hi, float scale) {
-    const Vec4 half = splat(0.5f);
-    alignas(16) float e[4];
-    store(e, splat(kLeast) + splat(scale) * (half * xyz(hi) - half * xyz(lo)));
-    return e[0] * e[1] + e[2] * (e[0] + e[1]);
-}
 // Half area of the box around both children.
 float half_area(const Node& node, float scale) {
     return half_area(min(load_any(node.box1), load_any(node.box0)), max(load_any(node.box1 + 3), load_any(node.box0 + 3)),
                      scale);
-}
-// Reads seven numbers.
-float half_area(const float box[6], float scale) {
-    return half_area(load_any(box), load_any(box + 3), scale);
 }
 
 }  // namespace

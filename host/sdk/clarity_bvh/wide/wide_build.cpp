@@ -47,6 +47,12 @@ WideBuild build_wide(const rt_host* host, const rt_build_input& input, const Rul
     // in about the leaves that the wide tree will have, and fewer nodes are built only to be merged.
     Rules binary_rules = rules;
     binary_rules.traversal_cost = costs.node / (Width - 1);
+    if (rules.reinsert > 0) {
+        Topology binary = build_topology(host, input, binary_rules, refs, kBinaryShare);
+        result = pack_wide(host, binary, input.groups, input.group_count, costs, layout, out);
+        result.build_bytes = build_bytes(binary_rules, count);
+        return result;
+    }
     const bool sorted = rules.method == Method::morton;
     result.build_bytes = sorted ? WideMorton<Width>::bytes(count) : TopologyBuilder::bytes(binary_rules, count);
     return with_memory_for(host, count, result.build_bytes, [&] {
@@ -77,6 +83,7 @@ void report(const rt_build_output* out, const WideBuild& build, uint64_t node_by
     rt::stat(out, "references", static_cast<double>(build.references));
     rt::stat(out, "children", static_cast<double>(build.statistics.children) / nodes);
     rt::stat(out, "sah_cost", build.statistics.sah_cost);
+    build.statistics.expected.report(out);
     rt::stat(out, "node_bytes", bytes);
     rt::stat(out, "bytes_per_primitive",
              build.primitives > 0 ? (bytes + static_cast<double>(build.references * sizeof(rt_packed_prim))) /

@@ -5,23 +5,15 @@
 #include "rt_plugin.hpp"
 
 namespace clarity::bvh {
-namespace {
-
-double area(const float box[6]) {
-    const double x = double{box[3]} - box[0], y = double{box[4]} - box[1], z = double{box[5]} - box[2];
-    return 2 * (x * y + y * z + z * x);
-}
-
-}  // namespace
 
 void WideSums::add(const Slot* slots, uint32_t count) {
     children += count;
     for (uint32_t i = 0; i < count; ++i) {
         if (slots[i].leaf == kEmpty) {
-            node_area += area(slots[i].box);
+            surfaces.add_node(rt::surface_of(slots[i].box));
         } else {
             ++leaves;
-            primitive_area += area(slots[i].box) * leaf_count(slots[i].leaf);
+            surfaces.add_leaf(rt::surface_of(slots[i].box), leaf_count(slots[i].leaf));
         }
     }
 }
@@ -29,8 +21,7 @@ void WideSums::add(const Slot* slots, uint32_t count) {
 void WideSums::add(const WideSums& other) {
     leaves += other.leaves;
     children += other.children;
-    node_area += other.node_area;
-    primitive_area += other.primitive_area;
+    surfaces.add(other.surfaces);
 }
 
 void WideExtent::add(const WideExtent& child, uint32_t siblings) {
@@ -173,22 +164,17 @@ WideStatistics WideTree<Width>::statistics(const rt_group* groups) const {
     }
     for (const Job& job : jobs_) of_group[job.group].add(job.sums);
     WideStatistics result;
-    double cost = 0, primitives = 0;
     for (size_t g = 0; g < of_group.size(); ++g) {
         result.leaves += of_group[g].leaves;
         result.children += of_group[g].children;
         if (groups_[g].code == RT_NONE) continue;
         const Bounds& box = groups_[g].box;
-        const float whole_box[6] = {box.lo[0], box.lo[1], box.lo[2], box.hi(0), box.hi(1), box.hi(2)};
-        const double whole = area(whole_box);
-        if (!(whole > 0)) continue;  // no ray hits a point or a line
-        cost +=
-            groups[g].count *
-            (double{costs_.node} * (whole + of_group[g].node_area) + double{costs_.primitive} * of_group[g].primitive_area) /
-            whole;
-        primitives += groups[g].count;
+        const float lo[3] = {box.lo[0], box.lo[1], box.lo[2]}, hi[3] = {box.hi(0), box.hi(1), box.hi(2)};
+        const double whole = rt::surface_of(lo, hi);
+        of_group[g].surfaces.add_node(whole);  // the root
+        result.expected.add_group(groups[g].count, whole, of_group[g].surfaces);
     }
-    result.sah_cost = primitives > 0 ? cost / primitives : 0;
+    result.sah_cost = result.expected.weighted(costs_.node, costs_.primitive);
     return result;
 }
 

@@ -11,14 +11,14 @@ namespace clarity::bvh {
 // Statistics of a finished tree, collected while its nodes are written.
 struct WideStatistics {
     uint64_t leaves = 0, children = 0;
-    // As Quality::sah_cost, for nodes of any number of children.
-    double sah_cost = 0;
+    rt::ExpectedCost expected;
+    double sah_cost = 0;  // as Quality::sah_cost, for nodes of any number of children
 };
 
 // Sums over the children of some nodes.
 struct WideSums {
     uint64_t leaves = 0, children = 0;
-    double node_area = 0, primitive_area = 0;
+    rt::Surfaces surfaces{};
     void add(const Slot* slots, uint32_t count);
     void add(const WideSums& other);
 };

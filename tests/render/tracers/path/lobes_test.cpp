@@ -233,10 +233,13 @@ TEST(PathLobes, ValuesAreThoseOfTheReference) {
         {material(RT_MODEL_DIELECTRIC, 1, 1 / 2.4f, RT_MATERIAL_SINGLE_SCATTER), glass(1, 1 / 2.4f, false)},
         {material(RT_MODEL_WHITTED, 0, 1.5f), mixture(0.3f, 0.2f, 1.5f)},
     };
+    // The reference integrates for seconds.
+    size_t number = 0;
+    const auto is_left_out = [&number] { return few_ways() && number++ % 2 == 1; };
     for (const auto& surface : surfaces)
-        expect_reference(colored(surface.lobe, 0.9f, 0.5f, 0.2f), surface.material, {3e-3, 0.02});
+        if (!is_left_out()) expect_reference(colored(surface.lobe, 0.9f, 0.5f, 0.2f), surface.material, {3e-3, 0.02});
     for (Lobe lobe : layers_with_density()) {
-        if (lobe.coat_tilt != 0) continue;
+        if (lobe.coat_tilt != 0 || is_left_out()) continue;
         MaterialValues material(default_material());
         material.model = RT_MODEL_GLTF;
         material.roughness = std::sqrt(lobe.alpha);
