@@ -48,7 +48,7 @@ bool RT_CAT(RT_TRAVERSE, _packet)(const rt_ctx *ctx, uint root, const rt_rays *r
     const global uint *start = RT_NODE(ray, starts + grid->cells[0] * grid->cells[1] * grid->cells[2]);
     RT_COUNT_STEP(hit);
     for (uint i = start[0]; i < start[1]; ++i) RT_PACKET_LEAF(ctx, ctx->grid_list[i], ray, hit);
-    while (rt_next_slice(&s, hit))
+    while (rt_next_slice(&s, ctx->grid_blocks + grid->first_block, hit))
         for (int v = s.first_v; v <= s.last_v; ++v)
             for (int u = s.first_u; u <= s.last_u; ++u) {
                 start = RT_NODE(ray, starts + rt_slice_cell(&s, u, v));

@@ -4,12 +4,13 @@
 #define RT_TRAVERSES_PACKETS /* see "Single rays" in CONTRACT.md */
 /* 64 B. The primitives of cell (x, y, z) are grid_list[s[cell]] to grid_list[s[cell + 1] - 1], where s = grid_starts + first and
  * cell = (z * cells[1] + y) * cells[0] + x. The list has positions in leaf order. Behind the last cell there is one more, of
- * primitives that are too large for a grid. */
+ * primitives that are too large for a grid. A block is 4 x 4 x 4 cells, those at the upper sides less; grid_blocks + first_block tells
+ * of each, in the same order, whether a cell in it has a primitive. */
 typedef struct grid_head {
     rt_f32 box[6];   /* lo.xyz, hi.xyz */
     rt_f32 size[3];  /* of a cell */
     rt_u32 cells[3]; /* along x, y, z */
-    rt_u32 first;
-    rt_u32 pad[3];
+    rt_u32 first, first_block;
+    rt_u32 pad[2];
 } grid_head;
 #endif
