@@ -265,7 +265,8 @@ void PreviewThread::run() {
         }
         preview->done = !preview->failure.empty() || preview->samples >= kSamples;
         const Ball ball(job);
-        job.ready.reset();  // here, and not under the lock
+        const bool lost_device = job.ready->main.loan->withdrawn();  // then another job follows
+        job.ready.reset();                                           // here, and not under the lock
         bool is_news = false;
         {
             const std::lock_guard<std::mutex> lock(mutex_);
@@ -274,7 +275,7 @@ void PreviewThread::run() {
             const bool is_current = same_values(job_->values, job.values) && job_->size == job.size;
             if (is_current) begun_ = preview;
             is_news = preview->done || is_power_of_two(preview->samples);
-            if (is_news) latest_ = is_current ? preview : not_done(*preview);
+            if (is_news) latest_ = is_current && !lost_device ? preview : not_done(*preview);
         }
         if (is_news) wake_();
     }
