@@ -124,8 +124,11 @@ TEST_F(FailingDevice, OthersTakeOverBeforeItsDisplayPixelsAreReadBack) {
         EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
     }
     lose(team, 1);
-    team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
-    EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+    // Pictures as short as these are also traced by one device, by trial; then the other one is not asked.
+    for (int picture = 0; picture < 8 && warnings.text().empty(); ++picture) {
+        team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+        EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+    }
     expect_whole(team, warnings);
 }
 
