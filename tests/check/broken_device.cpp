@@ -1,4 +1,4 @@
-// broken_device.cpp -- a builder whose trees the device builds, too, with one defect: own_defect.hpp.
+// broken_device.cpp -- a builder with one defect (own_defect.hpp). The device builds the same trees.
 // `clarity check` must find each, and none in the plugin with the defect `none`.
 #include <algorithm>
 #include <vector>

@@ -67,14 +67,21 @@ void cell_box(const Head& head, size_t cell, float lo[3], float hi[3]) {
     }
 }
 
-// Adds the cells of a grid, and their primitives: those of cell c are starts[c] to starts[c + 1] - 1 of a list. The last list
-// is of primitives that are huge: every ray tests them. whole: the surface of the box around all primitives.
+// Adds the cells of a grid, without primitives. whole: the surface of the box around all primitives. Returns that of a cell.
 template <class Head>
-void add_cells(const Head& head, const rt_u32* starts, double whole, rt::Surfaces& sums) {
+double add_cells(const Head& head, double whole, rt::Surfaces& sums) {
     const float origin[3] = {0, 0, 0};
     const double cell = std::min(rt::surface_of(origin, head.size), whole);
+    sums.add_node(cell * double(cell_count(head)));
+    return cell;
+}
+
+// The same with their primitives: those of cell c are starts[c] to starts[c + 1] - 1 of a list. The last list is of primitives
+// that are huge: every ray tests them.
+template <class Head>
+void add_cells(const Head& head, const rt_u32* starts, double whole, rt::Surfaces& sums) {
+    const double cell = add_cells(head, whole, sums);
     const size_t cells = cell_count(head);
-    sums.add_node(cell * double(cells));
     sums.add_leaf(cell, double(starts[cells]) - starts[0]);
     sums.add_leaf(whole, double(starts[cells + 1]) - starts[cells]);
 }

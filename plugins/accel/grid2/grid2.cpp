@@ -114,7 +114,7 @@ class Builder {
     rt::Surfaces surfaces() const {
         const double whole = rt::surface_of(coarse.box);
         rt::Surfaces sums;
-        add_cells(coarse, std::vector<rt_u32>(numbers.size() + 1).data(), whole, sums);
+        add_cells(coarse, whole, sums);
         for (const Grids& part : parts)
             for (const grid2_grid& fine : part.grids) add_cells(fine, &part.cells[fine.first], whole, sums);
         return sums;

@@ -101,7 +101,7 @@ struct Trial {
             if (at == top) return true;
         return false;
     }
-    // Of all moves of a subtree whose parent is not the root, to all places but the root's.
+    // Tries every move of every subtree. The root and its children stay.
     double best_gain() const {
         const double before = surface();
         double best = 0;
@@ -178,7 +178,7 @@ TEST(Reinsert, LeavesNoMoveThatPays) {
 }
 
 TEST(Reinsert, KeepsWaysShortEnoughForStacks) {
-    // Nested boxes, whose best tree is a chain.
+    // Boxes inside each other. Their best tree is a chain.
     const Input nested = one_group(make(3000, [](uint32_t i) { return cube(0, 0, 0, 1 + static_cast<float>(i), i); }));
     const Input shrinking = one_group(make(30 * 240, [](uint32_t i) {
         const float size = std::ldexp(1.0f, 120 - static_cast<int>(i / 30));

@@ -188,7 +188,7 @@ class Tree {
     std::vector<uint32_t> above_from_, above_to_;  // of gain_of()
 };
 
-// The places whose subtrees are largest, largest first; all of them, in any fixed order, if `count` is their number.
+// Returns the `count` places with the largest subtrees, the largest first. If that is all places, they keep their order.
 std::vector<Place> largest(const Tree& tree, const std::vector<Place>& places, size_t count) {
     if (count == places.size()) return places;
     std::vector<std::pair<float, Place>> keys;

@@ -10,11 +10,11 @@
 
 namespace clarity::bvh {
 
-// Returns a tree of the same leaves whose inner nodes have less surface in sum. `refs_in` are the refs of `tree` in leaf order.
-// The first pass looks at the largest 64th of all subtrees, which brings the most, and each of the next at four times as many.
-// The passes end after rules.reinsert, or once one over all subtrees gains almost nothing. Then leaves are joined where the
-// rules find that cheaper, up to rules.max_leaf. No way to a leaf becomes longer than the longest was by more than a few nodes,
-// or than kMaxDepth. Reports progress from `begin` to `end`. Throws rt::Cancelled, or std::bad_alloc.
+// Moves subtrees so that the sum of the inner nodes' surfaces shrinks, and returns that tree. `refs_in`: the refs of `tree`, in
+// leaf order. The first pass looks at the largest 64th of all subtrees, which brings the most, and each of the next at four
+// times as many. The passes end after rules.reinsert, or once one over all subtrees gains almost nothing. Then leaves are
+// joined where the rules find that cheaper, up to rules.max_leaf. No way to a leaf becomes longer than the longest was by more
+// than a few nodes, or than kMaxDepth. Reports progress from `begin` to `end`. Throws rt::Cancelled, or std::bad_alloc.
 Topology reinsert(const rt_host* host, Topology tree, const Rules& rules, const uint32_t* refs_in, const RefMemory& refs,
                   float begin, float end);
 
