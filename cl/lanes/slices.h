@@ -4,14 +4,17 @@
  * one axis, or are at most twice as fast along another. Along the two others they are between a least and a greatest coordinate,
  * in each slice of cells across that axis. So a packet needs two lines for each of these two axes, and no decision about a ray.
  * The least of lines is concave, so the line through the least coordinates at both ends is nowhere above it; likewise for the
- * greatest. Four slices are looked at together first: which blocks of 4 x 4 x 4 cells the rays may be in (macrocells in the
- * paper), and whether any of these has a primitive.
+ * greatest. Both are computed for RT_LANES slices at once. Four slices are looked at together first: which blocks of 4 x 4 x 4
+ * cells the rays may be in (macrocells in the paper), and which cells of these have primitives.
  *
  *     rt_slices s;
  *     if (!rt_begin_slices(&s, box, size, counts, ray, hit)) return false;
  *     while (rt_next_slice(&s, filled, hit))
  *         for (int v = s.first_v; v <= s.last_v; ++v)
- *             for (int u = s.first_u; u <= s.last_u; ++u) ... the cell rt_slice_cell(&s, u, v)
+ *             for (int u = s.first_u; u <= s.last_u; ++u)
+ *                 if (rt_slice_has(&s, filled, u, v)) ... the cell rt_slice_cell(&s, u, v), and rt_slice_meets() for its boxes
+ *
+ * A traversal includes cells.h and cell_parts.h before it.
  *
  * Planes are computed as box + i * size, so see "Slack" in CONTRACT.md for the builder's part. */
 #ifndef RT_SLICES_H
@@ -22,18 +25,28 @@
  * packet less than a ray: the ray's next one is known only when this one is done. */
 #define RT_SLICE_CELLS 1.5f
 
+#define RT_LANES_LOG (RT_LANES == 16 ? 4 : RT_LANES == 8 ? 3 : 2)
+
 /* One of the two axes across the slices: the line below all rays, and the line above. In cells from the grid's low side: at the
  * place where the first ray enters, and by how much it rises up to the place where the last ray leaves. */
 typedef struct rt_slice_axis {
     float low, low_gain, high, high_gain;
     int count;
+    /* For boxes in cells: the bits of their first and last parts along this axis, and of those along the slices' axis at which the lines are
+     * lowest and highest; and the lines, in units of these bits. */
+    int first_bits, last_bits, low_bits, high_bits;
+    float low_scale, low_more, low_rise, high_scale, high_more, high_rise;
 } rt_slice_axis;
 
 typedef struct rt_slices {
     int slice, first_u, last_u, first_v, last_v; /* the current slice, and the cells that rays may be in */
     uint cell, cell_u, cell_v;                   /* from the number of one cell to that of the next, along each axis */
     uint block, block_u, block_v;                /* likewise of blocks */
+    uint bit, bit_u, bit_v;                      /* likewise of the bits of a block's cells, as shifts */
+    int last;                                    /* the slice in which the last ray ends */
+    int firsts_u[RT_LANES], lasts_u[RT_LANES], firsts_v[RT_LANES], lasts_v[RT_LANES]; /* see rt_look_ahead() */
     int seen;                                    /* a slice of the last block that was looked at */
+    ulong filled, plane;                         /* the cells with primitives of the blocks there, all in one; those of its first slice */
     int step, count;                             /* 1 or -1, or 0 if no ray enters the grid; the number of slices */
     rt_slice_axis u, v;
     float low, size, slack;
@@ -64,6 +77,20 @@ RT_INLINE rt_slice_axis rt_begin_slice_axis(const rt_slices *s, float low, float
     return axis;
 }
 
+/* What rt_slice_meets() compares with. place: of the bits of this axis; at: of those of the slices' axis (cell_parts.h). a_part: the share of
+ * the way in a part. */
+RT_INLINE void rt_begin_slice_parts(rt_slice_axis *axis, int place, int at, float a_part)
+{
+    const float low = RT_PARTS * axis->low_gain * a_part, high = RT_PARTS * axis->high_gain * a_part;
+    const int low_at = low > 0.0f ? at : at + RT_PART_BITS, high_at = high > 0.0f ? at + RT_PART_BITS : at;
+    const int first = place, last = place + RT_PART_BITS;
+    axis->first_bits = RT_PART_AT(first), axis->last_bits = RT_PART_AT(last);
+    axis->low_bits = RT_PART_AT(low_at), axis->high_bits = RT_PART_AT(high_at);
+    axis->low_rise = low * rt_power_of_2(last - low_at), axis->high_rise = high * rt_power_of_2(first - high_at);
+    axis->low_more = (rt_min(low, 0.0f) - 1.0f) * rt_power_of_2(last), axis->high_more = rt_max(high, 0.0f) * rt_power_of_2(first);
+    axis->low_scale = RT_PARTS * rt_power_of_2(last), axis->high_scale = RT_PARTS * rt_power_of_2(first);
+}
+
 /* How many cells of a slice all rays together pass along this axis, about; and one ray. */
 RT_INLINE float rt_slice_width(const rt_slice_axis *axis)
 {
@@ -72,6 +99,12 @@ RT_INLINE float rt_slice_width(const rt_slice_axis *axis)
 RT_INLINE float rt_slice_slope(const rt_slice_axis *axis, float slices)
 {
     return fabs(0.5f * (axis->high_gain + axis->low_gain)) / slices;
+}
+
+/* The slice at a place along the slices' axis, times sign; one of the grid's. */
+RT_INLINE int rt_slice_of(const rt_slices *s, float place)
+{
+    return (int)clamp((s->sign * place - s->low) / s->size, 0.0f, (float)s->count - 1.0f);
 }
 
 /* Returns false if it is better to trace these rays one by one: they go along different axes, or they are too far apart.
@@ -124,53 +157,69 @@ RT_INLINE bool rt_begin_slices(rt_slices *s, const global float *box, const glob
     const uint cell[3] = {1u, counts[0], counts[0] * counts[1]}, block[3] = {1u, blocks_x, blocks_x * blocks_y};
     s->cell = cell[kz], s->cell_u = cell[kx], s->cell_v = cell[ky];
     s->block = block[kz], s->block_u = block[kx], s->block_v = block[ky];
+    s->bit = 2u * kz, s->bit_u = 2u * kx, s->bit_v = 2u * ky;
+    s->plane = kz == 0u ? 0x1111111111111111ul : kz == 1u ? 0x000F000F000F000Ful : 0xFFFFul;
+    s->filled = 0u;
+    const float a_part = s->sign * s->size * s->a_span * (1.0f / RT_PARTS);
+    rt_begin_slice_parts(&s->u, RT_PARTS_OF(kx), RT_PARTS_OF(kz), a_part);
+    rt_begin_slice_parts(&s->v, RT_PARTS_OF(ky), RT_PARTS_OF(kz), a_part);
     s->step = backwards ? -1 : 1;
     s->count = (int)counts[kz];
-    s->slice = (int)clamp((s->sign * s->begin - low) / s->size, 0.0f, (float)s->count - 1.0f) - s->step;
+    s->slice = rt_slice_of(s, s->begin) - s->step;
+    s->last = rt_slice_of(s, s->end);
     s->seen = ~(s->slice + s->step);
     return true;
 }
 
-/* Where the rays may be along one axis, in a slice between two shares of the way. Returns false if that is outside of the grid. */
-RT_INLINE bool rt_slice_cells(const rt_slice_axis *axis, float from, float to, int *first, int *last)
+/* Of RT_LANES slices: the first and the last cell along one axis that rays may be in. from, to: the shares of the way where a slice begins
+ * and ends. If all rays pass beside the grid, the last cell is less than the first. */
+RT_INLINE void rt_look_along(const rt_slice_axis *axis, vfloat from, vfloat to, int *first, int *last)
 {
-    const float low = axis->low + rt_min(axis->low_gain * from, axis->low_gain * to);
-    const float high = axis->high + rt_max(axis->high_gain * from, axis->high_gain * to);
-    const float most = (float)axis->count;
-    if (!(high >= 0.0f && low < most)) return false;
-    *first = (int)rt_max(low, 0.0f);
-    *last = (int)rt_min(high, most - 1.0f);
-    return true;
+    const vfloat low_a = rt_vfloat(axis->low_gain) * from, low_b = rt_vfloat(axis->low_gain) * to;
+    const vfloat high_a = rt_vfloat(axis->high_gain) * from, high_b = rt_vfloat(axis->high_gain) * to;
+    const vfloat low = rt_vfloat(axis->low) + rt_min(low_a, low_b), high = rt_vfloat(axis->high) + rt_max(high_a, high_b);
+    const vfloat most = rt_vfloat((float)axis->count);
+    rt_store(rt_to_int(rt_min(rt_max(low, rt_vfloat(0.0f)), most)), first);
+    rt_store(rt_to_int(rt_min(rt_max(high, rt_vfloat(-1.0f)), most - rt_vfloat(1.0f))), last);
 }
 
-/* Where rays enter a slice, or leave it, times sign. */
-RT_INLINE float rt_slice_side(const rt_slices *s, int slice, int leave)
+/* Finds the cells that rays may be in, of all slices around the current one whose numbers differ from its number in the lowest bits only. */
+RT_INLINE void rt_look_ahead(rt_slices *s)
 {
-    return s->sign * fma((float)(slice + (s->step > 0 ? leave : 1 - leave)), s->size, s->low);
+    const vfloat slice = rt_to_float(rt_vint(s->slice & ~(RT_LANES - 1)) + rt_lane_index());
+    const vfloat a = fma(slice, rt_vfloat(s->size), rt_vfloat(s->low)), b = fma(slice + rt_vfloat(1.0f), rt_vfloat(s->size), rt_vfloat(s->low));
+    const vfloat sign = rt_vfloat(s->sign), begin = rt_vfloat(s->begin), a_span = rt_vfloat(s->a_span);
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const vfloat from = rt_min(rt_max((a * sign - begin) * a_span, zero), one), to = rt_min(rt_max((b * sign - begin) * a_span, zero), one);
+    rt_look_along(&s->u, from, to, s->firsts_u, s->lasts_u);
+    rt_look_along(&s->v, from, to, s->firsts_v, s->lasts_v);
 }
 
-/* Finds the cells that rays may be in from one slice to another, in the order of visits. Returns false if all are outside of the grid. */
-RT_INLINE bool rt_find_slice_cells(rt_slices *s, int first, int last)
+/* The number of the block of a cell of the current slice, and the bit of the cell in it. */
+RT_INLINE uint rt_slice_block(const rt_slices *s, int u, int v)
 {
-    const float from = clamp((rt_slice_side(s, first, 0) - s->begin) * s->a_span, 0.0f, 1.0f),
-                to = clamp((rt_slice_side(s, last, 1) - s->begin) * s->a_span, 0.0f, 1.0f);
-    return rt_slice_cells(&s->u, from, to, &s->first_u, &s->last_u) &&
-           rt_slice_cells(&s->v, from, to, &s->first_v, &s->last_v);
+    return (uint)(s->slice >> 2) * s->block + (uint)(u >> 2) * s->block_u + (uint)(v >> 2) * s->block_v;
+}
+RT_INLINE uint rt_slice_bit(const rt_slices *s, int u, int v)
+{
+    return ((uint)(s->slice & 3) << s->bit) + ((uint)(u & 3) << s->bit_u) + ((uint)(v & 3) << s->bit_v);
 }
 
-/* Whether a block that has some of these cells has a primitive. */
-RT_INLINE bool rt_meets_filled_block(const rt_slices *s, const global uchar *filled)
+/* The cells with primitives of all blocks that rays may be in between the current slice and another one of its block, as one. */
+RT_INLINE ulong rt_filled_blocks(const rt_slices *s, const global ulong *filled, int last)
 {
-    uint any = 0u;
-    for (int v = s->first_v >> 2; v <= s->last_v >> 2; ++v)
-        for (int u = s->first_u >> 2; u <= s->last_u >> 2; ++u)
-            any |= filled[(uint)(s->slice >> 2) * s->block + (uint)u * s->block_u + (uint)v * s->block_v];
-    return any != 0u;
+    const int here = s->slice & (RT_LANES - 1), there = last & (RT_LANES - 1);
+    const int first_u = min(s->firsts_u[here], s->firsts_u[there]) & ~3, last_u = max(s->lasts_u[here], s->lasts_u[there]);
+    const int first_v = min(s->firsts_v[here], s->firsts_v[there]) & ~3, last_v = max(s->lasts_v[here], s->lasts_v[there]);
+    ulong any = 0u;
+    for (int v = first_v; v <= last_v; v += 4)
+        for (int u = first_u; u <= last_u; u += 4) any |= filled[rt_slice_block(s, u, v)];
+    return any;
 }
 
-/* Goes to the next slice in which rays may be in cells, but for slices of empty blocks. filled: of each block, whether it has a primitive.
- * hit: the rays' nearest hits so far. Returns false if there is none before these. */
-RT_INLINE bool rt_next_slice(rt_slices *s, const global uchar *filled, const rt_hits *hit)
+/* Goes to the next slice in which rays may be in cells, but for slices of empty cells. filled: of each block, the bits of its cells that have
+ * primitives. hit: the rays' nearest hits so far. Returns false if there is none before these. */
+RT_INLINE bool rt_next_slice(rt_slices *s, const global ulong *filled, const rt_hits *hit)
 {
     if (s->step == 0) return false;
     if (rt_any(s->active & RT_MASK(hit->t < s->t))) {
@@ -178,25 +227,58 @@ RT_INLINE bool rt_next_slice(rt_slices *s, const global uchar *filled, const rt_
         s->active &= RT_MASK(hit->t >= rt_vfloat(0.0f));
         if (!rt_any(s->active)) return false;
         s->end = rt_min(s->end, rt_greatest_of(s->active, fma(s->dz, hit->t, s->z) * rt_vfloat(s->sign)) + s->slack);
+        s->last = rt_slice_of(s, s->end);
     }
-    for (;;) {
+    while ((s->last - s->slice) * s->step > 0) {
         s->slice += s->step;
-        if (s->slice < 0 || s->slice >= s->count || !(rt_slice_side(s, s->slice, 0) <= s->end)) return false;
         if ((s->slice ^ s->seen) >> 2 != 0) {
             const int last = s->step > 0 ? s->slice | 3 : s->slice & ~3;
+            if ((s->slice ^ s->seen) >> RT_LANES_LOG != 0) rt_look_ahead(s);
             s->seen = s->slice;
-            if (!rt_find_slice_cells(s, s->slice, last) || !rt_meets_filled_block(s, filled)) {
+            s->filled = rt_filled_blocks(s, filled, last);
+            if (s->filled == 0u) {
                 s->slice = last;
                 continue;
             }
         }
-        if (rt_find_slice_cells(s, s->slice, s->slice)) return true;
+        if ((s->filled & s->plane << ((uint)(s->slice & 3) << s->bit)) == 0u) continue;
+        const int here = s->slice & (RT_LANES - 1);
+        s->first_u = s->firsts_u[here], s->last_u = s->lasts_u[here];
+        s->first_v = s->firsts_v[here], s->last_v = s->lasts_v[here];
+        if (s->first_u <= s->last_u && s->first_v <= s->last_v) return true;
     }
+    return false;
+}
+
+/* Whether a cell of the current slice has primitives. */
+RT_INLINE bool rt_slice_has(const rt_slices *s, const global ulong *filled, int u, int v)
+{
+    return (filled[rt_slice_block(s, u, v)] >> rt_slice_bit(s, u, v) & 1u) != 0u;
 }
 
 RT_INLINE uint rt_slice_cell(const rt_slices *s, int u, int v)
 {
     return (uint)s->slice * s->cell + (uint)u * s->cell_u + (uint)v * s->cell_v;
+}
+
+/* The lanes with boxes in a cell that reach below the upper line along one axis, and above the lower one. parts: of the boxes.
+ * share: of the way, where the slice begins on its low side. */
+RT_INLINE vmask rt_meets_along(const rt_slice_axis *axis, int cell, vint parts, float share)
+{
+    const float low = fma(fma(axis->low_gain, share, axis->low) - (float)cell, axis->low_scale, axis->low_more),
+                high = fma(fma(axis->high_gain, share, axis->high) - (float)cell, axis->high_scale, axis->high_more);
+    return RT_MASK(rt_part_numbers(parts, axis->first_bits) <=
+                   fma(rt_vfloat(axis->high_rise), rt_part_numbers(parts, axis->high_bits), rt_vfloat(high))) &
+           RT_MASK(rt_part_numbers(parts, axis->last_bits) >=
+                   fma(rt_vfloat(axis->low_rise), rt_part_numbers(parts, axis->low_bits), rt_vfloat(low)));
+}
+
+/* The bits of those of `count` boxes, or of the first RT_LANES, that the rays may meet in a cell of the current slice. */
+RT_INLINE uint rt_slice_meets(const rt_slices *s, int u, int v, const global uint *parts, uint count)
+{
+    const vint all = rt_load_parts(parts);
+    const float share = (s->sign * fma((float)s->slice, s->size, s->low) - s->begin) * s->a_span;
+    return rt_bits(rt_meets_along(&s->u, u, all, share) & rt_meets_along(&s->v, v, all, share)) & rt_first_lanes(count);
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 #include <vector>
 
 #include "clarity_space/primitives.hpp"
@@ -24,10 +25,11 @@ size_t cell_count(const Head& head) {
     return size_t{head.cells[0]} * head.cells[1] * head.cells[2];
 }
 
-// How far the planes and divisions of kernels may be off: they round by 6 * 2^-24 of the largest coordinate in all.
+// How far the planes and divisions of kernels may be off, and the parts of cells here: they round by 6 and 8 * 2^-24 of the
+// largest coordinate in all.
 template <class Head>
 double cell_slack(const Head& head, int axis) {
-    return 16 * kEps * std::max(std::fabs(head.box[axis]), std::fabs(head.box[axis + 3])) + 1e-30;
+    return 24 * kEps * std::max(std::fabs(head.box[axis]), std::fabs(head.box[axis + 3])) + 1e-30;
 }
 
 // Parts the box into cells, about `wanted` in all and as cubic as can be. An axis along which the box is thinner than a cell
@@ -49,7 +51,7 @@ void shape_cells(Head& head, const double lo[3], const double hi[3], double want
             if (!thin[k]) volume *= extent[k], ++axes;
         const double a_unit = axes > 0 ? std::pow(wanted / volume, 1 / axes) : 0;
         for (int k = 0; k < 3; ++k) {
-            const double most = std::min(4096.0, extent[k] / (8 * cell_slack(head, k)));
+            const double most = std::min(4096.0, extent[k] / (12 * cell_slack(head, k)));  // a part of a cell is 9 * 2^-24
             head.cells[k] = thin[k] ? 1 : rt_u32(std::clamp(extent[k] * a_unit, 1.0, std::max(most, 1.0)));
             thin[k] = thin[k] || extent[k] * a_unit < 1;
         }
@@ -91,6 +93,26 @@ struct CellRange {
     int lo[3], hi[3];
 };
 
+// A primitive's box in parts of cells along each axis. The fourth numbers mean nothing.
+struct PartRange {
+    int lo[4], hi[4];
+
+    CellRange cells() const {
+        CellRange range;
+        for (int k = 0; k < 3; ++k) range.lo[k] = int(rt_u32(lo[k]) / kParts), range.hi[k] = int(rt_u32(hi[k]) / kParts);
+        return range;
+    }
+    // The parts in a cell along one axis: the first and the last, five bits each.
+    rt_u32 within(int axis, int cell) const {
+        const rt_u32 first = rt_u32(std::max(lo[axis] - kParts * cell, 0)),
+                     last = rt_u32(std::min(hi[axis] - kParts * cell, kParts - 1));
+        return (first | last << 5) << (10 * axis);
+    }
+
+    static constexpr int kParts = 32;                 // of a cell
+    static constexpr rt_u32 kAllOfCell = 0x3E0F83E0;  // all parts along each axis
+};
+
 // Finds the cells of primitives. What does not depend on the primitive is computed once.
 template <class Head>
 class CellFinder {
@@ -98,46 +120,62 @@ class CellFinder {
     explicit CellFinder(const Head& head) : head_(head), cells_(cell_count(head)) {
         for (int k = 0; k < 3; ++k) {
             const double slack = cell_slack(head, k);
-            below_[k] = double{head.box[k]} + slack, above_[k] = double{head.box[k]} - slack;
-            a_unit_[k] = 1.0 / head.size[k], last_[k] = head.cells[k] - 1.0, half_[k] = 0.5 * head.size[k] + slack;
+            below_[k] = float(head.box[k] + slack), above_[k] = float(head.box[k] - slack);
+            a_part_[k] = float(PartRange::kParts / double{head.size[k]});
+            last_[k] = float(PartRange::kParts * head.cells[k] - 1), half_[k] = 0.5 * head.size[k] + slack;
         }
         const size_t row = head.cells[0], layer = row * head.cells[1];
         for (unsigned shape = 0; shape < 8; ++shape) {
             unsigned& count = counts_[shape];
             for (unsigned c = 0; c < 8; ++c)
-                if ((c & ~shape) == 0 && count < 4) near_[shape][count++] = (c & 1) + (c >> 1 & 1) * row + (c >> 2) * layer;
+                if ((c & ~shape) == 0 && count < 4) {
+                    corners_[shape][count] = c;
+                    near_[shape][count++] = (c & 1) + (c >> 1 & 1) * row + (c >> 2) * layer;
+                }
         }
     }
     size_t cells() const { return cells_; }
 
-    CellRange range(const rt_prim& p) const {
-        CellRange range;
-        for (int k = 0; k < 3; ++k) {
-            range.lo[k] = int(std::clamp((p.lo[k] - below_[k]) * a_unit_[k], 0.0, last_[k]));
-            range.hi[k] = int(std::clamp((p.hi[k] - above_[k]) * a_unit_[k], 0.0, last_[k]));
-        }
+    // In single precision and four at once, because a build spends its time here.
+    PartRange parts(const rt_prim& p) const {
+        const float lo[4] = {p.lo[0], p.lo[1], p.lo[2], 0}, hi[4] = {p.hi[0], p.hi[1], p.hi[2], 0};
+        PartRange range;
+        for (int k = 0; k < 4; ++k) range.lo[k] = int(std::min(std::max((lo[k] - below_[k]) * a_part_[k], 0.0f), last_[k]));
+        for (int k = 0; k < 4; ++k) range.hi[k] = int(std::min(std::max((hi[k] - above_[k]) * a_part_[k], 0.0f), last_[k]));
         return range;
     }
+    CellRange range(const rt_prim& p) const { return parts(p).cells(); }
 
-    // Calls body(cell, meets) for cells near primitive i: their numbers, and whether the primitive meets them. Huge ones are in
-    // a cell of their own behind all others. `meets` is no branch here, because a processor cannot predict it, nor how many
-    // cells a small primitive is near. Up to four are in a table, and their planes are not asked, since they would hardly save
-    // a cell.
+    // Calls body(cell, meets, parts) for cells near primitive i: their numbers, whether the primitive meets them, and which
+    // parts of each its box meets (PartRange::within() of all axes). Huge ones are in a cell of their own behind all others.
+    // `meets` is no branch here, because a processor cannot predict it, nor how many cells a small primitive is near. Up to
+    // four are in a table, and their planes are not asked, since they would hardly save a cell.
     template <class Body>
     void each(const Prims& of, rt_u32 i, const Body& body) const {
         const rt_prim& p = of.prims[i];
-        if (is_huge(p)) return body(cells_, true);
-        const CellRange r = range(p);
+        if (is_huge(p)) return body(cells_, true, PartRange::kAllOfCell);
+        const PartRange parts = this->parts(p);
+        const CellRange r = parts.cells();
         const int x = r.hi[0] - r.lo[0], y = r.hi[1] - r.lo[1], z = r.hi[2] - r.lo[2];
         if ((x | y | z) <= 1 && (x & y & z) == 0) {
             const unsigned shape = unsigned(x | y << 1 | z << 2);
             const size_t first = (size_t(r.lo[2]) * head_.cells[1] + size_t(r.lo[1])) * head_.cells[0] + size_t(r.lo[0]);
-            for (unsigned c = 0; c < 4; ++c) body(first + near_[shape][c], c < counts_[shape]);
+            rt_u32 within[3][2];
+            for (int k = 0; k < 3; ++k) {
+                const rt_u32 last = rt_u32(parts.hi[k]) % PartRange::kParts << 5, all = (PartRange::kParts - 1) << 5;
+                within[k][0] = (rt_u32(parts.lo[k]) % PartRange::kParts | (r.lo[k] == r.hi[k] ? last : all)) << (10 * k);
+                within[k][1] = last << (10 * k);
+            }
+            for (unsigned c = 0; c < 4; ++c) {
+                const unsigned corner = corners_[shape][c];
+                body(first + near_[shape][c], c < counts_[shape],
+                     within[0][corner & 1] | within[1][corner >> 1 & 1] | within[2][corner >> 2]);
+            }
             return;
         }
         if (!of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE)
             return each_of(
-                r,
+                parts,
                 [](int, int) {
                     return Row{0, 0, 0};
                 },
@@ -145,7 +183,7 @@ class CellFinder {
         const TrianglePlane plane(of.triangles[RT_REF_INDEX(p.ref)]);
         const double reach = plane.reach(half_), step = plane.normal(0) * double{head_.size[0]};
         each_of(
-            r,
+            parts,
             [&](int y, int z) {
                 const int at[3] = {r.lo[0], y, z};
                 double center[3];
@@ -158,11 +196,12 @@ class CellFinder {
  private:
     const Head& head_;
     size_t cells_;
-    double below_[3], above_[3], a_unit_[3], last_[3], half_[3];
+    float below_[4] = {}, above_[4] = {}, a_part_[4] = {}, last_[4] = {};
+    double half_[3];
     // The cells of one or two along each axis, from the first on: how many, and how much greater their numbers are. Bit k of
-    // the index: two along axis k.
+    // the index: two along axis k; of a corner: the second one.
     size_t near_[8][4] = {};
-    unsigned counts_[8] = {};
+    unsigned counts_[8] = {}, corners_[8][4] = {};
 
     // Of the cells with one y and one z: how far the centre of the first is above a plane, how much each further one is above
     // the one before, and how far a centre may be if its cell meets the plane.
@@ -170,13 +209,16 @@ class CellFinder {
         double height, step, reach;
     };
     template <class RowOf, class Body>
-    void each_of(const CellRange& r, const RowOf& row_of, const Body& body) const {
+    void each_of(const PartRange& parts, const RowOf& row_of, const Body& body) const {
+        const CellRange r = parts.cells();
         for (int z = r.lo[2]; z <= r.hi[2]; ++z)
             for (int y = r.lo[1]; y <= r.hi[1]; ++y) {
                 const Row row = row_of(y, z);
                 const size_t first = (size_t(z) * head_.cells[1] + size_t(y)) * head_.cells[0];
+                const rt_u32 within = parts.within(1, y) | parts.within(2, z);
                 for (int x = r.lo[0]; x <= r.hi[0]; ++x)
-                    body(first + size_t(x), !(std::fabs(row.height + (x - r.lo[0]) * row.step) > row.reach));
+                    body(first + size_t(x), !(std::fabs(row.height + (x - r.lo[0]) * row.step) > row.reach),
+                         within | parts.within(0, x));
             }
     }
 };
@@ -186,7 +228,9 @@ class CellFinder {
 //
 // A counting sort of (cell, primitive). Tasks of the first step have a part of the primitives, and sort their pairs by the
 // upper bits of the cells. Tasks of the second step have a part of the cells, and take the pairs of all tasks before.
-template <class Head>
+//
+// kPlaced: it also notes where in each cell the primitive's box is.
+template <class Head, bool kPlaced = false>
 class CellSort {
  public:
     // number(i) is the group's number of primitive i of `count`. `head` and what `prims` names must outlive this.
@@ -209,9 +253,9 @@ class CellSort {
     size_t lists() const { return finder_.cells() + 1; }
     uint64_t references() const { return references_; }
 
-    // The primitives of cell c become list[starts[c] - place] to list[starts[c + 1] - place - 1], each plus `first`. starts:
-    // lists() + 1 of them. Returns how many lists have a primitive.
-    size_t write(const rt_host* host, rt_u32* starts, rt_u32* list, rt_u32 place, rt_u32 first) const {
+    // The primitives of cell c become list[starts[c] - place] to list[starts[c + 1] - place - 1], each plus `first`; likewise
+    // their `parts`, if placed. starts: lists() + 1 of them. Returns how many lists have a primitive.
+    size_t write(const rt_host* host, rt_u32* starts, rt_u32* list, rt_u32 place, rt_u32 first, rt_u32* parts = nullptr) const {
         std::vector<rt_u32> before(parts_), filled(parts_);
         rt_u32 sum = 0;
         for (rt_u32 p = 0; p < parts_; ++p) {
@@ -232,8 +276,11 @@ class CellSort {
                 next += count, filled[p] += count > 0;
             }
             for (const Chunk& chunk : chunks_)
-                for (rt_u32 i = chunk.ends[p]; i < chunk.ends[p + 1]; ++i)
-                    list[at[chunk.pairs[i].cell - low]++] = first + chunk.pairs[i].prim;
+                for (rt_u32 i = chunk.ends[p]; i < chunk.ends[p + 1]; ++i) {
+                    const rt_u32 to = at[chunk.pairs[i].cell - low]++;
+                    list[to] = first + chunk.pairs[i].prim;
+                    if constexpr (kPlaced) parts[to] = chunk.pairs[i].parts;
+                }
         });
         size_t all = 0;
         for (const rt_u32 count : filled) all += count;
@@ -244,9 +291,15 @@ class CellSort {
     static constexpr rt_u32 kAtOnce = 4096;  // primitives of a task
     static constexpr rt_u32 kParts = 64;     // of the cells, at most
 
-    struct Pair {
+    struct Plain {
         rt_u32 cell, prim;
+        void set(size_t in, rt_u32 which, rt_u32) { cell = rt_u32(in), prim = which; }
     };
+    struct Placed {
+        rt_u32 cell, prim, parts;
+        void set(size_t in, rt_u32 which, rt_u32 where) { cell = rt_u32(in), prim = which, parts = where; }
+    };
+    using Pair = std::conditional_t<kPlaced, Placed, Plain>;
     struct Chunk {
         std::vector<Pair> pairs;   // part by part
         std::vector<rt_u32> ends;  // of each part, behind a 0
@@ -258,8 +311,8 @@ class CellSort {
             Pair some[256];
             size_t count = 0;
             for (rt_u32 i = begin; i < end; ++i)
-                sort.finder_.each(prims, number(i), [&](size_t cell, bool meets) {
-                    some[count] = {rt_u32(cell), number(i)};
+                sort.finder_.each(prims, number(i), [&](size_t cell, bool meets, rt_u32 where) {
+                    some[count].set(cell, number(i), where);
                     count += meets;
                     if (count < std::size(some)) return;
                     found.insert(found.end(), some, some + count);

@@ -4,11 +4,12 @@
 // Packets go from slice to slice instead of from cell to cell, as long as their rays stay together: Wald, Ize, Kensler, Knoll,
 // Parker 2006, "Ray Tracing Animated Scenes using Coherent Grid Traversal".
 //
-// A cell takes 4 bytes, a block of 64 cells one more, and a primitive 4 for each cell that it is in. The traversal needs no
-// stack. A build takes time in proportion to the primitives and cells, and rays meet cells in the order of their distances. It
-// is good at primitives of one size that fill their box, such as height fields. It is bad at a small object in a large scene,
-// which lies in few cells, and at empty space, through which a single ray goes cell by cell, and a packet four slices of cells
-// at once.
+// A cell takes 4 bytes, a block of 64 cells 8 more, and a primitive 8 for each cell that it is in: its name, and where in the
+// cell its box is (cl/lanes/cell_parts.h). Most names are passed over by that box, 16 at a time on a CPU, so cells may be
+// large. The traversal needs no stack. A build takes time in proportion to the primitives and cells, and rays meet cells in the
+// order of their distances. It is good at primitives of one size that fill their box, such as height fields. It is bad at a
+// small object in a large scene, which lies in few cells, and at empty space, through which a single ray goes cell by cell, and
+// a packet four slices of cells at once.
 #include <algorithm>
 #include <cfloat>
 #include <memory>
@@ -27,7 +28,7 @@ using namespace clarity::space;
 
 enum Param { kDensity, kExact };
 constexpr rt_param kParams[] = {
-    rt::float_param("density", "Density", "cells for each primitive", 0.1, 64, 3),
+    rt::float_param("density", "Density", "cells for each primitive", 0.1, 64, 2),
     rt::bool_param("exact", "Exact", "a triangle is in the cells that its plane meets; else in all that its box meets", true),
 };
 
@@ -41,16 +42,16 @@ size_t block_count(const grid_head& grid) {
     return blocks_along(grid, 0) * blocks_along(grid, 1) * blocks_along(grid, 2);
 }
 
-// Notes which blocks have a primitive. The lists of neighbours along x follow each other, so two ends tell of four cells.
-void fill_blocks(const rt_host* host, const grid_head& grid, const rt_u32* starts, uint8_t* blocks) {
+// Notes which cells of each block have a primitive: cell (x, y, z) of a block is bit x + 4 y + 16 z.
+void fill_blocks(const rt_host* host, const grid_head& grid, const rt_u32* starts, uint64_t* blocks) {
     const size_t row = blocks_along(grid, 0), layer = row * blocks_along(grid, 1);
     rt::parallel_for(host, rt_u32(blocks_along(grid, 2)), [&](rt_u32 block_z) {
         for (size_t z = 4 * size_t{block_z}; z < std::min<size_t>(4 * size_t{block_z} + 4, grid.cells[2]); ++z)
             for (size_t y = 0; y < grid.cells[1]; ++y) {
                 const rt_u32* const cells = starts + (z * grid.cells[1] + y) * grid.cells[0];
-                for (size_t b = 0; b < row; ++b)
-                    blocks[block_z * layer + y / 4 * row + b] |=
-                        cells[std::min<size_t>(4 * b + 4, grid.cells[0])] > cells[4 * b];
+                uint64_t* const of_row = blocks + block_z * layer + y / 4 * row;
+                for (size_t x = 0; x < grid.cells[0]; ++x)
+                    of_row[x / 4] |= uint64_t{cells[x + 1] > cells[x]} << (x % 4 + 4 * (y % 4) + 16 * (z % 4));
             }
     });
 }
@@ -58,14 +59,14 @@ void fill_blocks(const rt_host* host, const grid_head& grid, const rt_u32* start
 int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
     const rt_u32 count = primitive_count(host, *in);
     auto* const heads = rt::alloc<grid_head>(out, 0, in->group_count);
-    std::vector<std::unique_ptr<CellSort<grid_head>>> sorts(in->group_count);
+    std::vector<std::unique_ptr<CellSort<grid_head, true>>> sorts(in->group_count);
     rt::parallel_for(host, in->group_count, [&](rt_u32 g) {
         const rt_group& group = in->groups[g];
         const Prims prims{in->prims + group.first, in->params[kExact] != 0 ? in->geometry->triangles : nullptr};
         const Extent extent = extent_of(host, prims.prims, group.count);
         heads[g] = kOneCell;
         if (extent.count > 0) shape_cells(heads[g], extent.lo, extent.hi, in->params[kDensity] * extent.count);
-        sorts[g] = std::make_unique<CellSort<grid_head>>(host, heads[g], prims, group.count, [](rt_u32 i) { return i; });
+        sorts[g] = std::make_unique<CellSort<grid_head, true>>(host, heads[g], prims, group.count, [](rt_u32 i) { return i; });
     });
 
     uint64_t starts = 0, references = 0, filled = 0, blocks = 0;
@@ -76,13 +77,14 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     if (starts > 0xFFFFFFF0u || references > 0xFFFFFFF0u) throw rt::fail(host, "needs more than 2^32 cells: lower `density`");
     auto* const start = rt::alloc<rt_u32>(out, 1, starts);
     auto* const list = rt::alloc<rt_u32>(out, 2, references);
-    auto* const block = rt::alloc<uint8_t>(out, 3, blocks);
+    auto* const block = rt::alloc<uint64_t>(out, 3, blocks);
+    auto* const parts = rt::alloc<rt_u32>(out, 4, references + 16);  // kernels read as many at once
     put_leaves(host, *in, out, count);
     rt_u32 cell = 0, place = 0, first = 0;  // the group's first cell, and its first places in the list and in leaf order
     rt::ExpectedCost expected;
     for (rt_u32 g = 0; g < in->group_count; ++g) {
         heads[g].first = cell;
-        filled += sorts[g]->write(host, start + cell, list + place, place, first);
+        filled += sorts[g]->write(host, start + cell, list + place, place, first, parts + place);
         fill_blocks(host, heads[g], start + cell, block + heads[g].first_block);
         const double whole = rt::surface_of(heads[g].box);
         rt::Surfaces sums;
@@ -125,7 +127,8 @@ constexpr rt_cl_file kFiles[] = {
 #include "grid.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<grid_head>("grid_heads", "grid_head"), rt::slot<rt_u32>("grid_starts", "uint"),
-                              rt::slot<rt_u32>("grid_list", "uint"), rt::slot<uint8_t>("grid_blocks", "uchar")};
+                              rt::slot<rt_u32>("grid_list", "uint"), rt::slot<uint64_t>("grid_blocks", "ulong"),
+                              rt::slot<rt_u32>("grid_parts", "uint")};
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "grid_types.h"), rt::file(kFiles, "grid.cl"), rt::guarded<build>,
                                       rt::guarded<levels>, rt::Traits().can(RT_TRAVERSES_SINGLE_RAYS));
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");

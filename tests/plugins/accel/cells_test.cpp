@@ -55,15 +55,33 @@ void each_point(const Input& input, const Body& body) {
             }
 }
 
+// Whether a point is in the box that a cell notes for one of its names, in parts of the cell (cl/lanes/cell_parts.h).
+bool is_in_parts(const grid_head& grid, const size_t* at, rt_u32 parts, const double* p) {
+    for (int k = 0; k < 3; ++k) {
+        const double part = ((p[k] - grid.box[k]) / grid.size[k] - double(at[k])) * 32, slack = 1e-5 * 32;  // of the points
+        const rt_u32 first = parts >> (10 * k) & 31, last = parts >> (10 * k + 5) & 31;
+        if (part < first - slack || part > last + 1 + slack) return false;
+    }
+    return true;
+}
+
 uint64_t points_lost_by_grid(const Input& input, const Built& built) {
     const grid_head& grid = built.slot<grid_head>()[built.roots[0]];
-    const rt_u32 *starts = built.slot<rt_u32>(1) + grid.first, *list = built.slot<rt_u32>(2);
+    const rt_u32 *starts = built.slot<rt_u32>(1) + grid.first, *list = built.slot<rt_u32>(2), *parts = built.slot<rt_u32>(4);
+    const uint64_t* const blocks = built.slot<uint64_t>(3) + grid.first_block;
     uint64_t lost = 0;
     each_point(input, [&](const double* p, rt_u32 ref) {
-        size_t at[3];
-        for (int k = 0; k < 3; ++k) at[k] = size_t(std::clamp((p[k] - grid.box[k]) / grid.size[k], 0.0, grid.cells[k] - 1.0));
+        size_t at[3], across[3];
+        for (int k = 0; k < 3; ++k) {
+            at[k] = size_t(std::clamp((p[k] - grid.box[k]) / grid.size[k], 0.0, grid.cells[k] - 1.0));
+            across[k] = (grid.cells[k] + 3) / 4;
+        }
         const size_t cell = (at[2] * grid.cells[1] + at[1]) * grid.cells[0] + at[0];
-        lost += std::none_of(list + starts[cell], list + starts[cell + 1], [&](rt_u32 i) { return built.leaves[i] == ref; });
+        bool found = false;
+        for (rt_u32 i = starts[cell]; i < starts[cell + 1]; ++i)
+            found = found || (built.leaves[list[i]] == ref && is_in_parts(grid, at, parts[i], p));
+        const uint64_t block = blocks[(at[2] / 4 * across[1] + at[1] / 4) * across[0] + at[0] / 4];
+        lost += !found || (block >> (at[0] % 4 + 4 * (at[1] % 4) + 16 * (at[2] % 4)) & 1) == 0;
     });
     return lost;
 }
