@@ -7,8 +7,8 @@
 #ifndef RT_CELL_PARTS_H
 #define RT_CELL_PARTS_H
 
-#define RT_PARTS 32.0f     /* in a cell along an axis */
-#define RT_PART_BITS 5     /* of the number of a part */
+#define RT_PARTS 32.0f /* in a cell along an axis */
+#define RT_PART_BITS 5 /* of the number of a part */
 #define RT_PARTS_OF(axis) (2 * RT_PART_BITS * (int)(axis)) /* where the bits of an axis begin */
 #define RT_PART_AT(place) (31 << (place))
 
