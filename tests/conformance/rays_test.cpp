@@ -20,10 +20,6 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 Settings settings_of(const std::string& accel, int lanes) {
     Settings settings;
     settings.accel = accel;
