@@ -105,7 +105,7 @@ scene = clarity.Scene(corners.reshape(-1, 3), numpy.arange(30000).reshape(-1, 3)
             ("trace", linear, "tracing", "rt.closest([0, 0, 0], rays, progress=tell)", 1),
             ("trace, impatiently", linear, "tracing", "rt.closest([0, 0, 0], rays, progress=tell)", 5),
         ):
-            if QUICK and name not in ("import", "build", "trace, impatiently"):
+            if QUICK and name not in ("import", "trace, impatiently"):
                 continue
             lines = f"""
 import clarity, numpy, signal, time

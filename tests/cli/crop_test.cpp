@@ -57,30 +57,38 @@ class Crop : public ::testing::Test {
     Scratch scratch_;
 };
 
-// With a plane and without: a packet that misses everything is known before it is traced only without.
-TEST_F(Crop, HasThePixelsOfTheWhole) {
-    const char* const plane = "plane normal 0 1 0 offset 0\n";
-    struct Way {
-        const char* more;
-        std::vector<std::string> words;
-    };
-    for (const Way& way : {Way{"", {"--spp", "3"}}, Way{plane, {"--spp", "1"}}, Way{"", {"--tracer", "wavefront"}},
-                           Way{plane, {"--tracer", "path", "--spp", "5"}}, Way{"", {"--aov", "t"}},
-                           Way{"", {"--device", "cpu/2", "--spp", "2"}}}) {
-        const std::string file = scene(way.more);
-        const Rows whole = rows_of(render(file, way.words));
-        for (const auto& [x, y, w, h] : {std::array<unsigned, 4>{21, 9, 33, 18}, {74, 52, 1, 1}}) {
-            std::vector<std::string> words = way.words;
-            const std::string crop =
-                std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(w) + "," + std::to_string(h);
-            words.insert(words.end(), {"--crop", crop});
-            const Rows part = rows_of(render(file, words));
-            EXPECT_EQ(part.width, w);
-            EXPECT_EQ(part.height, h);
-            EXPECT_TRUE(part.part(0, 0, w, h) == whole.part(x, y, w, h)) << crop << " " << way.words[0] << " " << way.words[1];
-        }
+struct Way {
+    const char* name;
+    const char* more;
+    std::vector<std::string> words;
+};
+class CropWays : public Crop, public ::testing::WithParamInterface<Way> {};
+
+TEST_P(CropWays, HaveThePixelsOfTheWhole) {
+    const Way& way = GetParam();
+    const std::string file = scene(way.more);
+    const Rows whole = rows_of(render(file, way.words));
+    for (const auto& [x, y, w, h] : {std::array<unsigned, 4>{21, 9, 33, 18}, {74, 52, 1, 1}}) {
+        std::vector<std::string> words = way.words;
+        const std::string crop =
+            std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(w) + "," + std::to_string(h);
+        words.insert(words.end(), {"--crop", crop});
+        const Rows part = rows_of(render(file, words));
+        EXPECT_EQ(part.width, w);
+        EXPECT_EQ(part.height, h);
+        EXPECT_TRUE(part.part(0, 0, w, h) == whole.part(x, y, w, h)) << crop;
     }
 }
+
+// With a plane and without: a packet that misses everything is known before it is traced only without.
+constexpr const char* kPlane = "plane normal 0 1 0 offset 0\n";
+INSTANTIATE_TEST_SUITE_P(, CropWays,
+                         testing::Values(Way{"Packets", "", {"--spp", "3"}}, Way{"PacketsOverAPlane", kPlane, {"--spp", "1"}},
+                                         Way{"Wavefront", "", {"--tracer", "wavefront"}},
+                                         Way{"Paths", kPlane, {"--tracer", "path", "--spp", "5"}},
+                                         Way{"Distances", "", {"--aov", "t"}},
+                                         Way{"TwoDevices", "", {"--device", "cpu/2", "--spp", "2"}}),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 TEST_F(Crop, IsRecordedAndComparedWithTheWhole) {
     const std::string file = scene("");

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "images/quick_scene.hpp"
+
 namespace clarity::test {
 
 std::array<float, 3> Picture::at(int x, int y) const {
@@ -24,7 +26,7 @@ Picture trace(const Scene& scene, const View& view, int width, int height, int d
     settings.depth = depth;
     set_setting(settings, "min_weight", "0");
     Picture picture{width, height, {}, {}};
-    picture.image = Workbench::get().values(shared_scene(scene), settings, view, &picture.stats);
+    picture.image = Workbench::get().values(shared_scene(with_all_of_textures(scene, view)), settings, view, &picture.stats);
     return picture;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "images/quick_scene.hpp"
+
 namespace clarity::test {
 namespace {
 
@@ -48,7 +50,7 @@ PathPicture trace_paths(const Scene& scene, const View& view, unsigned samples, 
     Pairs all = {{"tracer", "path"}, {"accel", "bvh2"}, {"lanes", "4"}, {"packet", "8x8"}, {"size", "64x64"}};
     all.insert(all.end(), pairs.begin(), pairs.end());
     Settings settings = make_settings(all);
-    const ScenePtr shared = shared_scene(scene);
+    const ScenePtr shared = shared_scene(with_all_of_textures(scene, view));
     Workbench& bench = Workbench::get();
     Progress progress;
     bench.frames().trace(*bench.prepare(shared, settings, view), settings, view, Samples(0, samples), false, progress);

@@ -83,7 +83,8 @@ TEST(Masks, RaysPassWhatTheyDoNotSee) {
             asked.back().query.mask = mask;
         }
     for (const std::string& accel : Workbench::get().accels())
-        for (const char* lanes : {"1", "16"})
+        for (const char* lanes : {"1", "16"}) {
+            if (few_ways() && (accel == "linear") == (lanes == std::string("1"))) continue;
             for (const auto& [query, expected] : asked) {
                 const auto hits =
                     Workbench::get().rays(masked, make_settings({{"accel", accel}, {"lanes", lanes}}), rays, query);
@@ -92,6 +93,7 @@ TEST(Masks, RaysPassWhatTheyDoNotSee) {
                         << accel << ", " << lanes << " lanes, mask " << query.mask << (query.any_hit ? ", any" : "") << ", ray "
                         << i;
             }
+        }
 }
 
 // A box over a floor that mirrors, out of the camera's sight: its shadow and its mirror image are in the picture.
@@ -126,7 +128,7 @@ TEST(Masks, OfPicturesGoByTheKindOfRays) {
         {{"tracer", "path"}},
     };
     for (const auto& way : ways) {
-        if (few_ways() && &way != &ways.front() && &way != &ways.back()) continue;
+        if (few_ways() && &way != &ways.front()) continue;
         const std::string what = way[0].second + ", " + (way.size() > 1 ? way[1].second : "its own") + " lanes";
         const auto of = [&](rt_u32 mask, bool visible = true) {
             return picture(over_a_floor(mask, visible), way, false).pixels;
