@@ -267,14 +267,16 @@ class CellSort {
                 });
             found.insert(found.end(), some, some + count);
             ends.assign(sort.parts_ + 1, 0);
-            for (const Pair& pair : found) ++ends[(pair.cell >> sort.shift_) + 1];
+            for (const Pair& pair : found) ++ends[sort.part_of(pair) + 1];
             if (sort.parts_ == 1 || found.size() > 0xFFFFFFF0u) return pairs.swap(found);  // so many are refused later
             for (rt_u32 p = 0; p < sort.parts_; ++p) ends[p + 1] += ends[p];
             std::vector<rt_u32> at(ends.begin(), ends.end() - 1);
             pairs.resize(found.size());
-            for (const Pair& pair : found) pairs[at[pair.cell >> sort.shift_]++] = pair;
+            for (const Pair& pair : found) pairs[at[sort.part_of(pair)]++] = pair;
         }
     };
+
+    size_t part_of(const Pair& pair) const { return size_t{pair.cell} >> shift_; }  // shift_ is 63 where all is one part
 
     template <class Body>
     static void for_each(const rt_host* host, rt_u32 count, const Body& body) {

@@ -13,6 +13,7 @@ using importers::nearest;
 
 template <class T, class From>
 void convert(const char* from, size_t count, bool big_endian, T* to) {
+    if (count == 0) return;  // no memory, then, that memcpy could be told of
     if (std::is_same_v<T, From> && !big_endian) {
         std::memcpy(to, from, count * sizeof(T));
     } else if (!big_endian) {  // a loop of its own is faster
