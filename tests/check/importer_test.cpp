@@ -40,7 +40,7 @@ TEST_P(BrokenImporter, IsFound) {
     expect_found(results_of(std::string("importer_") + defect.library, 1, {"--only", defect.check}), defect);
 }
 
-const Defect kDefects[] = {
+const Defect kImporterDefects[] = {
     {"drops_last", "imports.truth", {"has 39 triangles, not 40"}},
     {"trusts_count", "imports.hostile", {"crashed"}},
     {"crashes", "imports.hostile", {"crashed (segmentation fault"}},
@@ -70,7 +70,7 @@ const Defect kDefects[] = {
     {"uv_of_stack", "imports.memory", {"memory that it has not written", "a texture coordinate of vertex 2"}},
     {"first_differs", "imports.state", {"in a process that has read nothing before"}},
 };
-INSTANTIATE_TEST_SUITE_P(Plugins, BrokenImporter, testing::ValuesIn(kDefects), name_of);
+INSTANTIATE_TEST_SUITE_P(Plugins, BrokenImporter, testing::ValuesIn(kImporterDefects), name_of);
 
 TEST_F(ImporterCheck, SoundOnePasses) {
     const json results = results_of("importer_none", 0);

@@ -14,7 +14,7 @@ TEST_P(BrokenShape, IsFound) {
     expect_found(check(std::string("shape_") + defect.library, words, 1), defect);
 }
 
-const Defect kDefects[] = {
+const Defect kShapeDefects[] = {
     // on the host
     {"crashes", "keys.values", {"crashed (segmentation fault"}},
     {"endless", "keys.values", {"did not come to an end"}},
@@ -59,7 +59,7 @@ const Defect kDefects[] = {
     {"uv_mirrored_half", "surface.uv", {"around this point u does not turn"}},
     {"inexact", "surface.leaving", {"make s->error larger"}},
 };
-INSTANTIATE_TEST_SUITE_P(Plugins, BrokenShape, testing::ValuesIn(kDefects), name_of);
+INSTANTIATE_TEST_SUITE_P(Plugins, BrokenShape, testing::ValuesIn(kShapeDefects), name_of);
 
 // Without a defect the same plugin passes: so the tests above fail because of the defect.
 TEST(SoundShape, Passes) {

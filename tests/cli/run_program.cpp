@@ -17,11 +17,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Channel {
+struct OutputChannel {
     int read = -1, write = -1;
 };
 
-Channel make_channel(bool terminal) {
+OutputChannel make_channel(bool terminal) {
     int ends[2];
     if (terminal) {
         if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) throw std::runtime_error("openpty failed");
@@ -68,7 +68,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
     words.push_back(program);
     words.insert(words.end(), arguments.begin(), arguments.end());
 
-    const Channel out = make_channel(false), err = make_channel(options.terminal);
+    const OutputChannel out = make_channel(false), err = make_channel(options.terminal);
     const auto begin = Clock::now();
     const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
     const pid_t child = fork();

@@ -112,6 +112,9 @@ TEST(ProgramKey, NamesAllThatABinaryDependsOn) {
     EXPECT_NE(program_key(info, "source2", "options"), key);
     EXPECT_NE(program_key(info, "source", "option"), key);
     EXPECT_NE(program_key(info, "ssource", "option"), key) << "texts must not run into each other";
+    DeviceInfo part = info;
+    part.parts = 2, part.part = 1, part.name = "D, part 2 of 2";
+    EXPECT_EQ(program_key(part, "source", "options"), key) << "parts of a device run the programs of the whole one";
     info.driver = "2";
     EXPECT_NE(program_key(info, "source", "options"), key);
 }

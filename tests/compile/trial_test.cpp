@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScene = "sphere center 0 0 0 radius 1\nlight point position 2 3 4\n";
+constexpr const char* kTrialScene = "sphere center 0 0 0 radius 1\nlight point position 2 3 4\n";
 
 class Trials : public ::testing::Test {
  protected:
@@ -22,7 +22,7 @@ class Trials : public ::testing::Test {
         fs::create_directories(scratch_.path("plugins/primitives"));
         for (const std::string folder : {"plugins/accel/linear", "plugins/accel/bvh2", "plugins/primitives/torus"})
             fs::copy(fs::path(CLARITY_SOURCE_DIR) / folder, scratch_.path(folder), fs::copy_options::recursive);
-        scratch_.write("a.scene", kScene);
+        scratch_.write("a.scene", kTrialScene);
     }
     void edit(const std::string& file, const std::string& from, const std::string& to) {
         std::string text = scratch_.read(file);

@@ -54,18 +54,18 @@ void expect_within(const Vec& p, const float* lo, const float* hi, const std::st
     }
 }
 
-struct Case {
+struct FarCase {
     Vec center;
     double stretch;
 };
-const Case kCases[] = {{{1e6, 1e6, 1e6}, 1},   {{-1e6, 1e6, 3e5}, 1},    {{1e6, -2e6, 1.5e6}, 0.01},
-                       {{3e6, 1e5, -1e6}, 40}, {{1e5, -1e5, 1e5}, 1e-3}, {{7e4, 2e4, -9e4}, 1000},
-                       {{0, 0, 0}, 1},         {{1e3, 1e3, -1e3}, 2}};
+const FarCase kFarCases[] = {{{1e6, 1e6, 1e6}, 1},   {{-1e6, 1e6, 3e5}, 1},    {{1e6, -2e6, 1.5e6}, 0.01},
+                             {{3e6, 1e5, -1e6}, 40}, {{1e5, -1e5, 1e5}, 1e-3}, {{7e4, 2e4, -9e4}, 1000},
+                             {{0, 0, 0}, 1},         {{1e3, 1e3, -1e3}, 2}};
 
 // In double precision a corner is at world_from_object times the corner. Rays see it where the float matrix object_from_world
 // maps back to the corner. Both points must be inside.
 TEST(Bounds, HoldInstancesWhoseLargeCoordinatesCancel) {
-    for (const Case& c : kCases) {
+    for (const FarCase& c : kFarCases) {
         SCOPED_TRACE("centre " + std::to_string(c.center[0]) + ", stretch " + std::to_string(c.stretch));
         const Scene scene = far_box(c.center, brings_home(c.center, c.stretch), 2);
         Progress progress;
@@ -99,7 +99,7 @@ TEST(Bounds, HoldInstancesWhoseLargeCoordinatesCancel) {
 
 // Meshes that are placed once become triangles of the world: the boxes must enclose exactly the floats that are traced.
 TEST(Bounds, HoldTheTracedCornersOfFlattenedMeshes) {
-    for (const Case& c : kCases) {
+    for (const FarCase& c : kFarCases) {
         SCOPED_TRACE("centre " + std::to_string(c.center[0]) + ", stretch " + std::to_string(c.stretch));
         Progress progress;
         const BuildScene built = make_build_scene(far_box(c.center, brings_home(c.center, c.stretch), 1), progress);

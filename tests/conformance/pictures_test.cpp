@@ -16,10 +16,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 // A scene, its camera, and the oracle's answers at the two picture sizes.
 class Case {
  public:

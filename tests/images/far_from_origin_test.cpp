@@ -70,12 +70,6 @@ void add_rectangle(Scene& scene, Kind kind, const Point& center, float half, rt_
     if (moved) add_instance(scene, number, {x, y, z - 100});  // a mesh that is placed once would be flattened
 }
 
-View dark_view(const Point& eye, const Point& target, double fov_deg) {
-    View view = view_from(eye, target, fov_deg);
-    view.background = view.ambient = {0, 0, 0};
-    return view;
-}
-
 TEST(FarFromOrigin, ALampFiveMillimetresAboveASurfaceLightsIt) {
     for (const Kind kind : kKinds)
         for (const Point& at : {Point{1000, 0, 0}, Point{1000, -1000, 1000}}) {

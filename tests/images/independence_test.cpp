@@ -12,10 +12,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 struct Difference {
     size_t pixels = 0;  // number of pixels that differ by more than 1/255 in a channel
     int worst = 0;

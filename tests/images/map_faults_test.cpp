@@ -7,7 +7,7 @@ using namespace clarity::test;
 
 namespace {
 
-const PlantedFault kFaults[] = {
+const PlantedFault kMapFaults[] = {
     {"HandOfTheCoordinates", "shading/surface.h", "(stored[0] & 1u) != 0u ? -1.0f : 1.0f", "1.0f", "NormalMaps.FollowTurned*"},
     {"HandOfTheInstance", "shading/surface.h", "determinant < 0.0f ? -1.0f : 1.0f", "1.0f", "NormalMaps.FollowAnInstance"},
     {"FirstSetAlways", "shading/maps.h", "if (map->set != 0u) u = s->tex_u2, v = s->tex_v2;", "", "Maps.NameTheirSet*"},
@@ -57,7 +57,7 @@ const PlantedFault kFaults[] = {
 };
 
 TEST(MapTexts, HaveTheirTexts) {
-    expect_plantable(kFaults);
+    expect_plantable(kMapFaults);
 }
 
 class MapFaults : public testing::TestWithParam<PlantedFault> {};
@@ -66,7 +66,7 @@ TEST_P(MapFaults, IsFound) {
     EXPECT_EQ(why_not_found(GetParam()), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, MapFaults, testing::ValuesIn(kFaults),
+INSTANTIATE_TEST_SUITE_P(All, MapFaults, testing::ValuesIn(kMapFaults),
                          [](const testing::TestParamInfo<PlantedFault>& info) { return info.param.name; });
 
 }  // namespace

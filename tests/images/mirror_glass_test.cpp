@@ -16,12 +16,6 @@ rt_material glowing(float light) {
     return m;
 }
 
-View dark_view(const Point& eye, const Point& target, double fov_deg) {
-    View view = view_from(eye, target, fov_deg);
-    view.background = view.ambient = {0, 0, 0};
-    return view;
-}
-
 void add_sphere(Scene& scene, const Point& center, float radius, rt_u32 material) {
     Sphere sphere;
     sphere.center = center;

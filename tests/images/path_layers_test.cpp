@@ -19,7 +19,7 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr unsigned kSize = 16;
+constexpr unsigned kSide = 16;
 
 struct LayersScene {
     const char* name;
@@ -124,7 +124,7 @@ struct Means {
 };
 Means reference_means(const LayersScene& of, unsigned samples) {
     const reference::PathPicture picture =
-        reference::trace_paths(scene_of_layers(of), view_of_layers(of), {kSize, kSize, 3, samples});
+        reference::trace_paths(scene_of_layers(of), view_of_layers(of), {kSide, kSide, 3, samples});
     Means m{picture.total(), {}};
     for (int c = 0; c < 3; ++c) m.error[size_t(c)] = picture.total_error(c);
     return m;
@@ -135,8 +135,8 @@ Means traced_means(const LayersScene& of, unsigned samples, const char* strategy
                     {{"strategy", strategy}, {"sampler", "independent"}, {"depth", "3"}, {"size", "16x16"}, {"seed", "7"}});
     Means m;
     double squares = 0;
-    for (const float e : picture.error.pixels) squares += double(e) * e / std::pow(kSize, 4);
-    for (size_t i = 0; i < picture.mean.pixels.size(); ++i) m.value[i % 3] += picture.mean.pixels[i] / double(kSize * kSize);
+    for (const float e : picture.error.pixels) squares += double(e) * e / std::pow(kSide, 4);
+    for (size_t i = 0; i < picture.mean.pixels.size(); ++i) m.value[i % 3] += picture.mean.pixels[i] / double(kSide * kSide);
     const double luminance = 0.2126 * m.value[0] + 0.7152 * m.value[1] + 0.0722 * m.value[2];
     for (size_t c = 0; c < 3; ++c) m.error[c] = std::sqrt(squares) * m.value[c] / luminance;
     return m;
@@ -178,12 +178,12 @@ TEST_P(PathLayers, AreThoseOfTheReference) {
 INSTANTIATE_TEST_SUITE_P(All, PathLayers, testing::ValuesIn(kScenes),
                          [](const testing::TestParamInfo<LayersScene>& info) { return std::string(info.param.name); });
 
-struct Fault {
+struct LayersFault {
     const char *name, *file, *sound, *faulty;
     const char* scene;  // that must find it
-    friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+    friend void PrintTo(const LayersFault& fault, std::ostream* out) { *out << fault.name; }
 };
-const Fault kFaults[] = {
+const LayersFault kLayersFaults[] = {
     {"FacetsWithoutShadows", "shading/layer_lobes.h", "return seen / (smith_o + smith_i);", "return seen * rt_vfloat(0.5f);",
      "Metal"},
     {"DiffuseBelowNothing", "shading/layer_lobes.h", "l->diffuse * l->inside * (one - o->gloss) * (one - i.gloss)",
@@ -210,17 +210,17 @@ const Fault kFaults[] = {
     {"FibresDimNothing", "shading/layers.h", "dim *= rt_below(o->sheen, i->sheen, l->sheen_mean, spread);", "", "Fibres"},
 };
 
-class PathLayersFaults : public testing::TestWithParam<Fault> {};
+class PathLayersFaults : public testing::TestWithParam<LayersFault> {};
 
 TEST_P(PathLayersFaults, IsFound) {
     constexpr unsigned kSamples = 2000;
-    const Fault& fault = GetParam();
+    const LayersFault& fault = GetParam();
     const Means wanted = reference_means(scene_named(fault.scene), kSamples);
     const FaultyKernel planted(fault.file, fault.sound, fault.faulty);
     EXPECT_GT(misfit(traced_means(scene_named(fault.scene), kSamples, "mis"), wanted), 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PathLayersFaults, testing::ValuesIn(kFaults),
-                         [](const testing::TestParamInfo<Fault>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, PathLayersFaults, testing::ValuesIn(kLayersFaults),
+                         [](const testing::TestParamInfo<LayersFault>& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -12,7 +12,7 @@ using namespace clarity::test;
 
 namespace {
 
-rt_material solid(float ior, std::array<float, 3> absorption) {
+rt_material absorbing(float ior, std::array<float, 3> absorption) {
     rt_material m = diffuse(1, 1, 1);
     m.model = RT_MODEL_DIELECTRIC;
     m.ior = ior;
@@ -44,8 +44,8 @@ PathPicture slabs(const std::vector<std::pair<float, rt_material>>& solids, unsi
 
 // Beer-Lambert: exp of minus absorption times the way in each. Nothing is bent or reflected.
 TEST(PathMedia, AreRestoredWhenTheInnerSolidIsLeft) {
-    const rt_material water = solid(1, {0.1f, 0.2f, 0.05f}), oil = solid(1, {0.3f, 0.02f, 0.1f}),
-                      glass = solid(1, {0.05f, 0.4f, 0});
+    const rt_material water = absorbing(1, {0.1f, 0.2f, 0.05f}), oil = absorbing(1, {0.3f, 0.02f, 0.1f}),
+                      glass = absorbing(1, {0.05f, 0.4f, 0});
     const PathPicture picture = slabs({{3, water}, {2, oil}, {0.5f, glass}}, 256);
     // Of green. What is left at last decides by roulette.
     EXPECT_NEAR(picture.average(), std::exp(-2 * 0.2 - 3 * 0.02 - 1 * 0.4), 4 * picture.average_error() + 1e-4);
@@ -55,7 +55,7 @@ TEST(PathMedia, AreRestoredWhenTheInnerSolidIsLeft) {
 // The boundary of glass in water reflects by the ratio of both: 0.36 % instead of 4 %. Of plates without absorption the share
 // that comes through is 1 / (1 + sum of R / (1 - R)).
 TEST(PathMedia, TheRatioOfIndicesIsThatOfBothSides) {
-    const PathPicture picture = slabs({{3, solid(1.33f, {})}, {1, solid(1.5f, {})}}, 1024);
+    const PathPicture picture = slabs({{3, absorbing(1.33f, {})}, {1, absorbing(1.5f, {})}}, 1024);
     const auto boundary = [](double a, double b) {
         const double r = (a - b) * (a - b) / ((a + b) * (a + b));
         return r / (1 - r);
@@ -69,7 +69,7 @@ TEST(PathMedia, TheRatioOfIndicesIsThatOfBothSides) {
 TEST(PathMedia, FourSolidsAreRemembered) {
     for (const int count : {4, 5}) {
         std::vector<std::pair<float, rt_material>> solids;
-        for (int i = 0; i < count; ++i) solids.emplace_back(float(count - i), solid(1, {0.1f, 0.1f, 0.1f}));
+        for (int i = 0; i < count; ++i) solids.emplace_back(float(count - i), absorbing(1, {0.1f, 0.1f, 0.1f}));
         const PathPicture picture = slabs(solids, 256);
         // Of five, a last stretch of length 1 is not counted.
         EXPECT_NEAR(picture.average(), std::exp(count == 4 ? -0.8 : -0.9), 4 * picture.average_error() + 1e-4) << count;

@@ -14,11 +14,11 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr unsigned kSamples = 64;
+constexpr unsigned kNoiseSamples = 64;
 
 FloatImage picture(const Scene& scene, Pairs settings, int seed) {
     settings.insert(settings.end(), {{"lanes", "16"}, {"accel", "bvh8"}, {"seed", std::to_string(seed)}});
-    return trace_paths(scene, make_view(scene, 4.0f / 3), kSamples, settings).mean;
+    return trace_paths(scene, make_view(scene, 4.0f / 3), kNoiseSamples, settings).mean;
 }
 
 // The RMSE of a picture over the pixels of a mask: two pictures with other seeds differ by twice its square. The worst 0.1 % of
@@ -61,7 +61,7 @@ TEST(PathNoise, SobolHasFourFifthsOfIndependentOnFourOfFiveScenes) {
             return noise(*scene, {{"size", "96x72"}, {"depth", "8"}, {"sampler", sampler}});
         };
         const double sobol = of("sobol"), independent = of("independent");
-        std::printf("%-15s RMSE at %u samples: sobol %.5f, independent %.5f, ratio %.3f\n", s.name, kSamples, sobol,
+        std::printf("%-15s RMSE at %u samples: sobol %.5f, independent %.5f, ratio %.3f\n", s.name, kNoiseSamples, sobol,
                     independent, sobol / independent);
         good += sobol <= 0.8 * independent;
     }

@@ -60,12 +60,12 @@ TEST(PathSurfaces, FaultsOfTheCallsAreFound) {
 
 namespace {
 
-struct Fault {
+struct SurfaceFault {
     const char *name, *file, *sound, *faulty;
     const char* found_as;  // the word of path_problems() that must find it
 };
 
-const Fault kFaults[] = {
+const SurfaceFault kSurfaceFaults[] = {
     {"NoCosine", "tracers/path/scatter.h", "rt_mul(light, s.radiance_over_pdf)",
      "rt_scale(rt_vfloat(1.0f) / rt_max(wi.z, rt_vfloat(1e-3f)), rt_mul(light, s.radiance_over_pdf))", "cosine"},
     {"RouletteWithoutWeight", "tracers/path/scatter.h", "weight = rt_scale(one / chance, weight);", "", "roulette"},
@@ -86,16 +86,16 @@ const Fault kFaults[] = {
      "alpha = m->roughness * m->roughness * m->roughness * m->roughness;", "facets"},
 };
 
-class PathFaults : public testing::TestWithParam<Fault> {};
+class PathFaults : public testing::TestWithParam<SurfaceFault> {};
 
 TEST_P(PathFaults, IsFound) {
-    const Fault& fault = GetParam();
+    const SurfaceFault& fault = GetParam();
     const FaultyKernel planted(fault.file, fault.sound, fault.faulty);
     if (quick()) return;  // the text is there
     EXPECT_EQ(path_problems(1, fault.found_as), std::vector<std::string>{fault.found_as});
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PathFaults, testing::ValuesIn(kFaults),
-                         [](const testing::TestParamInfo<Fault>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, PathFaults, testing::ValuesIn(kSurfaceFaults),
+                         [](const testing::TestParamInfo<SurfaceFault>& info) { return std::string(info.param.name); });
 
 }  // namespace

@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(, PathTruth, testing::Values("furnaces", "lights", "ski
                          [](const auto& info) { return std::string(info.param); });
 
 // Faults of surfaces, each planted into the text of a kernel.
-const PlantedFault kFaults[] = {
+const PlantedFault kTruthFaults[] = {
     {"density off by 2", "shading/bsdf.h", "*pdf = rt_select(above, p.diffuse * cosine, zero);",
      "*pdf = rt_select(above, rt_vfloat(2.0f) * p.diffuse * cosine, zero);", "PathTruth.IsMet/rooms"},
     {"normals of the wrong side", "shading/point.h", "const vfloat side = rt_select(p.leaving, -one, one);",
@@ -135,9 +135,9 @@ const PlantedFault kFaults[] = {
 };
 
 TEST(PathTruthTexts, HaveTheirTexts) {
-    expect_plantable(kFaults);
+    expect_plantable(kTruthFaults);
 }
 
 TEST(PathTruthFaults, AreFound) {
-    expect_found(kFaults);
+    expect_found(kTruthFaults);
 }

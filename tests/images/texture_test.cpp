@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t kRed = 0xff0000ffu, kGreen = 0xff00ff00u, kBlue = 0xffff0000u, kWhite = 0xffffffffu;
 
 // Two by two texels, top row first: red, green / blue, white.
-rt_u32 add_texture(Scene& scene) {
+rt_u32 add_test_texture(Scene& scene) {
     scene.textures.push_back({static_cast<rt_u32>(scene.texels.size()), 2, 2, 0, 0, 0, 0});
     for (const uint32_t texel : {kRed, kGreen, kBlue, kWhite}) scene.texels.push_back(texel);
     return static_cast<rt_u32>(scene.textures.size() - 1);
@@ -23,20 +23,20 @@ rt_u32 add_texture(Scene& scene) {
 
 Scene textured_square(const Affine& placed = kIdentity) {
     Scene scene = white_square(placed);
-    scene.materials[0].values.texture = add_texture(scene);
+    scene.materials[0].values.texture = add_test_texture(scene);
     return scene;
 }
 
-void expect_color(const std::array<float, 3>& seen, const std::array<float, 3>& wanted, const char* where) {
+void expect_texel(const std::array<float, 3>& seen, const std::array<float, 3>& wanted, const char* where) {
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], wanted[k], 0.04) << where << ", channel " << k;
 }
 
 TEST(Texture, BottomLeftIsUvZero) {
     const Picture picture = trace(textured_square(), view_of_square(), 64, 64, 1);
-    expect_color(picture.at(15, 15), {1, 0, 0}, "top left");
-    expect_color(picture.at(48, 15), {0, 1, 0}, "top right");
-    expect_color(picture.at(15, 48), {0, 0, 1}, "bottom left");
-    expect_color(picture.at(48, 48), {1, 1, 1}, "bottom right");
+    expect_texel(picture.at(15, 15), {1, 0, 0}, "top left");
+    expect_texel(picture.at(48, 15), {0, 1, 0}, "top right");
+    expect_texel(picture.at(15, 48), {0, 0, 1}, "bottom left");
+    expect_texel(picture.at(48, 48), {1, 1, 1}, "bottom right");
 }
 
 TEST(Texture, IsBilinearBetweenTexels) {
@@ -117,10 +117,10 @@ TEST(Texture, WrapModesCostNothingWhereAllRepeat) {
 TEST(Texture, RotatesWithTheMesh) {
     // A quarter turn about the square's centre, counter-clockwise: the top right corner moves to the top left.
     const Picture picture = trace(textured_square({0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}), view_of_square(), 64, 64, 1);
-    expect_color(picture.at(15, 15), {0, 1, 0}, "top left");
-    expect_color(picture.at(48, 15), {1, 1, 1}, "top right");
-    expect_color(picture.at(15, 48), {1, 0, 0}, "bottom left");
-    expect_color(picture.at(48, 48), {0, 0, 1}, "bottom right");
+    expect_texel(picture.at(15, 15), {0, 1, 0}, "top left");
+    expect_texel(picture.at(48, 15), {1, 1, 1}, "top right");
+    expect_texel(picture.at(15, 48), {1, 0, 0}, "bottom left");
+    expect_texel(picture.at(48, 48), {0, 0, 1}, "bottom right");
 }
 
 TEST(Texture, OnInstances) {
@@ -129,16 +129,16 @@ TEST(Texture, OnInstances) {
     second.world_from_object = {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, -1};  // rotated, and hidden behind the first
     scene.instances.push_back(second);
     const Picture front = trace(scene, view_of_square(), 64, 64, 1);
-    expect_color(front.at(15, 48), {0, 0, 1}, "bottom left of the first");
+    expect_texel(front.at(15, 48), {0, 0, 1}, "bottom left of the first");
     std::swap(scene.instances[0].world_from_object[11], scene.instances[1].world_from_object[11]);
     const Picture turned = trace(scene, view_of_square(), 64, 64, 1);
-    expect_color(turned.at(15, 48), {1, 0, 0}, "bottom left of the second");
+    expect_texel(turned.at(15, 48), {1, 0, 0}, "bottom left of the second");
 }
 
 TEST(Texture, UprightOnASphere) {
     Scene scene = scene_of(TriangleMesh());
     scene.materials[0].values = diffuse(1, 1, 1);
-    scene.materials[0].values.texture = add_texture(scene);
+    scene.materials[0].values.texture = add_test_texture(scene);
     Sphere ball;
     ball.center = {0, 0, 0};
     ball.radius = 1;

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <random>
 
+#include "base/angle.hpp"
 #include "scene/triangulate.hpp"
 
 namespace clarity {
 namespace {
 
 using Points = std::vector<std::array<double, 2>>;
-constexpr double kPi = 3.14159265358979323846;
 
 // Puts the face on a slanted plane, so that the projection is tested too. Lengths stay the same.
 std::vector<float> on_a_slope(const Points& points) {

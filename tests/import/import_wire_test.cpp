@@ -28,7 +28,7 @@ void fill(MemoryFile& file, const std::vector<char>& all, bool seal = true) {
     if (seal) fcntl(file.fd(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW);
 }
 
-Scene sample() {
+Scene sample_to_send() {
     Scene s;
     s.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     s.normals.assign(9, 0.5f);
@@ -85,7 +85,7 @@ std::vector<char> image_of(const Scene& scene) {
 }
 
 TEST(Wire, everything_arrives) {
-    const Scene sent = sample();
+    const Scene sent = sample_to_send();
     ASSERT_EQ(validate(sent), "");
     MemoryFile file;
     write_scene(file, sent);
@@ -114,7 +114,7 @@ TEST(Wire, everything_arrives) {
 }
 
 TEST(Wire, a_sealed_scene_is_used_where_it_lies) {
-    const Scene sent = sample();
+    const Scene sent = sample_to_send();
     MemoryFile file;
     write_scene(file, sent);
     EXPECT_EQ(refusal([&] { map_scene(file); }), "the shared memory is not sealed") << "another process might write into it";
@@ -136,7 +136,7 @@ TEST(Wire, a_sealed_scene_is_used_where_it_lies) {
 }
 
 TEST(Wire, a_scene_that_others_share_is_sent_without_harm) {
-    const Scene sent = sample();
+    const Scene sent = sample_to_send();
     const Scene copy = sent;
     const std::vector<char> image = image_of(sent);
     EXPECT_EQ(image_of(copy), image);
@@ -146,13 +146,13 @@ TEST(Wire, a_scene_that_others_share_is_sent_without_harm) {
 
 TEST(Wire, an_unsealed_file_is_refused) {
     MemoryFile file;
-    fill(file, image_of(sample()), false);
+    fill(file, image_of(sample_to_send()), false);
     EXPECT_EQ(refusal([&] { read_scene(file); }), "the shared memory is not sealed");
 }
 
 TEST(Wire, the_file_keeps_its_size) {
     MemoryFile file;
-    write_scene(file, sample());
+    write_scene(file, sample_to_send());
     const off_t size = lseek(file.fd(), 0, SEEK_END);
     EXPECT_LT(ftruncate(file.fd(), 0), 0);
     EXPECT_LT(ftruncate(file.fd(), size + 1), 0);
@@ -161,7 +161,7 @@ TEST(Wire, the_file_keeps_its_size) {
 
 // A worker under an attacker's control may go on writing while the host reads, and after that.
 TEST(Wire, writing_meanwhile_does_no_harm) {
-    Scene sent = sample();
+    Scene sent = sample_to_send();
     sent.texels.assign(1 << 20, 7);
     sent.textures = {{0, 1024, 1024, 0, 0, 0, 0}};
     const std::vector<char> whole = image_of(sent);
@@ -193,7 +193,7 @@ TEST(Wire, writing_meanwhile_does_no_harm) {
 
 TEST(Wire, the_scene_is_not_held_twice) {
     MemoryFile file;
-    Scene sent = sample();
+    Scene sent = sample_to_send();
     sent.texels.assign(8 << 20, 7);  // 32 MB
     sent.textures = {{0, 4096, 2048, 0, 0, 0, 0}};
     write_scene(file, sent);
@@ -208,7 +208,7 @@ TEST(Wire, the_scene_is_not_held_twice) {
 }
 
 TEST(Wire, every_cut_is_refused) {
-    const std::vector<char> whole = image_of(sample());
+    const std::vector<char> whole = image_of(sample_to_send());
     for (size_t size = 0; size < whole.size(); size += 7) {
         MemoryFile file;
         fill(file, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
@@ -217,7 +217,7 @@ TEST(Wire, every_cut_is_refused) {
 }
 
 TEST(Wire, no_damage_does_harm) {
-    const std::vector<char> whole = image_of(sample());
+    const std::vector<char> whole = image_of(sample_to_send());
     std::mt19937 random(11);
     int refused = 0, unsound = 0;
     for (int run = 0; run < 20000; ++run) {

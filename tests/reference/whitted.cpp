@@ -11,7 +11,7 @@ namespace {
 Vec product(const Vec& a, const Vec& b) {
     return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
 }
-double largest(const Vec& a) {
+double strongest(const Vec& a) {
     return std::max({a[0], a[1], a[2]});
 }
 
@@ -42,13 +42,13 @@ class Tracer {
         const double fresnel = test::fresnel(cos_in, eta);
         const double mirrored = material.reflect + material.refract * fresnel, refracted = material.refract * (1 - fresnel);
 
-        if (mirrored * largest(weight) > number_of(settings_, "min_weight")) {
+        if (mirrored * strongest(weight) > number_of(settings_, "min_weight")) {
             Vec direction = ray.direction + 2 * cos_in * normal;
             // With an interpolated normal the direction may point into the surface: it is then mirrored out again.
             if (dot(direction, geometric) < 0) direction = direction - 2 * dot(direction, geometric) * geometric;
             light = light + mirrored * trace(leave(at, geometric, direction), mirrored * weight, generation + 1);
         }
-        if (refracted * largest(weight) > number_of(settings_, "min_weight")) {
+        if (refracted * strongest(weight) > number_of(settings_, "min_weight")) {
             const Vec share = refracted * color_at(material, at);
             const Ray inside = leave(at, -1 * geometric, test::refracted(ray.direction, normal, eta));
             light = light + product(share, trace(inside, product(share, weight), generation + 1));

@@ -148,6 +148,12 @@ View view_from(const Point& eye, const Point& target, double fov_deg) {
     return view;
 }
 
+View dark_view(const Point& eye, const Point& target, double fov_deg) {
+    View view = view_from(eye, target, fov_deg);
+    view.background = view.ambient = {0, 0, 0};
+    return view;
+}
+
 ScenePtr rubble() {
     static const ScenePtr scene = [] {
         std::mt19937 random(11);

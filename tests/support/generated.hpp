@@ -43,5 +43,7 @@ rt_material glass(float ior);
 
 // A camera at `eye` that looks at `target`, and no lights.
 View view_from(const Point& eye, const Point& target, double fov_deg);
+// The same without light from outside of the scene.
+View dark_view(const Point& eye, const Point& target, double fov_deg);
 
 }  // namespace clarity::test

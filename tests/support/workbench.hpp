@@ -53,6 +53,10 @@ class Workbench {
     RayQueries queries_;
 };
 
+inline Workbench& bench() {
+    return Workbench::get();
+}
+
 // CLARITY_QUICK_TESTS is set.
 bool quick();
 // It is 1, as ./test sets it, and not `faults`, as where a planted fault must be found: of several ways to one end, such as

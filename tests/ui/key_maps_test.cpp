@@ -15,7 +15,6 @@ namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
-using Point = std::array<double, 3>;
 
 Point minus(const Point& a, const Point& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};

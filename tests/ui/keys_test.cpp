@@ -10,12 +10,6 @@
 namespace clarity::ui {
 namespace {
 
-using Point = std::array<double, 3>;
-
-double distance(const Point& a, const Point& b) {
-    return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 class Keys : public WindowTest {
  protected:
     void SetUp() override {
@@ -49,9 +43,10 @@ TEST_F(Keys, CameraKeysMoveTheCameraAndThePicture) {
         const auto axis = static_cast<size_t>(c.axis);
         EXPECT_GT(c.sign * (to[axis] - from[axis]), 1e-3);
         if (c.turns)
-            EXPECT_LT(distance(eye, eye_was), 1e-6);
+            EXPECT_LT(distance_between(eye, eye_was), 1e-6);
         else
-            EXPECT_NEAR(distance(eye, target), distance(eye_was, target_was), 1e-4);  // the viewing direction stays
+            EXPECT_NEAR(distance_between(eye, target), distance_between(eye_was, target_was),
+                        1e-4);  // the viewing direction stays
         EXPECT_EQ(now["light"], was["light"]);
     }
 }
@@ -151,7 +146,7 @@ TEST_F(Keys, AHeldKeyMovesUntilItIsReleased) {
     window->key_up("Right");
     window->settle();
     const Point held = window->state()["eye"];
-    EXPECT_GT(distance(held, tapped), 3 * distance(tapped, start));
+    EXPECT_GT(distance_between(held, tapped), 3 * distance_between(tapped, start));
     usleep(300000);
     window->settle();
     EXPECT_EQ(Point(window->state()["eye"]), held);

@@ -9,12 +9,6 @@
 namespace clarity::ui {
 namespace {
 
-using Point = std::array<double, 3>;
-
-double distance(const Point& a, const Point& b) {
-    return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 constexpr int kWidth = 160, kHeight = 120;
 
 // Writes a scene: two squares of one file side by side in the plane z = 0, a sphere above them, sky around them.
@@ -156,8 +150,8 @@ TEST_F(Mouse, ADragOrbitsAndPicksNothing) {
     const auto now = window->state();
     EXPECT_EQ(now["selected"]["instance"], -1);
     EXPECT_EQ(now["target"], was["target"]);
-    EXPECT_GT(distance(now["eye"], was["eye"]), 0.1);
-    EXPECT_NEAR(distance(now["eye"], now["target"]), 5, 1e-3);
+    EXPECT_GT(distance_between(now["eye"], was["eye"]), 0.1);
+    EXPECT_NEAR(distance_between(now["eye"], now["target"]), 5, 1e-3);
 }
 
 // Ctrl + drag: that part alone is traced, bit for bit, the rest is darker. Clicks find the pixels of the whole. V traces it
@@ -216,7 +210,7 @@ TEST_F(Mouse, TheViewersMapLooksAround) {
     window->settle();
     const auto now = window->state();
     EXPECT_EQ(now["eye"], was["eye"]);
-    EXPECT_GT(distance(now["target"], was["target"]), 0.1);
+    EXPECT_GT(distance_between(now["target"], was["target"]), 0.1);
 }
 
 // A point in the target's plane follows the mouse.
@@ -244,10 +238,10 @@ TEST_F(Mouse, TheWheelMovesTheCameraCloser) {
     window->settle();
     const auto near = window->state();
     EXPECT_EQ(near["target"], was["target"]);
-    EXPECT_LT(distance(near["eye"], near["target"]), 4.5);
+    EXPECT_LT(distance_between(near["eye"], near["target"]), 4.5);
     window->wheel(at(-1, 0), -3);
     window->settle();
-    EXPECT_LT(distance(window->state()["eye"], was["eye"]), 0.01);
+    EXPECT_LT(distance_between(window->state()["eye"], was["eye"]), 0.01);
 }
 
 TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
@@ -258,8 +252,8 @@ TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
         window->settle();
     }
     const auto now = window->state();
-    EXPECT_LT(distance(now["target"], {1.2, -0.4, 0}), 0.05);
-    EXPECT_LT(distance(now["eye"], now["target"]), 0.9 * distance(was["eye"], was["target"]));
+    EXPECT_LT(distance_between(now["target"], {1.2, -0.4, 0}), 0.05);
+    EXPECT_LT(distance_between(now["eye"], now["target"]), 0.9 * distance_between(was["eye"], was["target"]));
     // The sky gives no point to look at.
     window->double_click(window->place_of_pixel(2, 2));
     window->settle();
@@ -269,7 +263,7 @@ TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
 TEST_F(Mouse, ADoubleClickCountsThoughNoFrameLiesBetween) {
     window->double_click_in_one_frame(at(1.2, -0.4));
     window->settle();
-    EXPECT_LT(distance(window->state()["target"], {1.2, -0.4, 0}), 0.05);
+    EXPECT_LT(distance_between(window->state()["target"], {1.2, -0.4, 0}), 0.05);
 }
 
 TEST_F(Mouse, LightsAreDraggedInTheView) {

@@ -9,7 +9,7 @@ namespace clarity::ui {
 namespace {
 
 // A box that turns and moves, a lamp that passes by, and a camera that follows: each frame looks different.
-const char* const kScene =
+const char* const kTimelineScene =
     "camera main eye 0 2 7 target 0 0.5 0 fov 40\n"
     "camera chase eye 0 2 6 target 0 0 0 fov 40\n"
     "light point position -3 5 4 color .8 .7 .6 name lamp\n"
@@ -31,7 +31,7 @@ class Timeline : public WindowTest {
         std::ofstream(folder.path() + "/box.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
                                                      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 1 5 8 4\n";
         scene = folder.path() + "/moving.scene";
-        std::ofstream(scene) << kScene;
+        std::ofstream(scene) << kTimelineScene;
     }
     std::unique_ptr<WindowDriver> open_moving(const std::vector<std::string>& more = {}) {
         std::vector<std::string> arguments = {"--size", "96x72", "--spp", "1", scene};

@@ -101,10 +101,6 @@ std::string data_uri(const std::string& bytes) {
     return out;
 }
 
-std::string floats(const std::vector<float>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
-}
-
 nlohmann::json accessor(size_t view, size_t count, const char* type, int component_type = 5126) {
     return {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}};
 }

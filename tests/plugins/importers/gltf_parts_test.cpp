@@ -14,7 +14,7 @@ namespace clarity::test {
 namespace {
 
 // A picture of two by two texels, as TGA: red, green / blue, white from the top left.
-std::string picture() {
+std::string four_texels() {
     std::string tga = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0x20};
     return tga + std::string("\x00\x00\xff\x00\xff\x00\xff\x00\x00\xff\xff\xff", 12);
 }
@@ -27,7 +27,7 @@ Model rich() {
         model.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126, 3);
     model.primitive()["attributes"]["TEXCOORD_0"] = model.add(std::vector<float>{0, 1, 1, 1, 0, 0, 1, 0}, "VEC2", 5126, 2);
     model.primitive()["material"] = 0;
-    model["images"] = {{{"uri", "data:image/tga;base64," + base64(picture())}}};
+    model["images"] = {{{"uri", "data:image/tga;base64," + base64(four_texels())}}};
     model["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
     model["textures"] = {{{"source", 0}, {"sampler", 0}}};
     model["materials"] = {
@@ -459,7 +459,7 @@ TEST_F(GltfUri, OfImagesAreDecodedToo) {
                                                                                     {"50%.tga", "50%25.tga"},
                                                                                     {"a%20b.tga", "a%20b.tga"},
                                                                                     {"h\xC3\xA4.tga", "h%C3%A4.tga"}}) {
-        folder_.write(file, picture());
+        folder_.write(file, four_texels());
         model["images"][0] = {{"uri", uri}};
         const Scene scene = import(model);
         EXPECT_EQ(scene.textures.size(), 1u) << uri;

@@ -10,8 +10,6 @@
 namespace clarity::test {
 namespace {
 
-constexpr double kSecondsAtMost = 10;
-
 class HostileModel : public testing::Test {
  protected:
     // Returns the message of the failed import, or an empty string if the file was imported.

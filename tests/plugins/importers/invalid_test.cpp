@@ -15,7 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSecondsAtMost = 10;
 constexpr long kMemoryKibAtMost = 2L << 20;
 
 std::vector<std::string> invalid_names() {

@@ -19,6 +19,9 @@ std::string shared_scenes();
 std::vector<std::string> files_in(const std::string& folder, const std::string& ending);
 nlohmann::json read_json(const std::string& path);
 
+// What an import of a hostile file may take.
+constexpr double kSecondsAtMost = 10;
+
 // True if the importer plugin for this file's extension was built.
 bool has_importer_for(const std::string& path);
 
@@ -33,6 +36,11 @@ std::vector<InstanceMeasure> measure_instances(const Scene& scene);
 
 // Returns the largest difference of any coordinate, divided by the diagonal of the truth. truth: [[min], [max]].
 double bounds_error(const Bounds& bounds, const nlohmann::json& truth);
+
+// Their bytes, as in a file.
+inline std::string floats(const std::vector<float>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
 
 // Makes a name for a parameterised test: letters and digits only.
 std::string test_name(const std::string& text);

@@ -36,10 +36,6 @@ std::string chunk_3ds(uint32_t kind, const std::string& content) {
     return little_endian(kind, 2) + little_endian(static_cast<uint32_t>(content.size() + 6), 4) + content;
 }
 
-std::string floats(const std::vector<float>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
-}
-
 std::string model_3ds() {
     const std::string vertices = little_endian(4, 2) + floats({0, 0, 0, 1, 0, 1, 2, 0, 0, 0, 1, 0});
     std::string faces = little_endian(2, 2);

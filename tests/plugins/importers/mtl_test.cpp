@@ -21,13 +21,13 @@ class Mtl : public MeshFiles {
 };
 
 // A picture of two texels: PNM.
-std::string picture() {
+std::string two_texels() {
     return std::string("P6\n2 1\n255\n") + std::string("\xFF\0\0\0\xFF\0", 6);
 }
 
 TEST_F(Mtl, OptionsAreObeyedOrNamed) {
-    folder_.write("four.ppm", picture());
-    folder_.write("4 wood#1 four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
+    folder_.write("4 wood#1 four.ppm", two_texels());
     const std::string mesh = "mtllib m.mtl\n" + kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n";
     const auto with_map = [&](const std::string& statement) {
         folder_.write("m.mtl", "newmtl m\nKd 1 1 1\n" + statement + "\n");
@@ -70,7 +70,7 @@ TEST_F(Mtl, OptionsAreObeyedOrNamed) {
 
 // Without glass (illum 4, 6, 7, 9) `d` is the share that is there. A map_d of the same picture means its alpha.
 TEST_F(Mtl, SaysHowMuchIsThere) {
-    folder_.write("four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
     EXPECT_EQ(values_of("d 1").alpha, RT_ALPHA_OPAQUE);
     EXPECT_EQ(values_of("Tr 0.75").alpha, RT_ALPHA_BLEND);
     EXPECT_FLOAT_EQ(values_of("Tr 0.75").opacity, 0.25f);
@@ -83,7 +83,7 @@ TEST_F(Mtl, SaysHowMuchIsThere) {
     EXPECT_TRUE(cut.warnings.empty()) << cut.warnings.at(0);
     EXPECT_EQ(cut.materials.back().values.alpha, RT_ALPHA_BLEND);
     EXPECT_EQ(cut.materials.back().values.opacity, 1);
-    folder_.write("hole.ppm", picture());
+    folder_.write("hole.ppm", two_texels());
     const Scene other = square_of("map_Kd four.ppm\nmap_d hole.ppm");
     EXPECT_TRUE(other.warnings.empty()) << other.warnings.at(0);
     EXPECT_EQ(other.materials.back().values.alpha, RT_ALPHA_BLEND);
@@ -95,7 +95,7 @@ TEST_F(Mtl, SaysHowMuchIsThere) {
 }
 
 TEST_F(Mtl, HasMapsOfOtherUses) {
-    folder_.write("four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
     folder_.write("grey.ppm", std::string("P6\n4 1\n255\n") + std::string("\0\0\0\x80\x80\x80\xFF\xFF\xFF\x80\x80\x80", 12));
     const Scene glowing = square_of("Ke 0 0 0\nmap_Ke -s 2 2 four.ppm");
     const Material& glows = glowing.materials.back();
@@ -120,7 +120,7 @@ TEST_F(Mtl, HasMapsOfOtherUses) {
 }
 
 TEST_F(Mtl, MovesThePictureOfItsOwnFaces) {
-    folder_.write("four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
     folder_.write("m.mtl", "newmtl a\nmap_Kd -s 2 2 2 four.ppm\nnewmtl b\nmap_Kd -clamp on four.ppm\n");
     const Scene scene =
         import("a.obj", "mtllib m.mtl\n" + kSquare +
@@ -167,7 +167,7 @@ TEST_F(Mtl, GlassAndCutsOfPhysicallyBasedRendering) {
 
 // The number beside a map means nothing.
 TEST_F(Mtl, MapsOfPhysicallyBasedRendering) {
-    folder_.write("four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
     const std::pair<const char*, rt_u32> kWords[] = {{"map_Pr", RT_MAP_ROUGHNESS},
                                                      {"map_Pm", RT_MAP_METALLIC},
                                                      {"map_Ps", RT_MAP_SHEEN_COLOR},
@@ -204,7 +204,7 @@ TEST_F(Mtl, ModelsOfIllumination) {
 
 // A strength of 1 is a reflectance of 0.08 straight on: that of glTF's plain surface, 0.04, times weight and colour.
 TEST_F(Mtl, HighlightsAreReflections) {
-    folder_.write("four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
     const MaterialValues plastic = values_of("Ks .5 .5 .5\nNs 98\nillum 2");
     EXPECT_EQ(plastic.model, RT_MODEL_GLTF);
     EXPECT_FLOAT_EQ(plastic.roughness, std::sqrt(std::sqrt(2 / 100.0f)));
@@ -233,7 +233,7 @@ TEST_F(Mtl, HighlightsAreReflections) {
 
 // A filter has a hue in clear glass alone; elsewhere that is said. A grey one means nothing, as programs write it beside all.
 TEST_F(Mtl, HuesOfFiltersAreShownOrNamed) {
-    folder_.write("four.ppm", picture());
+    folder_.write("four.ppm", two_texels());
     const MaterialValues glass = values_of("illum 6\nKd .1 .1 .1\nTf 1 .2 .1");
     EXPECT_FLOAT_EQ(glass.color[1], 0.2f);
     for (const char* lost : {"Tf 1 .2 .1", "illum 2\nd .5\nTf 1 .2 .1", "illum 6\nd .5\nTf 1 .2 .1", "Pr .1\nTf 1 .2 .1"}) {

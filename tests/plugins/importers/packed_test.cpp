@@ -36,7 +36,7 @@ std::string packed(const std::string& piece, size_t times = 1) {
     return out;
 }
 
-std::string data(const std::string& name) {
+std::string content_of(const std::string& name) {
     std::ifstream file(CLARITY_SOURCE_DIR "/tests/plugins/importers/data/" + name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -56,9 +56,9 @@ TEST(PackedFile, IsReadByEveryImporter) {
     for (const char* name : {"polygons.obj", "roof.ply", "roof.off", "roof.stl", "nodes.gltf", "nodes.fbx", "box.dae"}) {
         if (!has_importer_for(name)) continue;
         const Scratch folder;
-        folder.write("polygons.mtl", data("polygons.mtl"));
-        const Scene plain = import_file(folder.write(name, data(name)));
-        const std::string path = folder.write(std::string(name) + ".gz", packed(data(name)));
+        folder.write("polygons.mtl", content_of("polygons.mtl"));
+        const Scene plain = import_file(folder.write(name, content_of(name)));
+        const std::string path = folder.write(std::string(name) + ".gz", packed(content_of(name)));
         const Scene scene = import_file(path);
         EXPECT_GT(scene.triangle_count(), 0u) << name;
         EXPECT_EQ(scene.triangle_count(), plain.triangle_count()) << name;
@@ -75,7 +75,7 @@ TEST(PackedFile, IsReadByEveryImporter) {
 
 TEST(PackedFile, IsLoadedByOtherFiles) {
     const Scratch folder;
-    folder.write("roof.ply.gz", packed(data("roof.ply")));
+    folder.write("roof.ply.gz", packed(content_of("roof.ply")));
     const std::string text = "load roof.ply.gz\nload roof.ply.gz\n";
     EXPECT_EQ(import_file(folder.write("two.scene", text)).instances.size(), 2u);
     EXPECT_EQ(import_file(folder.write("two.scene.gz", packed(text))).instances.size(), 2u);
@@ -86,7 +86,7 @@ TEST(PackedFile, IsLoadedByOtherFiles) {
 
 TEST(PackedFile, MayHaveAnyNameAndSeveralParts) {
     const Scratch folder;
-    const std::string plain = data("roof.stl"), half = plain.substr(0, plain.size() / 2);
+    const std::string plain = content_of("roof.stl"), half = plain.substr(0, plain.size() / 2);
     EXPECT_EQ(import_file(folder.write("roof.stl", packed(plain))).triangle_count(), 2u);
     EXPECT_EQ(import_file(folder.write("ROOF.STL.GZ", packed(plain))).triangle_count(), 2u);
     EXPECT_EQ(import_file(folder.write("parts.stl.gz", packed(half) + packed(plain.substr(half.size())))).triangle_count(), 2u);
@@ -95,11 +95,11 @@ TEST(PackedFile, MayHaveAnyNameAndSeveralParts) {
 
 TEST(PackedFile, ThatIsDamagedIsOneClearMessage) {
     const Scratch folder;
-    const std::string whole = packed(data("polygons.obj"));
+    const std::string whole = packed(content_of("polygons.obj"));
     EXPECT_NE(refusal(folder.write("a.obj.gz", whole.substr(0, whole.size() / 2))).find("end too early"), std::string::npos);
     EXPECT_NE(refusal(folder.write("b.obj.gz", whole.substr(0, whole.size() - 8) + "12345678")).find("damaged"),
               std::string::npos);
-    EXPECT_NE(refusal(folder.write("c.obj.gz", data("polygons.obj"))).find("is no gzip file"), std::string::npos);
+    EXPECT_NE(refusal(folder.write("c.obj.gz", content_of("polygons.obj"))).find("is no gzip file"), std::string::npos);
     EXPECT_NE(refusal(folder.write("d.obj.gz", packed(""))).find("nothing is in it"), std::string::npos);
     EXPECT_NE(refusal(folder.write("e.obj.gz", whole.substr(0, 5))).find("gzip"), std::string::npos);
     EXPECT_NE(refusal(folder.write("f.abc.gz", packed("abc"))).find("no importer reads"), std::string::npos);

@@ -13,10 +13,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 ScenePtr primitives() {
     return load_scene(source_file("scenes/primitives.scene"));
 }

@@ -16,10 +16,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 std::vector<std::string> structures() {
     std::vector<std::string> ids = bench().accels();
     ids.erase(std::remove(ids.begin(), ids.end(), "false_counts"), ids.end());  // a plugin of this test

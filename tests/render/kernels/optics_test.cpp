@@ -15,10 +15,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 Scene room() {
     Scene scene = scene_of(box(0.6));
     scene.spheres.push_back({{1.2f, 0.2f, 1}, 0.5f, 0});

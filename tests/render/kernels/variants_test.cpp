@@ -21,10 +21,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 FloatImage picture(const ScenePtr& scene, const View& view, const Configuration& configuration, const std::string& aov,
                    bool portable, bool debug, FrameStats* stats = nullptr) {
     Settings settings = make_settings({{"size", "160x120"}, {"depth", "5"}, {"aov", aov}});

@@ -54,7 +54,7 @@ struct Picture {
     double samples() const { return film_noise(sums).mean_samples; }
 };
 
-Settings settings_of(const std::vector<std::pair<std::string, std::string>>& more) {
+Settings adaptive_settings(const std::vector<std::pair<std::string, std::string>>& more) {
     std::vector<std::pair<std::string, std::string>> all = {{"tracer", "path"}, {"accel", "bvh2"},          {"size", "32x32"},
                                                             {"depth", "6"},     {"sampler", "independent"}, {"packet", "8x8"}};
     all.insert(all.end(), more.begin(), more.end());
@@ -70,11 +70,6 @@ Picture traced(Team& team, const ScenePtr& scene, const Settings& settings, unsi
     return picture;
 }
 
-Team& whole_cpu() {
-    static Team* const team = new Team("cpu");  // never destroyed: an OpenCL driver may be gone before static objects are
-    return *team;
-}
-
 class Adaptive : public ::testing::Test {};
 
 TEST_F(Adaptive, ShowsTheLightOfAllSamples) {
@@ -86,8 +81,8 @@ TEST_F(Adaptive, ShowsTheLightOfAllSamples) {
                   {"caustic", caustic()},
                   {"Veach's plates", load_scene(source_file("scenes/veach.scene"))}};
     for (const auto& [name, scene] : scenes) {
-        const Picture all = traced(whole_cpu(), scene, settings_of({{"seed", "1"}}), kSamples),
-                      some = traced(whole_cpu(), scene, settings_of({{"seed", "2"}, {"adaptive", "0.05"}}), kSamples);
+        const Picture all = traced(whole_cpu(), scene, adaptive_settings({{"seed", "1"}}), kSamples),
+                      some = traced(whole_cpu(), scene, adaptive_settings({{"seed", "2"}, {"adaptive", "0.05"}}), kSamples);
         const double error = std::sqrt(all.error_squared() + some.error_squared());
         std::printf("%-15s %.1f of %u samples a pixel, light %.5f instead of %.5f, %.2f standard errors\n", name,
                     some.samples(), kSamples, some.mean(), all.mean(), (some.mean() - all.mean()) / error);
@@ -109,7 +104,7 @@ TEST_F(Adaptive, FindsTheOnlyLitPixels) {
         "polygon material lamp vertices -.7774 .7226 0  -.7226 .7226 0  -.7226 .7774 0  -.7774 .7774 0\n"
         "polygon material lamp vertices .745 -.755 0  .755 -.755 0  .755 -.745 0  .745 -.745 0\n");
     for (const char* seed : {"1", "2", "3", "4"}) {
-        const Picture picture = traced(whole_cpu(), scene, settings_of({{"seed", seed}, {"adaptive", "0.1"}}), 8192);
+        const Picture picture = traced(whole_cpu(), scene, adaptive_settings({{"seed", seed}, {"adaptive", "0.1"}}), 8192);
         const size_t often = 8 * 32 + 8, seldom = 23 * 32 + 23;
         EXPECT_NEAR(picture.light(often), 0.3, 0.1) << seed;
         EXPECT_NEAR(picture.light(seldom), 0.01, 0.005) << seed;
@@ -121,7 +116,7 @@ TEST_F(Adaptive, FindsTheOnlyLitPixels) {
 TEST_F(Adaptive, IsTheSameHoweverItIsTraced) {
     const ScenePtr scene = caustic();
     const auto settings = [](const char* packet) {
-        return settings_of({{"adaptive", "0.1"}, {"packet", packet}, {"lanes", "8"}, {"sampler", "sobol"}});
+        return adaptive_settings({{"adaptive", "0.1"}, {"packet", packet}, {"lanes", "8"}, {"sampler", "sobol"}});
     };
     const Picture one = traced(whole_cpu(), scene, settings("8x8"), 150);
     EXPECT_LT(one.samples(), 140);
@@ -138,7 +133,7 @@ TEST_F(Adaptive, IsTheSameHoweverItIsTraced) {
 // From the film of any moment: it says which pixels rest.
 TEST_F(Adaptive, GoesOnFromItsSums) {
     const ScenePtr scene = caustic();
-    const Settings settings = settings_of({{"adaptive", "0.1"}});
+    const Settings settings = adaptive_settings({{"adaptive", "0.1"}});
     const Picture whole = traced(whole_cpu(), scene, settings, 150);
     for (const unsigned at : {40u, 64u, 100u}) {
         const auto sums = std::make_shared<const FloatImage>(traced(whole_cpu(), scene, settings, at).sums);

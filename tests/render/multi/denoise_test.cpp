@@ -27,11 +27,6 @@ struct Pixel {
     float normal[3] = {0, 0, 1};
 };
 
-Team& whole_cpu() {
-    static Team* const team = new Team("cpu");  // never destroyed: an OpenCL driver may be gone before static objects are
-    return *team;
-}
-
 // Filters a film of these pixels. Returns one colour of each.
 std::vector<float> denoised(const std::function<Pixel(int x, int y)>& of) {
     const size_t pixels = kWidth * kHeight;
@@ -192,7 +187,7 @@ TEST(Denoiser, SpreadsNothingThatIsNoNumber) {
 
 namespace {
 
-Settings settings_of(const std::string& samples, const std::string& denoise, const std::string& seed = "1") {
+Settings denoise_settings(const std::string& samples, const std::string& denoise, const std::string& seed = "1") {
     return make_settings({{"tracer", "path"},
                           {"accel", "bvh8"},
                           {"lanes", "8"},
@@ -215,13 +210,13 @@ TEST(Denoise, TakesMostOfTheErrorOfFourSamples) {
         const char* name;
         double least;  // by which the error of four samples falls
     } scenes[] = {{"cornell", 2.3}, {"spheres_sky", 1.9}};
-    const Settings off = settings_of("1", "off");
+    const Settings off = denoise_settings("1", "off");
     for (const auto& [name, least] : scenes) {
         const ScenePtr scene = load_scene(source_file(std::string("scenes/") + name + ".scene"));
-        picture(whole_cpu(), scene, settings_of("256", "on", "2"));
+        picture(whole_cpu(), scene, denoise_settings("256", "on", "2"));
         const FloatImage reference = whole_cpu().frames.read_picture(off);
         const auto errors = [&](const char* samples) {
-            const double with = rmse_of(picture(whole_cpu(), scene, settings_of(samples, "on")), reference);
+            const double with = rmse_of(picture(whole_cpu(), scene, denoise_settings(samples, "on")), reference);
             const double without = rmse_of(whole_cpu().frames.read_picture(off), reference);
             std::printf("%-12s %s samples: RMSE %.4f, denoised %.4f, ratio %.2f\n", name, samples, without, with,
                         without / with);
@@ -236,7 +231,7 @@ TEST(Denoise, TakesMostOfTheErrorOfFourSamples) {
 
 TEST(Denoise, IsTheSameHoweverItIsTraced) {
     const ScenePtr scene = load_scene(source_file("scenes/cornell.scene"));
-    const Settings on = settings_of("4", "on"), off = settings_of("4", "off");
+    const Settings on = denoise_settings("4", "on"), off = denoise_settings("4", "off");
     const FloatImage one = picture(whole_cpu(), scene, on);
     const ByteImage shown = whole_cpu().frames.read_display(on), noisy = whole_cpu().frames.read_display(off);
     EXPECT_FALSE(shown.pixels == noisy.pixels) << "both of one film";
@@ -260,7 +255,7 @@ TEST(Denoise, IsTheSameHoweverItIsTraced) {
 }
 
 TEST(Denoise, ConcernsColoursOfPathsAlone) {
-    Settings settings = settings_of("1", "on");
+    Settings settings = denoise_settings("1", "on");
     EXPECT_TRUE(denoises(settings));
     settings.denoise = "moving";
     EXPECT_FALSE(denoises(settings)) << "the window says when something moves";

@@ -35,7 +35,7 @@ TEST(CollectRows, RefusesRowsOfAnotherPicture) {
     });
 }
 
-struct Picture {
+struct RankPicture {
     FloatPixels values;
     std::string display;
 };
@@ -43,10 +43,10 @@ struct Picture {
 class RankPictures : public ::testing::TestWithParam<unsigned> {
  protected:
     // What rank 0 has at the end.
-    static Picture trace(unsigned count, const Settings& settings, unsigned pictures = 1) {
+    static RankPicture trace(unsigned count, const Settings& settings, unsigned pictures = 1) {
         const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
         const View view = make_view(*scene, float(settings.width) / float(settings.height));
-        Picture whole;
+        RankPicture whole;
         const auto one = [&](Ranks* ranks) {
             const Devices devices = open_devices(choose_devices("cpu"));
             MultiPreparer preparer(Workbench::get().plugins(), devices);
@@ -71,7 +71,7 @@ class RankPictures : public ::testing::TestWithParam<unsigned> {
         return whole;
     }
     static void expect_same(const Settings& settings, unsigned pictures = 1) {
-        const Picture alone = trace(1, settings), shared = trace(GetParam(), settings, pictures);
+        const RankPicture alone = trace(1, settings), shared = trace(GetParam(), settings, pictures);
         EXPECT_EQ(differing(alone.values, shared.values), 0u);
         EXPECT_TRUE(alone.display == shared.display);
     }

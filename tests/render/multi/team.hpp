@@ -25,6 +25,11 @@ struct Team {
     }
 };
 
+inline Team& whole_cpu() {
+    static Team* const team = new Team("cpu");  // never destroyed: an OpenCL driver may be gone before static objects are
+    return *team;
+}
+
 // Why this machine cannot split its CPU; empty if it can.
 inline std::string why_no_parts() {
     try {

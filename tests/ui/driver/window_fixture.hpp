@@ -2,6 +2,8 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <map>
@@ -12,6 +14,12 @@
 #include "window_driver.hpp"
 
 namespace clarity::ui {
+
+using Point = std::array<double, 3>;
+
+inline double distance_between(const Point& a, const Point& b) {
+    return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
 
 class WindowTest : public ::testing::Test {
  protected:

@@ -19,10 +19,6 @@ namespace {
 using Kind = RayRecord::Kind;
 using Fate = RayRecord::Fate;
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 Inspector& inspector() {
     static auto* const one = new Inspector(bench().shared_device());  // never destroyed, like the workbench
     return *one;

@@ -278,7 +278,7 @@ TEST(AllHits, OfNoRay) {
 }
 
 const char* const kList = "lanes/hit_list.h";
-const PlantedFault kFaults[] = {
+const PlantedFault kAllHitsFaults[] = {
     {"what is listed is not sought", kList, "lanes &= ~(RT_MASK(list->t[i] == t) & RT_MASK(list->prim[i] == number));", ";",
      "AllHits.OfASoup"},
     {"the last place is never filled", kList, "rt_precedes(t, number, list->t[RT_ALL_HITS - 1u], list->prim[RT_ALL_HITS - 1u])",
@@ -299,11 +299,11 @@ const PlantedFault kFaults[] = {
 };
 
 TEST(AllHitsTexts, HaveTheirTexts) {
-    expect_plantable(kFaults);
+    expect_plantable(kAllHitsFaults);
 }
 
 TEST(AllHitsFaults, AreFound) {
-    expect_found(kFaults);
+    expect_found(kAllHitsFaults);
 }
 
 }  // namespace

@@ -153,7 +153,7 @@ TEST(Masks, OfPicturesGoByTheKindOfRays) {
     }
 }
 
-const PlantedFault kFaults[] = {
+const PlantedFault kMaskFaults[] = {
     {"instances have no mask", "primitives/leaf_scene.h", "~instance->hidden)", "0xffffffffu)", "Masks.RaysPass*"},
     {"queries have no mask", "tracers/rays/ray_blocks.h", "rt_vint((int)frame->ray_mask)", "rt_vint(255)", "Masks.RaysPass*"},
     {"shadow rays are the camera's", "shading/shading.h", "rt_vint(RT_SEEN_BY_SHADOW)", "rt_vint(RT_SEEN_BY_CAMERA)",
@@ -171,11 +171,11 @@ const PlantedFault kFaults[] = {
 };
 
 TEST(MasksTexts, HaveTheirTexts) {
-    expect_plantable(kFaults);
+    expect_plantable(kMaskFaults);
 }
 
 TEST(MasksFaults, AreFound) {
-    expect_found(kFaults);
+    expect_found(kMaskFaults);
 }
 
 }  // namespace

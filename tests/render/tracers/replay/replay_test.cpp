@@ -20,14 +20,14 @@ PathReplayer& replayer() {
     return *one;
 }
 
-struct Traced {
+struct Recorded {
     ScenePtr scene;
     View view;
     Settings settings;
     std::shared_ptr<const Prepared> prepared;
     FloatImage picture;
 
-    Traced(const char* file, const Pairs& more, float aperture = 0) : scene(load_scene(source_file(file))) {
+    Recorded(const char* file, const Pairs& more, float aperture = 0) : scene(load_scene(source_file(file))) {
         Pairs all = {{"tracer", "path"}, {"size", "31x23"}, {"depth", "6"}, {"accel", "bvh2"}, {"spp", "21"}};
         all.insert(all.end(), more.begin(), more.end());
         settings = make_settings(all);
@@ -76,7 +76,7 @@ void expect_records_add_up(const Replay& replay, unsigned depth) {
     }
 }
 
-void expect_the_film(const Traced& traced, const std::string& what) {
+void expect_the_film(const Recorded& traced, const std::string& what) {
     size_t lit = 0;
     for (unsigned y = 1; y < 23; y += 3)
         for (unsigned x = 0; x < 31; x += 3) {
@@ -93,47 +93,48 @@ void expect_the_film(const Traced& traced, const std::string& what) {
 constexpr const char* kScene = "scenes/showpiece.scene";
 
 TEST(PathReplay, IsTheFilmBitForBitWithALens) {
-    expect_the_film(Traced(kScene, {{"lanes", "8"}, {"filter", "gaussian"}, {"seed", "7"}, {"mis", "balance"}}, 0.3f), "lens");
+    expect_the_film(Recorded(kScene, {{"lanes", "8"}, {"filter", "gaussian"}, {"seed", "7"}, {"mis", "balance"}}, 0.3f),
+                    "lens");
 }
 
 TEST(PathReplay, IsTheFilmBitForBitForSamplersAndStrategies) {
     for (const char* sampler : {"independent", "sobol"})
         for (const char* strategy : {"nee", "bsdf", "mis"})
-            expect_the_film(Traced(kScene, {{"lanes", "8"}, {"sampler", sampler}, {"strategy", strategy}}),
+            expect_the_film(Recorded(kScene, {{"lanes", "8"}, {"sampler", sampler}, {"strategy", strategy}}),
                             std::string(sampler) + ", " + strategy);
-    expect_the_film(Traced(kScene, {{"lanes", "8"}, {"only_bounce", "2"}, {"only_by", "bsdf"}}), "parts of the light");
+    expect_the_film(Recorded(kScene, {{"lanes", "8"}, {"only_bounce", "2"}, {"only_by", "bsdf"}}), "parts of the light");
 }
 
 TEST(PathReplay, IsTheFilmBitForBitForLanesAndPackets) {
     for (const int lanes : lane_counts())
         for (const char* packet : {"8x8", "7x3"})
-            expect_the_film(Traced(kScene, {{"lanes", std::to_string(lanes)}, {"packet", packet}}),
+            expect_the_film(Recorded(kScene, {{"lanes", std::to_string(lanes)}, {"packet", packet}}),
                             std::to_string(lanes) + " lanes, packets " + packet);
 }
 
 TEST(PathReplay, OfSeveralScenesAndStructures) {
     for (const char* file : {"scenes/primitives.scene", "scenes/shapes.scene"})
-        for (const char* accel : {"bvh4", "bvh8"}) expect_the_film(Traced(file, {{"accel", accel}}), file);
+        for (const char* accel : {"bvh4", "bvh8"}) expect_the_film(Recorded(file, {{"accel", accel}}), file);
 }
 
 TEST(PathReplay, InSeveralCallsIsTheSame) {
-    const Traced traced(kScene, {{"lanes", "8"}});
+    const Recorded traced(kScene, {{"lanes", "8"}});
     const Replay one = traced.replay(15, 15), several = traced.replay(15, 15, {1, 1, 9, 10});
     EXPECT_EQ(several.mean, one.mean);
     ASSERT_EQ(several.samples.size(), one.samples.size());
     for (size_t s = 0; s < one.samples.size(); ++s) EXPECT_EQ(several.samples[s].light, one.samples[s].light) << s;
     ASSERT_EQ(several.records.size(), one.records.size());
-    const Replay other = Traced(kScene, {{"lanes", "8"}, {"seed", "1"}}).replay(15, 15);
+    const Replay other = Recorded(kScene, {{"lanes", "8"}, {"seed", "1"}}).replay(15, 15);
     EXPECT_NE(other.mean, one.mean) << "seeds change nothing";
 }
 
 TEST(PathReplay, RefusesAPixelOutside) {
-    const Traced traced(kScene, {{"lanes", "8"}});
+    const Recorded traced(kScene, {{"lanes", "8"}});
     EXPECT_THROW(traced.replay(31, 0), Error);
     EXPECT_THROW(traced.replay(0, 23), Error);
 }
 
-const PlantedFault kFaults[] = {
+const PlantedFault kReplayFaults[] = {
     {"TheNextSample", "tracers/replay/replay.cl", "first) - 1)", "first))", "PathReplay.*WithALens"},
     {"APixelBeside", "tracers/replay/replay.cl", "(uint2)(x, y)", "(uint2)(x + 1u, y)", "PathReplay.*WithALens"},
     {"OneLevelOfSums", "tracers/replay/replay.cl", "rt_add_sample(film, 1, 0, lights[s], adds == 0u && s == 0u)",
@@ -145,7 +146,7 @@ const PlantedFault kFaults[] = {
 };
 
 TEST(ReplayTexts, HaveTheirTexts) {
-    expect_plantable(kFaults);
+    expect_plantable(kReplayFaults);
 }
 
 class ReplayFaults : public testing::TestWithParam<PlantedFault> {};
@@ -153,6 +154,7 @@ class ReplayFaults : public testing::TestWithParam<PlantedFault> {};
 TEST_P(ReplayFaults, AreFound) {
     EXPECT_EQ(why_not_found(GetParam()), "");
 }
-INSTANTIATE_TEST_SUITE_P(Planted, ReplayFaults, testing::ValuesIn(kFaults), [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Planted, ReplayFaults, testing::ValuesIn(kReplayFaults),
+                         [](const auto& info) { return info.param.name; });
 
 }  // namespace

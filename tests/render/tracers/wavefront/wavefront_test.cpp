@@ -13,10 +13,6 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() {
-    return Workbench::get();
-}
-
 struct Traced {
     FloatImage values, distance;
     FrameStats stats;
