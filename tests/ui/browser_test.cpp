@@ -331,7 +331,7 @@ TEST(SceneRows, SpheresPolygonsPlanesAndShapesAreThePrimitivesThatRaysHit) {
               3);
 }
 
-TEST(Keys, TheListShowsEveryBinding) {
+TEST(KeyList, TheListShowsEveryBinding) {
     const auto lines = key_lines();
     for (const KeyMap& map : key_maps())
         for (const KeyBinding& binding : map.bindings)
