@@ -1,8 +1,9 @@
 /* grid.cl -- one ray from cell to cell (Amanatides, Woo 1987; cl/lanes/cells.h), and through the list of each; a packet whose rays stay
  * together from slice to slice (cl/lanes/slices.h). No stack.
  *
- * A primitive stands in the list of each cell that it meets. RT_LANES boxes of a list are compared at once with the ray or the packet
- * (cl/lanes/cell_parts.h), and the mailbox keeps a ray from testing a primitive in all of its cells. */
+ * A primitive stands in the list of each cell that it meets, and the mailbox keeps a ray from testing it in all of them. On a CPU RT_LANES boxes of a
+ * list are compared at once with the ray or the packet (cl/lanes/cell_parts.h): few triangles are left. On a GPU, where one comparison
+ * saves one test at most, that costs more than it saves (docs/which_structure.md). */
 #include "cl/lanes/cells.h"
 #include "cl/lanes/cell_parts.h"
 #include "cl/lanes/mailbox.h"
@@ -20,21 +21,29 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_single_ray *ray, rt_sing
     rt_mailbox tested;
     rt_clear_mailbox(&tested);
     rt_cells cells;
+#if RT_CPU
     rt_part_ray part_ray;
     rt_begin_part_ray(&part_ray, grid->size, ray);
+#endif
     for (bool more = rt_first_cell(&cells, grid->box, grid->size, grid->cells, ray, hit); more; more = rt_next_cell(&cells, hit->t)) {
         RT_COUNT_VISIT(hit, 1u);
         start = starts + ((uint)cells.z.at * ny + (uint)cells.y.at) * nx + (uint)cells.x.at;
+#if RT_CPU
         for (uint i = start[0]; i < start[1]; i += RT_LANES) {
             RT_COUNT_BOXES(hit, min(start[1] - i, (uint)RT_LANES));
             for (uint bits = rt_ray_meets(&part_ray, &cells, ray, hit, ctx->grid_parts + i, start[1] - i); bits != 0u; bits &= bits - 1u) {
                 const uint at = ctx->grid_list[i + rt_lowest(bits)];
                 if (!rt_was_tested(&tested, at)) RT_LEAF(ctx, at, ray, hit);
             }
-#if RT_ANY_HIT
-            if (hit->t < 0.0f) return;
-#endif
+            if (RT_ANY_HIT && hit->t < 0.0f) return;
         }
+#else
+        for (uint i = start[0]; i < start[1]; ++i) {
+            const uint at = ctx->grid_list[i];
+            if (!rt_was_tested(&tested, at)) RT_LEAF(ctx, at, ray, hit);
+            if (RT_ANY_HIT && hit->t < 0.0f) return;
+        }
+#endif
     }
 }
 

@@ -5,11 +5,11 @@
 // Parker 2006, "Ray Tracing Animated Scenes using Coherent Grid Traversal".
 //
 // A cell takes 4 bytes, a block of 64 cells 8 more, and a primitive 8 for each cell that it is in: its name, and where in the
-// cell its box is (cl/lanes/cell_parts.h). Most names are passed over by that box, 16 at a time on a CPU, so cells may be
-// large. The traversal needs no stack. A build takes time in proportion to the primitives and cells, and rays meet cells in the
-// order of their distances. It is good at primitives of one size that fill their box, such as height fields. It is bad at a
-// small object in a large scene, which lies in few cells, and at empty space, through which a single ray goes cell by cell, and
-// a packet four slices of cells at once.
+// cell its box is (cl/lanes/cell_parts.h). On a CPU most names are passed over by that box, 16 at a time, so cells may be
+// large there. The traversal needs no stack. A build takes time in proportion to the primitives and cells, and rays meet cells
+// in the order of their distances. It is good at primitives of one size that fill their box, such as height fields. It is bad
+// at a small object in a large scene, which lies in few cells, and at empty space, through which a single ray goes cell by
+// cell, and a packet four slices of cells at once.
 #include <algorithm>
 #include <cfloat>
 #include <memory>
@@ -28,13 +28,19 @@ using namespace clarity::space;
 
 enum Param { kDensity, kExact };
 constexpr rt_param kParams[] = {
-    rt::float_param("density", "Density", "cells for each primitive", 0.1, 64, 1),
+    rt::float_param("density", "Density", "cells for each primitive; 0: 1 on a CPU, 3 on a GPU", 0, 64, 0),
     rt::bool_param("exact", "Exact", "a triangle is in the cells that its plane meets; else in all that its box meets", true),
 };
 
-// How many times as many cells a mesh of instances has. An instance is often small in the picture: then a packet covers so much
-// of it that boxes in cells save no tests, and only the order of small cells does.
-constexpr double kInstanced = 4;
+// Cells for each primitive of a group. On a GPU, which reads no boxes in cells, smaller cells save tests.
+double density_of(const rt_build_input& in, rt_u32 group) {
+    const bool is_gpu = in.device->kind == RT_DEVICE_GPU;
+    const double world = in.params[kDensity] > 0 ? in.params[kDensity] : is_gpu ? 3 : 1;
+    // A mesh of instances. These are often small in the picture: then a packet covers so much of one that boxes in cells save
+    // no tests, and only the order of small cells does.
+    constexpr double kInstanced = 4;
+    return group > 0 && !is_gpu ? kInstanced * world : world;
+}
 
 constexpr grid_head kOneCell{{0, 0, 0, 0, 0, 0}, {1, 1, 1}, {1, 1, 1}, 0, 0, {0, 0}};
 
@@ -69,8 +75,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
         const Prims prims{in->prims + group.first, in->params[kExact] != 0 ? in->geometry->triangles : nullptr};
         const Extent extent = extent_of(host, prims.prims, group.count);
         heads[g] = kOneCell;
-        const double cells = in->params[kDensity] * extent.count * (g == 0 ? 1 : kInstanced);
-        if (extent.count > 0) shape_cells(heads[g], extent.lo, extent.hi, cells);
+        if (extent.count > 0) shape_cells(heads[g], extent.lo, extent.hi, density_of(*in, g) * extent.count);
         sorts[g] = std::make_unique<CellSort<grid_head, true>>(host, heads[g], prims, group.count, [](rt_u32 i) { return i; });
     });
 
