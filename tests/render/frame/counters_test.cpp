@@ -7,6 +7,7 @@
 #include <cstring>
 #include <random>
 
+#include "plugin/parameters.hpp"
 #include "render/film/film.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
@@ -82,9 +83,14 @@ TEST(Counters, AMailboxKeepsFromTestingTwice) {
     }
     scene.polygons.push_back({0, 4, 0});
     scene.polygon_corners = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1};
+    const rt_plugin& grid = *bench().plugins().accel("grid");
     for (const int lanes : {1, 16}) {
-        const rt_hit hit = counted(shared_scene(scene), "grid", lanes, {ray_of({-0.9f, -3, -0.999f}, {0, 1, 0})})[0];
-        EXPECT_GE(hit.steps, 5u);
+        Settings settings = make_settings({{"accel", "grid"}, {"lanes", std::to_string(lanes)}});
+        settings.accel_params = default_parameters(grid);
+        set_parameter(grid, settings.accel_params, "density", "3");
+        const rt_hit hit =
+            bench().rays(shared_scene(scene), settings, {ray_of({-0.9f, -3, -0.999f}, {0, 1, 0})}, {false, true})[0];
+        EXPECT_GE(hit.steps, 8u);
         EXPECT_EQ(hit.leaf_tests, 1u);
     }
 }
