@@ -176,10 +176,8 @@ bool is_below(const fs::path& name) {
 
 std::string program_key(const DeviceInfo& info, const std::string& source, const std::string& options) {
     std::string text;
-    // Parts of a device run the programs of the whole one; their names end in ", part 1 of 2" (device_choice.cpp).
-    const std::string name_of_whole = info.parts > 0 ? info.name.substr(0, info.name.rfind(", part ")) : info.name;
-    for (const std::string* part :
-         {&info.platform, &info.vendor, &name_of_whole, &info.version, &info.driver, &options, &source})
+    const std::string device = info.name_of_whole();
+    for (const std::string* part : {&info.platform, &info.vendor, &device, &info.version, &info.driver, &options, &source})
         text += std::to_string(part->size()) + ":" + *part;
     // Variables of PoCL that change its code.
     for (const char* name :

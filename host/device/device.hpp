@@ -26,6 +26,8 @@ struct DeviceInfo {
     cl::Platform cl_platform;
     cl::Device cl_device;
     std::string id() const;  // "0:0"; the second of four parts: "0:0/4.1"
+    // Of a part, which has the name of the device and its own number, the first alone. Parts run the programs of the whole.
+    std::string name_of_whole() const;
     // Whether a work-item traces a packet of rays in lanes, and not one ray. Layouts and kernels follow this.
     bool traces_packets() const { return cpu && !llvmpipe; }
     // Lanes that suit the device: 1, or the native float width if it traces packets.

@@ -26,6 +26,8 @@ std::string table_of(const std::vector<DeviceInfo>& devices) {
     return text;
 }
 
+constexpr const char* kPart = ", part ";  // between the name of a device and the number of its part
+
 // Larger numbers of parts are mistakes.
 constexpr unsigned kMostParts = 4096;
 
@@ -110,7 +112,7 @@ std::vector<DeviceInfo> parts_of(const DeviceInfo& whole, unsigned count) {
             DeviceInfo part = whole;
             part.part = i;
             part.parts = count;
-            part.name += ", part " + std::to_string(i + 1) + " of " + std::to_string(count);
+            part.name += kPart + std::to_string(i + 1) + " of " + std::to_string(count);
             part.compute_units = handles[i].getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
             part.cl_device = handles[i];
             parts.push_back(std::move(part));
@@ -137,6 +139,10 @@ void add_word(const std::vector<DeviceInfo>& devices, const std::string& text, s
 }
 
 }  // namespace
+
+std::string DeviceInfo::name_of_whole() const {
+    return parts > 0 ? name.substr(0, name.rfind(kPart)) : name;
+}
 
 std::string DeviceInfo::id() const {
     const std::string whole = std::to_string(platform_index) + ":" + std::to_string(device_index);

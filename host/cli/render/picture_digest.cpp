@@ -83,8 +83,7 @@ std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepare
     for (const double parameter : prepared.settings.accel_params) digest.add_value(parameter);
     // Devices of one kind give the same bits, however many they are.
     std::vector<std::string> kinds;
-    for (const DeviceInfo& device : devices)
-        kinds.push_back(device.name.substr(0, device.name.find(", part ")) + " (" + device.driver + ")");
+    for (const DeviceInfo& device : devices) kinds.push_back(device.name_of_whole() + " (" + device.driver + ")");
     std::sort(kinds.begin(), kinds.end());
     kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
     std::string way;

@@ -117,7 +117,7 @@ bool all_lost(const Devices& devices) {
 std::string devices_name(const std::vector<DeviceInfo>& infos) {
     std::vector<std::pair<std::string, unsigned>> counted;
     for (const DeviceInfo& info : infos) {
-        const std::string name = info.name.substr(0, info.name.find(", part "));
+        const std::string name = info.name_of_whole();
         const auto same = [&](const auto& other) { return other.first == name; };
         const auto found = std::find_if(counted.begin(), counted.end(), same);
         if (found == counted.end())
