@@ -1,30 +1,31 @@
 // own_test.cpp -- `clarity check` accuses none of our own plugins.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
+#include "support/quick.hpp"
+
+using clarity::test::quick;
 
 namespace {
 
 using Words = std::vector<std::string>;
 
-// Checks all of our own plugins of a kind. Returns how many there are. Quick tests (CLARITY_QUICK_TESTS) run the checks in
-// `most` of one plugin, with kernels of one number of lanes, and of the others those in `cheap`: without kernels, whose
-// compilation takes most of the time, and of builders on small scenes. The check of threads builds a large one nine times: a
-// minute for `bsp`.
+// Checks all of our own plugins of a kind. Returns how many there are. Quick tests check plugin `one` with the checks in
+// `most`, by kernels of 16 lanes. They check all others with those in `cheap`, which compile no kernels and build small scenes
+// only: to compile takes most of the time, and the check of threads takes a minute for `bsp`, because it builds a large scene
+// nine times.
 int check_own(const std::string& kind, const std::string& one, const Words& most, const Words& cheap) {
     const nlohmann::json plugins = nlohmann::json::parse(run_program({"plugins", "--json"}).out)["plugins"];
-    const bool is_quick = std::getenv("CLARITY_QUICK_TESTS") != nullptr;
     int count = 0;
     for (const auto& plugin : plugins) {
         if (plugin["status"] != "loaded" || plugin["kind"] != kind) continue;
         Words words = {"check", plugin["id"], "--quick"};
-        if (is_quick) {
+        if (quick()) {
             if (plugin["id"] == one) words.insert(words.end(), {"--lanes", "16"});
             for (const std::string& check : plugin["id"] == one ? most : cheap) words.insert(words.end(), {"--only", check});
         }

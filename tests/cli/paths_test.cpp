@@ -10,9 +10,11 @@
 
 #include "base/pictures/picture_read.hpp"
 #include "cli/run_program.hpp"
+#include "support/quick.hpp"
 #include "support/scratch.hpp"
 
 using clarity::FloatImage;
+using clarity::test::quick;
 
 namespace {
 
@@ -55,16 +57,15 @@ double sum_of(const FloatImage& image) {
 
 TEST_F(Paths, OfSeveralDevicesHaveTheBytesOfOne) {
     ASSERT_EQ(render("one.pfm", {"--device", "cpu"}).exit_code, 0);
-    const bool is_quick = std::getenv("CLARITY_QUICK_TESTS") != nullptr;
     std::vector<std::string> devices = {"cpu/2"};
-    if (!is_quick) devices.insert(devices.end(), {"cpu/2.1", "cpu,cpu/2.0,cpu/2.1"});
-    if (!is_quick && std::thread::hardware_concurrency() >= 4) devices.insert(devices.end(), {"cpu/3", "cpu/4"});
+    if (!quick()) devices.insert(devices.end(), {"cpu/2.1", "cpu,cpu/2.0,cpu/2.1"});
+    if (!quick() && std::thread::hardware_concurrency() >= 4) devices.insert(devices.end(), {"cpu/3", "cpu/4"});
     for (const std::string& device : devices) {
         const ProgramResult result = render("several.pfm", {"--device", device});
         ASSERT_EQ(result.exit_code, 0) << device << ": " << result.err;
         EXPECT_EQ(scratch_.read("several.pfm"), scratch_.read("one.pfm")) << device;
     }
-    if (!is_quick) {  // other kernels
+    if (!quick()) {  // other kernels
         ASSERT_EQ(render("packets.pfm", {"--packet", "3x5", "--accel", "bvh4"}).exit_code, 0);
         EXPECT_EQ(scratch_.read("packets.pfm"), scratch_.read("one.pfm"));
     }

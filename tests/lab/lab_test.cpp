@@ -10,6 +10,7 @@
 #include "cli/run_program.hpp"
 #include "lab_sdk.hpp"
 #include "submissions.hpp"
+#include "support/quick.hpp"
 #include "support/scratch.hpp"
 
 namespace {
@@ -153,7 +154,7 @@ TEST(LabSubmissions, OfWalksThroughAGrid) {
 }
 TEST(LabSubmissions, OfWideNodes) {
     expect_marks(kLabs + "/wide", "wide_pack.hpp", kWidePack);
-    if (!is_quick()) expect_marks(kLabs + "/wide", "wide_unpack.h", kWideUnpack);
+    if (!clarity::test::quick()) expect_marks(kLabs + "/wide", "wide_unpack.h", kWideUnpack);
 }
 TEST(LabSubmissions, OfRefits) {
     expect_marks(kLabs + "/refit", "refit.cpp", kRefit);

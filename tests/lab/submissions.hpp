@@ -16,6 +16,5 @@ struct Submission {
     std::vector<std::pair<const char*, const char*>> more = {};  // edits
 };
 
-bool is_quick();
 // All submissions of a lab, which one run grades; in quick tests some. file: which they hand in.
 void expect_marks(const std::string& folder, const std::string& file, const std::vector<Submission>& all);

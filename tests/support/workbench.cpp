@@ -30,11 +30,6 @@ Settings with_shared_optics(Settings settings) {
 
 // Most of a test's time is the compiler's: seconds for each structure, lane count and class of packets. Quick tests take the
 // structure that users of this device get without asking, `linear`, the widest and the narrowest lanes, and three packets.
-bool quick() {
-    static const bool is_quick = std::getenv("CLARITY_QUICK_TESTS") != nullptr;
-    return is_quick;
-}
-
 bool few_ways() {
     static const bool are_few = quick() && std::strcmp(std::getenv("CLARITY_QUICK_TESTS"), "faults") != 0;
     return are_few;

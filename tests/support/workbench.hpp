@@ -9,6 +9,7 @@
 #include "render/frame/frame_renderer.hpp"
 #include "render/frame/preparer.hpp"
 #include "render/tracers/rays/ray_queries.hpp"
+#include "support/quick.hpp"
 
 namespace clarity::test {
 
@@ -57,8 +58,6 @@ inline Workbench& bench() {
     return Workbench::get();
 }
 
-// CLARITY_QUICK_TESTS is set.
-bool quick();
 // It is 1, as ./test sets it, and not `faults`, as where a planted fault must be found: of several ways to one end, such as
 // tracers, some are enough.
 bool few_ways();
