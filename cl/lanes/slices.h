@@ -1,11 +1,12 @@
-/* slices.h -- the cells of a regular grid that the rays of a packet pass, slice by slice, and none left out. For RT_TRAVERSE_PACKET.
+/* slices.h -- the cells of a regular grid that the rays of a packet pass, slice by slice, and none left out. For
+ * RT_TRAVERSE_PACKET.
  *
  * Wald, Ize, Kensler, Knoll, Parker 2006, "Ray Tracing Animated Scenes using Coherent Grid Traversal". All rays go mainly along
- * one axis, or are at most twice as fast along another. Along the two others they are between a least and a greatest coordinate,
- * in each slice of cells across that axis. So a packet needs two lines for each of these two axes, and no decision about a ray.
- * The least of lines is concave, so the line through the least coordinates at both ends is nowhere above it; likewise for the
- * greatest. Both are computed for RT_LANES slices at once. Four slices are looked at together first: which blocks of 4 x 4 x 4
- * cells the rays may be in (macrocells in the paper), and which cells of these have primitives.
+ * one axis, or are at most twice as fast along another. Along the two others they are between a least and a greatest
+ * coordinate, in each slice of cells across that axis. So a packet needs two lines for each of these two axes, and no decision
+ * about a ray. The least of lines is concave, so the line through the least coordinates at both ends is nowhere above it;
+ * likewise for the greatest. Both are computed for RT_LANES slices at once. Four slices are looked at together first: which
+ * blocks of 4 x 4 x 4 cells the rays may be in (macrocells in the paper), and which cells of these have primitives.
  *
  *     rt_slices s;
  *     if (!rt_begin_slices(&s, box, size, counts, ray, hit)) return false;
@@ -21,8 +22,8 @@
 #define RT_SLICES_H
 #if RT_LANES > 1
 
-/* Rays are too far apart if they pass more cells of a slice together than this times what they pass in all, one by one. A cell costs a
- * packet less than a ray: the ray's next one is known only when this one is done. */
+/* Rays are too far apart if they pass more cells of a slice together than this times what they pass in all, one by one. A cell
+ * costs a packet less than a ray: the ray's next one is known only when this one is done. */
 #define RT_SLICE_CELLS 1.5f
 
 #define RT_LANES_LOG (RT_LANES == 16 ? 4 : RT_LANES == 8 ? 3 : 2)
@@ -32,8 +33,8 @@
 typedef struct rt_slice_axis {
     float low, low_gain, high, high_gain;
     int count;
-    /* For boxes in cells: the bits of their first and last parts along this axis, and of those along the slices' axis at which the lines are
-     * lowest and highest; and the lines, in units of these bits. */
+    /* For boxes in cells: the bits of their first and last parts along this axis, and of those along the slices' axis at which
+     * the lines are lowest and highest; and the lines, in units of these bits. */
     int first_bits, last_bits, low_bits, high_bits;
     float low_scale, low_more, low_rise, high_scale, high_more, high_rise;
 } rt_slice_axis;
@@ -45,9 +46,9 @@ typedef struct rt_slices {
     uint bit, bit_u, bit_v;                      /* likewise of the bits of a block's cells, as shifts */
     int last;                                    /* the slice in which the last ray ends */
     int firsts_u[RT_LANES], lasts_u[RT_LANES], firsts_v[RT_LANES], lasts_v[RT_LANES]; /* see rt_look_ahead() */
-    int seen;                                    /* a slice of the last block that was looked at */
-    ulong filled, plane;                         /* the cells with primitives of the blocks there, all in one; those of its first slice */
-    int step, count;                             /* 1 or -1, or 0 if no ray enters the grid; the number of slices */
+    int seen;            /* a slice of the last block that was looked at */
+    ulong filled, plane; /* the cells with primitives of the blocks there, all in one; those of its first slice */
+    int step, count;     /* 1 or -1, or 0 if no ray enters the grid; the number of slices */
     rt_slice_axis u, v;
     float low, size, slack;
     float sign, begin, end, a_span; /* where the first ray enters and the last one leaves, times sign; 1 / their distance */
@@ -56,15 +57,13 @@ typedef struct rt_slices {
 } rt_slices;
 
 /* The one of three that belongs to an axis. */
-RT_INLINE vfloat rt_component(uint axis, vfloat x, vfloat y, vfloat z)
-{
+RT_INLINE vfloat rt_component(uint axis, vfloat x, vfloat y, vfloat z) {
     return axis == 0u ? x : axis == 1u ? y : z;
 }
 
 /* o, shear: of the rays along this axis; see rt_rays. to_begin, to_end: how far it is to both places along the slices' axis. */
-RT_INLINE rt_slice_axis rt_begin_slice_axis(const rt_slices *s, float low, float size, uint count, vfloat o, vfloat shear,
-                                            vfloat to_begin, vfloat to_end)
-{
+RT_INLINE rt_slice_axis rt_begin_slice_axis(const rt_slices* s, float low, float size, uint count, vfloat o, vfloat shear,
+                                            vfloat to_begin, vfloat to_end) {
     const vfloat a = fma(-shear, to_begin, o), b = fma(-shear, to_end, o);
     const float a_unit = 1.0f / size, low_a = rt_least_of(s->active, a), low_b = rt_least_of(s->active, b),
                 high_a = rt_greatest_of(s->active, a), high_b = rt_greatest_of(s->active, b);
@@ -77,41 +76,37 @@ RT_INLINE rt_slice_axis rt_begin_slice_axis(const rt_slices *s, float low, float
     return axis;
 }
 
-/* What rt_slice_meets() compares with. place: of the bits of this axis; at: of those of the slices' axis (cell_parts.h). a_part: the share of
- * the way in a part. */
-RT_INLINE void rt_begin_slice_parts(rt_slice_axis *axis, int place, int at, float a_part)
-{
+/* What rt_slice_meets() compares with. place: of the bits of this axis; at: of those of the slices' axis (cell_parts.h).
+ * a_part: the share of the way in a part. */
+RT_INLINE void rt_begin_slice_parts(rt_slice_axis* axis, int place, int at, float a_part) {
     const float low = RT_PARTS * axis->low_gain * a_part, high = RT_PARTS * axis->high_gain * a_part;
     const int low_at = low > 0.0f ? at : at + RT_PART_BITS, high_at = high > 0.0f ? at + RT_PART_BITS : at;
     const int first = place, last = place + RT_PART_BITS;
     axis->first_bits = RT_PART_AT(first), axis->last_bits = RT_PART_AT(last);
     axis->low_bits = RT_PART_AT(low_at), axis->high_bits = RT_PART_AT(high_at);
     axis->low_rise = low * rt_power_of_2(last - low_at), axis->high_rise = high * rt_power_of_2(first - high_at);
-    axis->low_more = (rt_min(low, 0.0f) - 1.0f) * rt_power_of_2(last), axis->high_more = rt_max(high, 0.0f) * rt_power_of_2(first);
+    axis->low_more = (rt_min(low, 0.0f) - 1.0f) * rt_power_of_2(last),
+    axis->high_more = rt_max(high, 0.0f) * rt_power_of_2(first);
     axis->low_scale = RT_PARTS * rt_power_of_2(last), axis->high_scale = RT_PARTS * rt_power_of_2(first);
 }
 
 /* How many cells of a slice all rays together pass along this axis, about; and one ray. */
-RT_INLINE float rt_slice_width(const rt_slice_axis *axis)
-{
+RT_INLINE float rt_slice_width(const rt_slice_axis* axis) {
     return axis->high - axis->low + 0.5f * (axis->high_gain - axis->low_gain);
 }
-RT_INLINE float rt_slice_slope(const rt_slice_axis *axis, float slices)
-{
+RT_INLINE float rt_slice_slope(const rt_slice_axis* axis, float slices) {
     return fabs(0.5f * (axis->high_gain + axis->low_gain)) / slices;
 }
 
 /* The slice at a place along the slices' axis, times sign; one of the grid's. */
-RT_INLINE int rt_slice_of(const rt_slices *s, float place)
-{
+RT_INLINE int rt_slice_of(const rt_slices* s, float place) {
     return (int)clamp((s->sign * place - s->low) / s->size, 0.0f, (float)s->count - 1.0f);
 }
 
 /* Returns false if it is better to trace these rays one by one: they go along different axes, or they are too far apart.
  * box, size, counts: the grid's box, the size of its cells, and their numbers. */
-RT_INLINE bool rt_begin_slices(rt_slices *s, const global float *box, const global float *size, const global uint *counts,
-                               const rt_rays *ray, const rt_hits *hit)
-{
+RT_INLINE bool rt_begin_slices(rt_slices* s, const global float* box, const global float* size, const global uint* counts,
+                               const rt_rays* ray, const rt_hits* hit) {
     const uint kx = ray->kx, ky = ray->ky, kz = ray->kz; /* the axis of some ray, if they differ */
     s->z = rt_component(kz, ray->ox, ray->oy, ray->oz);
     s->dz = rt_component(kz, ray->dx, ray->dy, ray->dz);
@@ -126,16 +121,18 @@ RT_INLINE bool rt_begin_slices(rt_slices *s, const global float *box, const glob
     const vfloat inverse = rt_component(kz, ray->ix, ray->iy, ray->iz), fast = rt_vfloat(2.0f) * fabs(s->dz);
     const uint backwards = rt_bits(rt_negative(inverse)) & active;
     if (backwards != 0u && backwards != active) return false;
-    if (rt_any(s->active & (RT_MASK(fabs(ray->dx) > fast) | RT_MASK(fabs(ray->dy) > fast) | RT_MASK(fabs(ray->dz) > fast)))) return false;
+    if (rt_any(s->active & (RT_MASK(fabs(ray->dx) > fast) | RT_MASK(fabs(ray->dy) > fast) | RT_MASK(fabs(ray->dz) > fast))))
+        return false;
     const float low = box[kz], high = box[3u + kz];
     s->sign = backwards ? -1.0f : 1.0f;
     if (rt_any(s->active & RT_MASK(fabs(s->dz) < rt_vfloat(1e-18f)))) return false; /* too short for its reciprocal */
-    /* What all coordinates here are computed from is at most five times `largest`, because no ray is more than twice as fast along
-     * another axis. The tests of primitives may see a ray 40 RT_EPS of it beside its place (rt_position_slack()); the sums here, the
-     * planes and the numbers of cells round by 60 more. */
+    /* What all coordinates here are computed from is at most five times `largest`, because no ray is more than twice as fast
+     * along another axis. The tests of primitives may see a ray 40 RT_EPS of it beside its place (rt_position_slack()); the
+     * sums here, the planes and the numbers of cells round by 60 more. */
     const float of_box = rt_max(rt_max(rt_max(fabs(box[0]), fabs(box[3])), rt_max(fabs(box[1]), fabs(box[4]))),
                                 rt_max(fabs(box[2]), fabs(box[5])));
-    const float largest = rt_max(of_box, rt_greatest_of(s->active, rt_max(rt_max(fabs(ray->ox), fabs(ray->oy)), fabs(ray->oz))));
+    const float largest =
+        rt_max(of_box, rt_greatest_of(s->active, rt_max(rt_max(fabs(ray->ox), fabs(ray->oy)), fabs(ray->oz))));
     s->slack = fma(largest, 256.0f * RT_EPS, 4.0f * RT_FAR_SLACK);
     const vfloat sign = rt_vfloat(s->sign);
     s->begin = rt_max(rt_least_of(s->active, fma(s->dz, entry, s->z) * sign) - s->slack, s->sign * (backwards ? high : low));
@@ -171,10 +168,9 @@ RT_INLINE bool rt_begin_slices(rt_slices *s, const global float *box, const glob
     return true;
 }
 
-/* Of RT_LANES slices: the first and the last cell along one axis that rays may be in. from, to: the shares of the way where a slice begins
- * and ends. If all rays pass beside the grid, the last cell is less than the first. */
-RT_INLINE void rt_look_along(const rt_slice_axis *axis, vfloat from, vfloat to, int *first, int *last)
-{
+/* Of RT_LANES slices: the first and the last cell along one axis that rays may be in. from, to: the shares of the way where a
+ * slice begins and ends. If all rays pass beside the grid, the last cell is less than the first. */
+RT_INLINE void rt_look_along(const rt_slice_axis* axis, vfloat from, vfloat to, int* first, int* last) {
     const vfloat low_a = rt_vfloat(axis->low_gain) * from, low_b = rt_vfloat(axis->low_gain) * to;
     const vfloat high_a = rt_vfloat(axis->high_gain) * from, high_b = rt_vfloat(axis->high_gain) * to;
     const vfloat low = rt_vfloat(axis->low) + rt_min(low_a, low_b), high = rt_vfloat(axis->high) + rt_max(high_a, high_b);
@@ -183,31 +179,31 @@ RT_INLINE void rt_look_along(const rt_slice_axis *axis, vfloat from, vfloat to, 
     rt_store(rt_to_int(rt_min(rt_max(high, rt_vfloat(-1.0f)), most - rt_vfloat(1.0f))), last);
 }
 
-/* Finds the cells that rays may be in, of all slices around the current one whose numbers differ from its number in the lowest bits only. */
-RT_INLINE void rt_look_ahead(rt_slices *s)
-{
+/* Finds the cells that rays may be in, for a group of RT_LANES slices: that of the current slice. A group begins at a multiple
+ * of RT_LANES. */
+RT_INLINE void rt_look_ahead(rt_slices* s) {
     const vfloat slice = rt_to_float(rt_vint(s->slice & ~(RT_LANES - 1)) + rt_lane_index());
-    const vfloat a = fma(slice, rt_vfloat(s->size), rt_vfloat(s->low)), b = fma(slice + rt_vfloat(1.0f), rt_vfloat(s->size), rt_vfloat(s->low));
+    const vfloat a = fma(slice, rt_vfloat(s->size), rt_vfloat(s->low)),
+                 b = fma(slice + rt_vfloat(1.0f), rt_vfloat(s->size), rt_vfloat(s->low));
     const vfloat sign = rt_vfloat(s->sign), begin = rt_vfloat(s->begin), a_span = rt_vfloat(s->a_span);
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    const vfloat from = rt_min(rt_max((a * sign - begin) * a_span, zero), one), to = rt_min(rt_max((b * sign - begin) * a_span, zero), one);
+    const vfloat from = rt_min(rt_max((a * sign - begin) * a_span, zero), one),
+                 to = rt_min(rt_max((b * sign - begin) * a_span, zero), one);
     rt_look_along(&s->u, from, to, s->firsts_u, s->lasts_u);
     rt_look_along(&s->v, from, to, s->firsts_v, s->lasts_v);
 }
 
 /* The number of the block of a cell of the current slice, and the bit of the cell in it. */
-RT_INLINE uint rt_slice_block(const rt_slices *s, int u, int v)
-{
+RT_INLINE uint rt_slice_block(const rt_slices* s, int u, int v) {
     return (uint)(s->slice >> 2) * s->block + (uint)(u >> 2) * s->block_u + (uint)(v >> 2) * s->block_v;
 }
-RT_INLINE uint rt_slice_bit(const rt_slices *s, int u, int v)
-{
+RT_INLINE uint rt_slice_bit(const rt_slices* s, int u, int v) {
     return ((uint)(s->slice & 3) << s->bit) + ((uint)(u & 3) << s->bit_u) + ((uint)(v & 3) << s->bit_v);
 }
 
-/* The cells with primitives of all blocks that rays may be in between the current slice and another one of its block, as one. */
-RT_INLINE ulong rt_filled_blocks(const rt_slices *s, const global ulong *filled, int last)
-{
+/* The cells with primitives of all blocks that rays may be in between the current slice and another one of its block, as one.
+ */
+RT_INLINE ulong rt_filled_blocks(const rt_slices* s, const global ulong* filled, int last) {
     const int here = s->slice & (RT_LANES - 1), there = last & (RT_LANES - 1);
     const int first_u = min(s->firsts_u[here], s->firsts_u[there]) & ~3, last_u = max(s->lasts_u[here], s->lasts_u[there]);
     const int first_v = min(s->firsts_v[here], s->firsts_v[there]) & ~3, last_v = max(s->lasts_v[here], s->lasts_v[there]);
@@ -217,10 +213,9 @@ RT_INLINE ulong rt_filled_blocks(const rt_slices *s, const global ulong *filled,
     return any;
 }
 
-/* Goes to the next slice in which rays may be in cells, but for slices of empty cells. filled: of each block, the bits of its cells that have
- * primitives. hit: the rays' nearest hits so far. Returns false if there is none before these. */
-RT_INLINE bool rt_next_slice(rt_slices *s, const global ulong *filled, const rt_hits *hit)
-{
+/* Goes to the next slice in which rays may be in cells, but for slices of empty cells. filled: of each block, the bits of its
+ * cells that have primitives. hit: the rays' nearest hits so far. Returns false if there is none before these. */
+RT_INLINE bool rt_next_slice(rt_slices* s, const global ulong* filled, const rt_hits* hit) {
     if (s->step == 0) return false;
     if (rt_any(s->active & RT_MASK(hit->t < s->t))) {
         s->t = hit->t;
@@ -251,20 +246,17 @@ RT_INLINE bool rt_next_slice(rt_slices *s, const global ulong *filled, const rt_
 }
 
 /* Whether a cell of the current slice has primitives. */
-RT_INLINE bool rt_slice_has(const rt_slices *s, const global ulong *filled, int u, int v)
-{
+RT_INLINE bool rt_slice_has(const rt_slices* s, const global ulong* filled, int u, int v) {
     return (filled[rt_slice_block(s, u, v)] >> rt_slice_bit(s, u, v) & 1u) != 0u;
 }
 
-RT_INLINE uint rt_slice_cell(const rt_slices *s, int u, int v)
-{
+RT_INLINE uint rt_slice_cell(const rt_slices* s, int u, int v) {
     return (uint)s->slice * s->cell + (uint)u * s->cell_u + (uint)v * s->cell_v;
 }
 
 /* The lanes with boxes in a cell that reach below the upper line along one axis, and above the lower one. parts: of the boxes.
  * share: of the way, where the slice begins on its low side. */
-RT_INLINE vmask rt_meets_along(const rt_slice_axis *axis, int cell, vint parts, float share)
-{
+RT_INLINE vmask rt_meets_along(const rt_slice_axis* axis, int cell, vint parts, float share) {
     const float low = fma(fma(axis->low_gain, share, axis->low) - (float)cell, axis->low_scale, axis->low_more),
                 high = fma(fma(axis->high_gain, share, axis->high) - (float)cell, axis->high_scale, axis->high_more);
     return RT_MASK(rt_part_numbers(parts, axis->first_bits) <=
@@ -274,8 +266,7 @@ RT_INLINE vmask rt_meets_along(const rt_slice_axis *axis, int cell, vint parts, 
 }
 
 /* The bits of those of `count` boxes, or of the first RT_LANES, that the rays may meet in a cell of the current slice. */
-RT_INLINE uint rt_slice_meets(const rt_slices *s, int u, int v, const global uint *parts, uint count)
-{
+RT_INLINE uint rt_slice_meets(const rt_slices* s, int u, int v, const global uint* parts, uint count) {
     const vint all = rt_load_parts(parts);
     const float share = (s->sign * fma((float)s->slice, s->size, s->low) - s->begin) * s->a_span;
     return rt_bits(rt_meets_along(&s->u, u, all, share) & rt_meets_along(&s->v, v, all, share)) & rt_first_lanes(count);

@@ -1,4 +1,4 @@
-// quick_scene.hpp -- scenes whose kernels are the same.
+// quick_scene.hpp -- for quick tests: makes scenes with textures share one program of kernels.
 #pragma once
 #include <algorithm>
 

@@ -109,7 +109,7 @@ struct PartRange {
         return (first | last << 5) << (10 * axis);
     }
 
-    static constexpr int kParts = 32;                 // of a cell
+    static constexpr int kParts = 32;                 // of a cell: RT_PARTS of cl/lanes/cell_parts.h
     static constexpr rt_u32 kAllOfCell = 0x3E0F83E0;  // all parts along each axis
 };
 
@@ -162,9 +162,8 @@ class CellFinder {
             const size_t first = (size_t(r.lo[2]) * head_.cells[1] + size_t(r.lo[1])) * head_.cells[0] + size_t(r.lo[0]);
             rt_u32 within[3][2];
             for (int k = 0; k < 3; ++k) {
-                const rt_u32 last = rt_u32(parts.hi[k]) % PartRange::kParts << 5, all = (PartRange::kParts - 1) << 5;
-                within[k][0] = (rt_u32(parts.lo[k]) % PartRange::kParts | (r.lo[k] == r.hi[k] ? last : all)) << (10 * k);
-                within[k][1] = last << (10 * k);
+                within[k][0] = parts.within(k, r.lo[k]);
+                within[k][1] = parts.within(k, r.hi[k]);
             }
             for (unsigned c = 0; c < 4; ++c) {
                 const unsigned corner = corners_[shape][c];
@@ -226,8 +225,8 @@ class CellFinder {
 // The primitives of all cells, in two steps: which cells each meets; then their lists, once it is known how much memory these
 // take. Both run on all cores. Lists do not depend on the number of cores: they are in the order of the primitives.
 //
-// A counting sort of (cell, primitive). Tasks of the first step have a part of the primitives, and sort their pairs by the
-// upper bits of the cells. Tasks of the second step have a part of the cells, and take the pairs of all tasks before.
+// A counting sort of (cell, primitive). Tasks of the first step have some of the primitives, and sort their pairs by the
+// upper bits of the cells. Tasks of the second step have a share of the cells, and take the pairs of all tasks before.
 //
 // kPlaced: it also notes where in each cell the primitive's box is.
 template <class Head, bool kPlaced = false>
@@ -236,9 +235,9 @@ class CellSort {
     // number(i) is the group's number of primitive i of `count`. `head` and what `prims` names must outlive this.
     template <class Number>
     CellSort(const rt_host* host, const Head& head, const Prims& prims, rt_u32 count, const Number& number) : finder_(head) {
-        while ((lists() - 1) >> shift_ >= kParts) ++shift_;
+        while ((lists() - 1) >> shift_ >= kShares) ++shift_;
         if (count < 2 * kAtOnce) shift_ = 63;
-        parts_ = rt_u32(((lists() - 1) >> shift_) + 1);
+        shares_ = rt_u32(((lists() - 1) >> shift_) + 1);
         chunks_.resize(std::max(count / kAtOnce, 1u));
         for_each(host, rt_u32(chunks_.size()), [&](rt_u32 c) {
             const auto end = [&](rt_u32 chunk) { return rt_u32(uint64_t{count} * chunk / chunks_.size()); };
@@ -256,16 +255,16 @@ class CellSort {
     // The primitives of cell c become list[starts[c] - place] to list[starts[c + 1] - place - 1], each plus `first`; likewise
     // their `parts`, if placed. starts: lists() + 1 of them. Returns how many lists have a primitive.
     size_t write(const rt_host* host, rt_u32* starts, rt_u32* list, rt_u32 place, rt_u32 first, rt_u32* parts = nullptr) const {
-        std::vector<rt_u32> before(parts_), filled(parts_);
+        std::vector<rt_u32> before(shares_), filled(shares_);
         rt_u32 sum = 0;
-        for (rt_u32 p = 0; p < parts_; ++p) {
+        for (rt_u32 p = 0; p < shares_; ++p) {
             before[p] = sum;
             for (const Chunk& chunk : chunks_) sum += chunk.ends[p + 1] - chunk.ends[p];
         }
         starts[lists()] = place + sum;
-        for_each(host, parts_, [&](rt_u32 p) {
+        for_each(host, shares_, [&](rt_u32 p) {
             const size_t low = size_t{p} << shift_,
-                         cells = parts_ == 1 ? lists() : std::min(lists() - low, size_t{1} << shift_);
+                         cells = shares_ == 1 ? lists() : std::min(lists() - low, size_t{1} << shift_);
             std::vector<rt_u32> at(cells);
             for (const Chunk& chunk : chunks_)
                 for (rt_u32 i = chunk.ends[p]; i < chunk.ends[p + 1]; ++i) ++at[chunk.pairs[i].cell - low];
@@ -289,20 +288,20 @@ class CellSort {
 
  private:
     static constexpr rt_u32 kAtOnce = 4096;  // primitives of a task
-    static constexpr rt_u32 kParts = 64;     // of the cells, at most
+    static constexpr rt_u32 kShares = 64;    // of the cells, at most
 
     struct Plain {
         rt_u32 cell, prim;
         void set(size_t in, rt_u32 which, rt_u32) { cell = rt_u32(in), prim = which; }
     };
-    struct Placed {
-        rt_u32 cell, prim, parts;
-        void set(size_t in, rt_u32 which, rt_u32 where) { cell = rt_u32(in), prim = which, parts = where; }
+    struct Placed : Plain {
+        rt_u32 parts;
+        void set(size_t in, rt_u32 which, rt_u32 where) { Plain::set(in, which, where), parts = where; }
     };
     using Pair = std::conditional_t<kPlaced, Placed, Plain>;
     struct Chunk {
-        std::vector<Pair> pairs;   // part by part
-        std::vector<rt_u32> ends;  // of each part, behind a 0
+        std::vector<Pair> pairs;   // share by share
+        std::vector<rt_u32> ends;  // of each share, behind a 0
 
         template <class Number>
         void fill(const CellSort& sort, const Prims& prims, rt_u32 begin, rt_u32 end, const Number& number) {
@@ -319,17 +318,17 @@ class CellSort {
                     count = 0;
                 });
             found.insert(found.end(), some, some + count);
-            ends.assign(sort.parts_ + 1, 0);
-            for (const Pair& pair : found) ++ends[sort.part_of(pair) + 1];
-            if (sort.parts_ == 1 || found.size() > 0xFFFFFFF0u) return pairs.swap(found);  // so many are refused later
-            for (rt_u32 p = 0; p < sort.parts_; ++p) ends[p + 1] += ends[p];
+            ends.assign(sort.shares_ + 1, 0);
+            for (const Pair& pair : found) ++ends[sort.share_of(pair) + 1];
+            if (sort.shares_ == 1 || found.size() > 0xFFFFFFF0u) return pairs.swap(found);  // so many are refused later
+            for (rt_u32 p = 0; p < sort.shares_; ++p) ends[p + 1] += ends[p];
             std::vector<rt_u32> at(ends.begin(), ends.end() - 1);
             pairs.resize(found.size());
-            for (const Pair& pair : found) pairs[at[sort.part_of(pair)]++] = pair;
+            for (const Pair& pair : found) pairs[at[sort.share_of(pair)]++] = pair;
         }
     };
 
-    size_t part_of(const Pair& pair) const { return size_t{pair.cell} >> shift_; }  // shift_ is 63 where all is one part
+    size_t share_of(const Pair& pair) const { return size_t{pair.cell} >> shift_; }  // shift_ is 63 where all is one share
 
     template <class Body>
     static void for_each(const rt_host* host, rt_u32 count, const Body& body) {
@@ -338,7 +337,7 @@ class CellSort {
     }
 
     CellFinder<Head> finder_;
-    rt_u32 shift_ = 0, parts_ = 1;
+    rt_u32 shift_ = 0, shares_ = 1;
     std::vector<Chunk> chunks_;
     uint64_t references_ = 0;
 };
