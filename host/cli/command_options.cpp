@@ -209,8 +209,9 @@ void add_lab(CLI::App& app, LabCommand& command) {
                  "Take no times, on a machine that is not worth it: their points belong to the counts");
     single(app.add_option("--sdk", command.sdk, "The folder that Clarity is installed in; default: that of this program"))
         ->type_name("DIR");
-    single(app.add_option("--work", command.work,
-                          "A folder in which plugins are built, and which later runs use again; default: a temporary one"))
+    single(app.add_option(
+               "--work", command.work,
+               "A folder in which plugins are built, and which later runs use again, one at a time; default: a temporary one"))
         ->type_name("DIR");
     app.add_option(
            "--tools", command.tools,

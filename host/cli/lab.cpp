@@ -1,13 +1,17 @@
 // clarity lab: assignments of a course. The work is in host/lab.
 #include "lab/lab.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/files/output_file.hpp"
+#include "base/files/process_folder.hpp"
 #include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
 #include "cli/commands.hpp"
@@ -59,12 +63,21 @@ class Desk {
         if (command.work.empty()) temporary_.emplace("clarity-lab");
         options.work = command.work.empty() ? temporary_->path() : fs::absolute(command.work).string();
         fs::create_directories(options.work);
+        // Two graders in one folder would mark each other's libraries.
+        lock_ = FolderLock::take(options.work);
+        if (!lock_)
+            throw Error(Exit::failed, options.work + ": " +
+                                          (errno == EWOULDBLOCK
+                                               ? "another `clarity lab` builds there; wait for its end, or name another folder "
+                                                 "with --work"
+                                               : std::string("cannot be locked: ") + std::strerror(errno)));
         grader_.emplace(std::move(of), plugins, std::move(options), progress);
     }
     lab::Grader& grader() { return *grader_; }
 
  private:
     std::optional<TemporaryFolder> temporary_;
+    std::unique_ptr<FolderLock> lock_;  // of the folder
     std::optional<lab::Grader> grader_;
 };
 

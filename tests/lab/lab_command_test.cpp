@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files/process_folder.hpp"
 #include "cli/run_program.hpp"
 #include "lab/build.hpp"
 #include "lab/grade.hpp"
@@ -76,7 +77,7 @@ TEST(Lab, PointsOfCountsAreOnALogScale) {
 TEST(Lab, AHandoutIsCheckedByTheGradersCode) {
     install_sdk();
     const Scratch scratch;
-    const std::string folder = scratch.path("mine"), work = std::string(CLARITY_BUILD_DIR) + "/tests/lab/work_median";
+    const std::string folder = scratch.path("mine"), work = std::string(CLARITY_BUILD_DIR) + "/tests/lab/work_handout";
     const ProgramResult made = run_program({"lab", "handout", kLabs + "/median", folder, "--sdk", kSdk, "--work", work});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     EXPECT_FALSE(fs::exists(folder + "/hidden")) << "students have the hidden cases";
@@ -89,6 +90,25 @@ TEST(Lab, AHandoutIsCheckedByTheGradersCode) {
     const ProgramResult solved = run_program({"lab", "check", folder, "--sdk", kSdk, "--work", work, "--only", "city"});
     EXPECT_EQ(solved.exit_code, 0) << solved.out << solved.err;
     EXPECT_NE(solved.out.find("1.00 times the work of the reference"), std::string::npos) << solved.out;
+}
+
+// They would mark each other's libraries.
+TEST(Lab, TwoGradersDoNotShareAFolder) {
+    install_sdk();
+    const Scratch scratch;
+    fs::create_directories(scratch.path("work"));
+    const std::vector<std::string> words = {"lab", "check", kLabs + "/median", "--sdk", kSdk, "--work", scratch.path("work")};
+    auto other = clarity::FolderLock::take(scratch.path("work"));
+    ASSERT_TRUE(other);
+    EXPECT_FALSE(clarity::FolderLock::take(scratch.path("work")));
+    const ProgramResult refused = run_program(words);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find(scratch.path("work") + ": another `clarity lab` builds there; wait for its end"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_FALSE(fs::exists(scratch.path("work/tools"))) << "something was built";
+    other.reset();
+    EXPECT_TRUE(clarity::FolderLock::take(scratch.path("work")));
 }
 
 // Two processes share a night. One is killed in it; when the other has come to its end, no record is missing and none was made

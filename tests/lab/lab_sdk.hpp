@@ -8,11 +8,13 @@
 inline const std::string kLabs = std::string(CLARITY_SOURCE_DIR) + "/labs";
 inline const std::string kSdk = std::string(CLARITY_BUILD_DIR) + "/tests/lab/sdk";
 
-// Plugins of submissions are built against it.
+// Plugins of submissions are built against it. Two tests that run at once install it one after the other; what is up to date is
+// left as it is.
 inline void install_sdk() {
     static const bool done = [] {
-        const std::string command =
-            "cmake --install '" CLARITY_BUILD_DIR "' --component sdk --prefix '" + kSdk + "' >/dev/null";
+        const std::string command = "flock '" CLARITY_BUILD_DIR "/tests/lab' cmake --install '" CLARITY_BUILD_DIR
+                                    "' --component sdk --prefix '" +
+                                    kSdk + "' >/dev/null";
         return std::system(command.c_str()) == 0;
     }();
     ASSERT_TRUE(done) << kSdk;

@@ -24,11 +24,14 @@ constexpr size_t kMostFolders = 4;
 std::atomic<const char*> folders_of_process[kMostFolders];
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may touch nothing that locks");
 
-// Locks the file, and makes it if that is asked for. Returns its descriptor; -1: another process has it, or it is not there.
+// Locks the file, and makes it if that is asked for. Returns its descriptor; -1: another process has it, or it is not there, as
+// errno says.
 int locked(const fs::path& file, int flags) {
     const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags, 0600);
     if (fd < 0 || flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
+    const int why = errno;
     close(fd);
+    errno = why;
     return -1;
 }
 
@@ -91,6 +94,15 @@ ProcessFolder::~ProcessFolder() {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
     rmdir(path_.parent_path().c_str());  // fails if others have folders there
+    close(lock_);
+}
+
+std::unique_ptr<FolderLock> FolderLock::take(const fs::path& folder) {
+    const int lock = locked(folder / kLock, O_CREAT);
+    return lock < 0 ? nullptr : std::unique_ptr<FolderLock>(new FolderLock(lock));
+}
+
+FolderLock::~FolderLock() {
     close(lock_);
 }
 

@@ -1,4 +1,4 @@
-// process_folder.hpp -- a folder for temporary files which nothing of this process outlives.
+// process_folder.hpp -- a folder for temporary files which nothing of this process outlives, and a lock on a folder that stays.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -23,6 +23,21 @@ class ProcessFolder {
     const std::filesystem::path path_;
     const int lock_;     // descriptor
     const int process_;  // that made it: one that was forked from it leaves it alone
+};
+
+// While it is there, no other process has one for the same folder. Also a killed process gives it up.
+class FolderLock {
+ public:
+    // Locks the file `lock` in the folder. nullptr: another process has it (errno is EWOULDBLOCK), or the file cannot be
+    // written.
+    static std::unique_ptr<FolderLock> take(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+    explicit FolderLock(int lock) : lock_(lock) {}
+    const int lock_;  // descriptor
 };
 
 // For a process that is about to end by _exit(), also in a signal handler: starts a process that removes all its folders after
