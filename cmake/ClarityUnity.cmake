@@ -21,3 +21,10 @@ function(clarity_no_hot_loops target)
   target_compile_options(${target} PRIVATE ${CLARITY_NO_HOT_LOOPS})
   target_precompile_headers(${target} REUSE_FROM clarity_headers_calm)
 endfunction()
+
+# clarity_hot_loops(SOURCE...): but for these sources of such a target. GCC 12 crashes over headers that were precompiled with less
+# optimisation, so they are compiled without, and alone.
+function(clarity_hot_loops)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON
+    COMPILE_OPTIONS $<$<NOT:$<CONFIG:Debug>>:-O3>)
+endfunction()
