@@ -10,7 +10,8 @@
  *   no-source          clCreateProgramWithSource fails: whoever comes here wanted to compile
  *   enqueue=CODE@N, buffer=CODE@N, read=CODE@N     the N-th launch, buffer, read-back and all after it fail with CODE
  *   launch-hangs       launches take for ever: the call does not return
- *   gpu                the device says that it is a GPU
+ *   gpu                the device says that it is a GPU. Its launches are done when the call returns: PoCL compiles in the first
+ *                      launch of a kernel, for longer than a launch may take on a machine that is busy, and no GPU does that
  *   launch-endless=N   the N-th launch and all after it return, but their events never complete, and neither does their queue;
  *                      the driver waits for them when the program ends
  *   read-short         read-backs leave the second half as it was
@@ -83,7 +84,15 @@ static void hang(void)
     for (;;) sleep(1000);
 }
 
-static int endless; /* whether a launch runs for ever */
+static int endless; /* how many launches run for ever */
+static cl_command_queue stuck[64];
+
+static int is_stuck(cl_command_queue queue)
+{
+    for (int i = 0; i < endless && i < 64; ++i)
+        if (stuck[i] == queue) return 1;
+    return 0;
+}
 
 __attribute__((destructor)) static void unload(void)
 {
@@ -171,7 +180,7 @@ static cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_ui
     const char *from = NULL;
     static int launches;
     if (fault("launch-endless", &from) && ++launches >= (from ? atoi(from) : 1)) {
-        endless = 1;
+        stuck[endless++ % 64] = queue;
         cl_context context = NULL;
         cl_int made = real.clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, NULL);
         if (made) return made;
@@ -179,7 +188,10 @@ static cl_int CL_API_CALL launch(cl_command_queue queue, cl_kernel kernel, cl_ui
         const cl_event never = real.clCreateUserEvent(context, &made);
         return made ? made : real.clEnqueueMarkerWithWaitList(queue, 1, &never, event);
     }
-    return error ? error : real.clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, count, wait, event);
+    if (error) return error;
+    const cl_int launched = real.clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, count, wait, event);
+    if (launched == CL_SUCCESS && fault("gpu", NULL) && !is_stuck(queue)) real.clFinish(queue);
+    return launched;
 }
 
 static cl_mem CL_API_CALL buffer(cl_context context, cl_mem_flags flags, size_t bytes, void *host, cl_int *error)

@@ -11,7 +11,6 @@ namespace {
 class LostDevice : public FaultyDriverTest {
  protected:
     std::unique_ptr<WindowDriver> open_on_faulty() {
-        // The first launch on a busy machine may take 3 s.
         return FaultyDriverTest::open_on_faulty("other,gpu", {{"CLARITY_LAUNCH_LIMIT", "10"}});
     }
     static bool says(const nlohmann::json& state, const char* text) {
