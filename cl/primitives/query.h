@@ -33,7 +33,7 @@ RT_TRAVERSAL void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *fr
 }
 
 /* The same for `count` packets. A packet without active lanes, which has hit.t = -1 in all, need not be prepared. */
-RT_INLINE void RT_FN(rt_trace_stream)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *rays, rt_hits *hits, uint count)
+RT_STREAM_PART void RT_FN(rt_trace_stream)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *rays, rt_hits *hits, uint count)
 {
 #if RT_STREAM == 1
     if (rt_any(RT_MASK(hits->t >= rt_vfloat(0.0f)))) RT_FN(rt_trace)(ctx, frame, rays, hits);

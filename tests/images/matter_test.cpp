@@ -134,14 +134,17 @@ TEST(Cutouts, ABlendedSquareLetsTheRestOfTheSkyThrough) {
         const Scene scene = layers(1, black(opacity));
         View view = even_view();
         view.ambient = {0, 0, 0};
-        for (const char* lanes : {"1", "8"}) expect_even(trace(scene, view, 32, 32, 2, {{"lanes", lanes}}), 1 - opacity, lanes);
-        expect_even(trace(scene, view, 32, 32, 2, {{"tracer", "wavefront"}}), 1 - opacity, "wavefront");
+        expect_even(trace(scene, view, 32, 32, 2, {{"lanes", "8"}}), 1 - opacity, "8 lanes");
+        if (!few_ways()) {
+            expect_even(trace(scene, view, 32, 32, 2, {{"lanes", "1"}}), 1 - opacity, "1 lane");
+            expect_even(trace(scene, view, 32, 32, 2, {{"tracer", "wavefront"}}), 1 - opacity, "wavefront");
+        }
         for (const char* strategy : kStrategies)
             expect_mean(trace_paths(scene, view, 64, {{"strategy", strategy}, {"sampler", "independent"}}), 1 - opacity,
                         strategy);
     }
     expect_mean(trace_paths(layers(3, black(0.3f)), even_view(), 64, {{"sampler", "sobol"}}), 0.7 * 0.7 * 0.7, "three");
-    expect_even(trace(layers(3, black(0.3f)), even_view(), 32, 32, 4), 0.7 * 0.7 * 0.7, "three");
+    expect_even(trace(layers(3, black(0.3f)), even_view(), 32, 32, 4, {{"lanes", "8"}}), 0.7 * 0.7 * 0.7, "three");
 }
 
 // What it emits, too, is there in part. No light is drawn from it, so all strategies find it by rays.

@@ -1,5 +1,7 @@
 // main.cpp -- the main function of test programs. A program holds the tests of an area; the variable CLARITY_TEST_FILES, by
-// which ctest names the files of one of them, restricts a run to the cases in these files.
+// which ctest names the files of one of them, restricts a run to the cases in these files. With CLARITY_QUICK_TESTS and
+// CLARITY_TEST_FEW_RAYS (FEW_RAYS in tests/CMakeLists.txt), PoCL compiles kernels without Clang's optimiser. ./test --all
+// optimises all.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -53,6 +55,8 @@ std::string of_files(const std::string& files, const std::string& filter) {
 
 int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
+    if (std::getenv("CLARITY_QUICK_TESTS") && std::getenv("CLARITY_TEST_FEW_RAYS"))
+        setenv("POCL_EXTRA_BUILD_FLAGS", "-cl-opt-disable", 0);  // before the driver is loaded
     if (const char* files = std::getenv("CLARITY_TEST_FILES")) {
         if (of_files(files, "*") == kNone) {
             std::fprintf(stderr, "CLARITY_TEST_FILES: %s has no cases of %s\n", argv[0], files);

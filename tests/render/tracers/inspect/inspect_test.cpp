@@ -230,15 +230,16 @@ TEST(Inspect, MatchesRaysComputedByHand) {
 
 TEST(Inspect, UntracedRaysHaveAReason) {
     const auto count = [](const Case& c, Fate fate) {
+        const unsigned rows = few_ways() ? 12 : 4;
         size_t n = 0;
-        for (unsigned y = 2; y < 48; y += 4)
+        for (unsigned y = 2; y < 48; y += rows)
             for (unsigned x = 2; x < 64; x += 4) {
                 const RayTree tree = c.tree(x, y);
                 expect_sound(c, tree);
                 expect_light_of_pixel(c, tree, x, y);
                 for (const RayRecord& ray : tree.rays) n += ray.fate == fate;
             }
-        return n;
+        return n * rows / 4;  // as of every fourth row
     };
     const Configuration configuration{"bvh2", 16, 4, 4};
     EXPECT_GT(count(primitives(configuration, "64x48", {{"depth", "1"}}), Fate::too_deep), 20u);
