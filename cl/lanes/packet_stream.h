@@ -24,14 +24,6 @@
 #define RT_FOR_EACH_PACKET(b, count) for (uint b = 0, b##_once = 1; b##_once; b##_once = 0)
 #endif
 
-/* A part of the traversal of streams, which is long. It is a function of its own: inside of the kernel, a cold start of `bvh8` with 8 and 16
- * lanes takes 1.3 times as long, and rays are 0 to 1 % faster. */
-#if RT_STREAM > 1
-#define RT_STREAM_PART RT_CALLED
-#else
-#define RT_STREAM_PART RT_INLINE
-#endif
-
 /* A loop over the blocks [begin, end), a stream at a time. A GPU's work-item has one block and no loop. */
 #if RT_MAX_PIXELS == 1 && RT_LANES == 1
 #define RT_FOR_STREAMS(base, begin, end) for (uint base = (begin), base##_once = base < (end); base##_once; base##_once = 0)

@@ -71,7 +71,12 @@ RT_INLINE void RT_FN(rt_leave_instance)(const rt_visit *visit, rt_hits *h)
 
 /* A traversal of streams has leaf tests in several places. There this function is not inlined: the mesh's traversal would be
  * compiled as often. */
-RT_STREAM_PART void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hits *h)
+#if RT_STREAM > 1
+RT_NOINLINE
+#else
+RT_INLINE
+#endif
+void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hits *h)
 {
     rt_rays inner;
     rt_visit visit;

@@ -332,6 +332,7 @@ void write_queries(SourceWriter& out, const KernelRow& row, const Layout& layout
     traversal.requeues = (row.needs & RT_REQUEUES_LONG_RAYS) != 0;
     traversal.by_warps = (row.needs & RT_TRAVERSES_WARPS) != 0;
     traversal.spreads = (accel.accel->capabilities & RT_TRAVERSES_SINGLE_RAYS) != 0 && layout.lanes > 1;
+    out.define_int("RT_QUERIES", row.has(kNearestOnly) ? 1 : 2);
     write_query(out, traversal, features, false);
     if (!row.has(kNearestOnly)) write_query(out, traversal, features, true);
 }
