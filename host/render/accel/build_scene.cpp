@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
+#include "clarity_bvh/base/rounding.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/accel/rows.hpp"
 
@@ -147,15 +148,6 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
     }
 }
 
-// The largest float that is not above a number; below, the smallest that is not below it.
-float round_down(double value) {
-    const auto nearest = static_cast<float>(value);
-    return nearest <= value ? nearest : std::nextafter(nearest, -INFINITY);
-}
-float round_up(double value) {
-    return -round_down(-value);
-}
-
 // Returns the world-space box of what lies in `box`, in its own space, as kernels see it.
 //
 // Kernels transform each ray with object_from_world, in float. Where large coordinates cancel, this rounding seems to move the
@@ -187,8 +179,8 @@ rt_prim placed_box(const rt_prim& box, const Affine& world, const Affine& object
     for (int k = 0; k < 3; ++k) {
         double room = 0;
         for (int j = 0; j < 3; ++j) room += std::fabs(world[4 * k + j]) * error[j];
-        prim.lo[k] = round_down(lo[k] - room);
-        prim.hi[k] = round_up(hi[k] + room);
+        prim.lo[k] = bvh::rounded_down(lo[k] - room);
+        prim.hi[k] = bvh::rounded_up(hi[k] + room);
     }
     widen(prim, 1e-6f);
     return prim;

@@ -103,6 +103,7 @@ class SpheresRefit {
  private:
     uint32_t end_of(uint32_t at) const { return nodes_[at].count > 0 ? at + 1 : nodes_[at].link; }
     void put(uint32_t at, const Box& box) const {
+        if (!volumes_.is_turned(at)) return volumes_.enclose(at, box);
         uint32_t first = at;
         while (nodes_[first].count == 0) ++first;
         const spheres_node& last = nodes_[end_of(at) - 1];

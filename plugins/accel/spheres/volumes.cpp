@@ -4,15 +4,13 @@
 #include <cfloat>
 #include <cmath>
 
+#include "clarity_bvh/base/rounding.hpp"
 #include "rt_cost.hpp"
 
 namespace spheres {
 namespace {
 
-float rounded_up(double x) {
-    const auto f = static_cast<float>(x);
-    return f < x ? std::nextafter(f, INFINITY) : f;
-}
+using clarity::bvh::rounded_up;
 
 // Half the extent along an axis of space, from a centre that was rounded.
 double half_extent(const Box& box, int axis, float center) {
