@@ -79,6 +79,9 @@ TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
                                         file("a.json"), "--csv", file("a.csv"), "--report", file("page")});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.out.find("bvh2"), std::string::npos) << result.out;
+    const bool with_embree = result.err.find("without Embree") == std::string::npos;
+    EXPECT_EQ(result.err.find("tiny: peers are left out: they trace triangles only") != std::string::npos, with_embree)
+        << result.err;
     const Json list = records("a.json");
     ASSERT_TRUE(list.is_array());
     size_t frames = 0, rays = 0, builds = 0, dropped = 0;

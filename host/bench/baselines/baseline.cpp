@@ -37,7 +37,7 @@ BaselineMesh make_baseline_mesh(const Scene& scene) {
 
 Problem baselines_cannot(const Scene& scene) {
     if (!scene.spheres.empty() || !scene.planes.empty() || !scene.polygons.empty() || !scene.shapes.empty())
-        return "peers trace triangles only, and the scene has spheres, planes, polygons or shapes";
+        return "they trace triangles only, and the scene has spheres, planes, polygons or shapes";
     if (scene.placed_triangle_count() == 0) return "the scene has no triangles";
     return {};
 }

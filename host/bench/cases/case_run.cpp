@@ -129,7 +129,7 @@ void add_baseline(CaseState& state, const BaselineKind& kind) {
 // says why. The entries use `state`, which must outlive them. Throws Cancelled.
 void add_baselines(CaseState& state) {
     const std::vector<std::string>& wanted = state.definition.baseline_qualities;
-    if (wanted.empty() || state.fixture.baseline_threads() == 0 || baselines_cannot(*state.fixture.scene())) return;
+    if (wanted.empty() || !state.fixture.has_baselines()) return;
     for (const BaselineKind& kind : baseline_kinds(nullptr))
         if (std::find(wanted.begin(), wanted.end(), kind.quality) != wanted.end()) add_baseline(state, kind);
 }

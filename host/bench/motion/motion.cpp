@@ -238,7 +238,7 @@ class MotionCase : CaseRun {
     }
 
     void add_baseline(const std::string& quality) {
-        if (fixture.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || baselines_cannot(*fixture.scene())) return;
+        if (!fixture.has_baselines()) return;
         Entry& entry = state_.add_entry();
         entry.row.baseline = entry.row.variant = "embree " + quality;
         describe_host(entry.row, fixture.baseline_threads());

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "bench/run/machine.hpp"
@@ -66,6 +68,14 @@ unsigned Fixture::baseline_threads() const {
     return 0;
 }
 
+bool Fixture::has_baselines() {
+    if (baseline_threads() == 0 || baseline_kinds(nullptr).empty()) return false;  // run_bench() says it
+    const Problem cannot = baselines_cannot(*scene());
+    if (cannot && !std::exchange(warned_of_baselines_, true))
+        log(LogLevel::warning, scene_name_ + ": peers are left out: " + cannot.text());
+    return !cannot;
+}
+
 void Fixture::load(const SuiteScene& scene, int width, int height, Progress& progress) {
     baselines_.clear();
     baseline_mesh_.reset();
@@ -73,6 +83,8 @@ void Fixture::load(const SuiteScene& scene, int width, int height, Progress& pro
     held_.clear();
     together_.reset();
     loaded_ = {};
+    scene_name_ = scene.source.name;
+    warned_of_baselines_ = false;
     width_ = width;
     height_ = height;
     loaded_ = load_scene(plugins_, scene.source, float(width) / float(height), import_, progress);

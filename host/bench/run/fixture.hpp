@@ -23,6 +23,8 @@ class Fixture {
     const std::shared_ptr<Device>& opened(size_t i) const;
     // Threads of baselines: the compute units of the first CPU among the devices. 0: there is no CPU, and thus no baselines.
     unsigned baseline_threads() const;
+    // Whether baselines measure the scene. If its primitives are the reason why not, a warning says so, once a scene.
+    bool has_baselines();
 
     // Loads a scene and frees everything of the previous one. Throws what load_scene throws, and Error(failed) if the scene
     // does not fit into free memory. width, height: size of the rays' picture in pixels.
@@ -61,6 +63,8 @@ class Fixture {
     std::vector<std::unique_ptr<Place>> places_;
     std::unique_ptr<MultiPreparer> together_;
     LoadedScene loaded_;
+    std::string scene_name_;
+    bool warned_of_baselines_ = false;
     int width_ = 0, height_ = 0;
     std::map<std::string, Held> held_;
     std::vector<RaySet> rays_;
