@@ -160,7 +160,6 @@ void Volumes::fit(rt_u32 at, const Box& box, const Triangles& triangles) const {
 }
 
 void Volumes::refit(rt_u32 at, const Box& box, const Triangles& triangles) const {
-    if (!is_turned(at)) return enclose(at, box);
     Frame frame;
     std::copy_n(axes_[at].axis, 9, frame.axis);
     Fit moved;

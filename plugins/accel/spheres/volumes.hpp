@@ -32,7 +32,7 @@ class Volumes {
     void enclose(rt_u32 at, const Box& box) const;
     // Encloses a box of triangles as tightly as the kind allows.
     void fit(rt_u32 at, const Box& box, const Triangles& triangles) const;
-    // The same with the axes that the node has.
+    // The same with the axes that the node has. Only for turned nodes; others need no triangles, but enclose().
     void refit(rt_u32 at, const Box& box, const Triangles& triangles) const;
     void fill_space(rt_u32 at) const;
 
