@@ -12,7 +12,7 @@ build_packages="g++ cmake ninja-build make pkg-config libdraco-dev libmeshoptimi
     libgl1-mesa-dri fonts-dejavu-core libjs-chart.js"
 # The tests compare with Embree, use numpy and draw with matplotlib, build strangers' sources by bubblewrap, run kernels on PoCL and oclgrind,
 # open the window on a virtual display, and pages in Chromium.
-test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format python3-numpy python3-matplotlib
+test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format-19 python3-numpy python3-matplotlib
     bubblewrap xvfb xauth xdotool imagemagick chromium"
 
 # Additional packages for scripts/full_test.

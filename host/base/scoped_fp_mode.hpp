@@ -32,9 +32,7 @@ class ScopedFpMode {
         std::fegetenv(&before_);
         std::fesetenv(FE_DFL_ENV);
     }
-    ~ScopedFpMode() {
-        std::fesetenv(&before_);
-    }
+    ~ScopedFpMode() { std::fesetenv(&before_); }
 
  private:
     std::fenv_t before_;

@@ -27,11 +27,11 @@ uint64_t entries_of(const char* folder) {
 Outcome compare_sizes(const std::string& what, unsigned times, const ProcessSize& begin, const ProcessSize& middle,
                       const ProcessSize& end) {
     // Memory that grows in both halves is leaked; a cache grows once.
-    const auto grows = [&](uint64_t ProcessSize::*member, uint64_t each) {
+    const auto grows = [&](uint64_t ProcessSize::* member, uint64_t each) {
         const uint64_t a = begin.*member, b = middle.*member, c = end.*member, least = each * uint64_t(times / 2);
         return b > a && c > b && b - a >= least && c - b >= least;
     };
-    const auto each = [&](uint64_t ProcessSize::*member) {
+    const auto each = [&](uint64_t ProcessSize::* member) {
         return std::to_string((end.*member - begin.*member) / uint64_t(times));
     };
     const std::string after = " after " + std::to_string(times) + " " + what + "s";

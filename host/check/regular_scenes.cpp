@@ -99,46 +99,16 @@ struct PatchRow {
     void (*fill)(Maker& make);
 };
 const PatchRow kPatchRows[] = {
-    {{"floor", 10.0f / 64},
-     [](Maker& make) {
-         add_squares(make, {0, 0, 0}, 1, 10.0f / 64, 64, 64);
-     }},
-    {{"wall", 0.1f},
-     [](Maker& make) {
-         add_squares(make, {-100.1f, 7.3f, -50.7f}, 0, 0.1f, 40, 36);
-     }},
-    {{"cubes", 1.0f / 3},
-     [](Maker& make) {
-         add_cubes(make, {-20, 30, 110}, 1.0f / 3, 1.0f / 3, 6);
-     }},
-    {{"blocks", 8},
-     [](Maker& make) {
-         add_cubes(make, {1000, 1000, 1000}, 16, 8, 5);
-     }},
-    {{"tiny floor", 1e-3f},
-     [](Maker& make) {
-         add_squares(make, {5.5f, 40, -60.25f}, 2, 1e-3f, 32, 32);
-     }},
-    {{"decals", 0.0015f},
-     [](Maker& make) {
-         add_decals(make, {0, 120, 0});
-     }},
-    {{"needles", 0.1f},
-     [](Maker& make) {
-         add_needles(make, {60, 60, -200});
-     }},
-    {{"deep", 0.1f},
-     [](Maker& make) {
-         add_deep(make, {-200, 0, 0});
-     }},
-    {{"stadium", 0.02f},
-     [](Maker& make) {
-         add_stadium(make, {0, -400, 0});
-     }},
-    {{"copies", 0.5f},
-     [](Maker& make) {
-         add_copies(make, {200, 16, -8});
-     }},
+    {{"floor", 10.0f / 64}, [](Maker& make) { add_squares(make, {0, 0, 0}, 1, 10.0f / 64, 64, 64); }},
+    {{"wall", 0.1f}, [](Maker& make) { add_squares(make, {-100.1f, 7.3f, -50.7f}, 0, 0.1f, 40, 36); }},
+    {{"cubes", 1.0f / 3}, [](Maker& make) { add_cubes(make, {-20, 30, 110}, 1.0f / 3, 1.0f / 3, 6); }},
+    {{"blocks", 8}, [](Maker& make) { add_cubes(make, {1000, 1000, 1000}, 16, 8, 5); }},
+    {{"tiny floor", 1e-3f}, [](Maker& make) { add_squares(make, {5.5f, 40, -60.25f}, 2, 1e-3f, 32, 32); }},
+    {{"decals", 0.0015f}, [](Maker& make) { add_decals(make, {0, 120, 0}); }},
+    {{"needles", 0.1f}, [](Maker& make) { add_needles(make, {60, 60, -200}); }},
+    {{"deep", 0.1f}, [](Maker& make) { add_deep(make, {-200, 0, 0}); }},
+    {{"stadium", 0.02f}, [](Maker& make) { add_stadium(make, {0, -400, 0}); }},
+    {{"copies", 0.5f}, [](Maker& make) { add_copies(make, {200, 16, -8}); }},
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ void on_deadline(int) {
 
 void make_deadline() {
     if (has_deadline) return;
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = on_deadline;
     sigevent event{};
     event.sigev_notify = SIGEV_SIGNAL;
@@ -61,12 +61,12 @@ void make_deadline() {
 CancelOnSignal::CancelOnSignal(Progress& progress) {
     make_deadline();
     target = &progress;
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_handler = on_signal;
     action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // SA_RESETHAND: the second signal ends the program
     for (const int signal : {SIGINT, SIGTERM}) {
         // A shell starts background jobs with SIGINT ignored; do not change that.
-        struct sigaction old {};
+        struct sigaction old{};
         if (sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_IGN) continue;
         sigaction(signal, &action, nullptr);
     }

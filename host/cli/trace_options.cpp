@@ -36,10 +36,10 @@ TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions&
     return words;
 }
 
-import::ImportOptions import_options(const SceneOptions& scene,
-                                     const TraceWords& words){import::ImportOptions options = scene.import;
-options.pictures = pictures_of(words.edits);
-return options;
+import::ImportOptions import_options(const SceneOptions& scene, const TraceWords& words) {
+    import::ImportOptions options = scene.import;
+    options.pictures = pictures_of(words.edits);
+    return options;
 }  // namespace clarity
 
 void check_scene(const PluginRegistry& plugins, const SceneOptions& options) {
@@ -49,7 +49,7 @@ void check_scene(const PluginRegistry& plugins, const SceneOptions& options) {
 
 void check_scene_files(const std::vector<std::string>& files) {
     for (const std::string& file : files) {
-        struct stat status {};
+        struct stat status{};
         if (stat(file.c_str(), &status) != 0) {
             const std::string hint = file.find_first_of("./") == std::string::npos
                                          ? "; nor is it a command: `clarity --help` lists them"

@@ -46,8 +46,7 @@ void forget_names(Elements& elements) {
 void SentScene::send(ParcelWriter& parcel, Scene scene) {
     Converted converted = convert(scene);
     parcel(kMagic);
-    import::visit(scene, converted, [&](auto& array) { give(parcel, array);
-});
+    import::visit(scene, converted, [&](auto& array) { give(parcel, array); });
 }  // namespace clarity::import
 
 void SentScene::receive(ParcelReader& parcel, Scene& scene) {
@@ -55,9 +54,8 @@ void SentScene::receive(ParcelReader& parcel, Scene& scene) {
     parcel(magic);
     if (magic != kMagic) throw Error(Exit::failed, "the shared memory holds no scene");
     Converted converted;
-    import::visit(scene, converted, [&](auto& array) { parcel(array);
-});
-if (!convert_back(converted, scene)) throw ParcelDamaged();
+    import::visit(scene, converted, [&](auto& array) { parcel(array); });
+    if (!convert_back(converted, scene)) throw ParcelDamaged();
 }
 
 void write_scene(MemoryFile& file, Scene scene) {

@@ -100,7 +100,7 @@ Tools tools_for(const BuildTools& tools, Sandbox sandbox, const std::string& wor
 
 // The regular file `path`, without following a link. Throws Refused.
 std::string submitted(const std::string& path, const Lab::File& file) {
-    struct stat status {};
+    struct stat status{};
     if (lstat(path.c_str(), &status) != 0) throw Refused(file.name + " is not there; hand it in under this name");
     if (!S_ISREG(status.st_mode)) throw Refused(file.name + " is no regular file: hand in the file itself, no link");
     if (static_cast<uint64_t>(status.st_size) > file.most_bytes)

@@ -36,7 +36,7 @@ class File {
             why_ = std::string("cannot be opened: ") + std::strerror(errno);
             return;
         }
-        struct stat status {};
+        struct stat status{};
         if (fstat(fd_, &status) != 0)
             why_ = std::string("cannot be examined: ") + std::strerror(errno);
         else if (S_ISDIR(status.st_mode))

@@ -41,7 +41,7 @@ struct Look {
 };
 
 Look look_at(const std::string& path) {
-    struct stat status {};
+    struct stat status{};
     if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
     return {status.st_dev, status.st_ino, status.st_size, status.st_mtim};
 }
@@ -148,7 +148,9 @@ bool LibraryWatch::load(const std::string& path) {
 
 // Runs on the thread of the watch.
 void LibraryWatch::load_changed() {
-    { const std::lock_guard<std::mutex> lock(mutex_); }  // waits for the constructor
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+    }  // waits for the constructor
     for (const std::string& file : files_->last_changed())
         for (const PluginRecord& record : plugins_.records())
             if (fs::absolute(record.path).lexically_normal() == file)

@@ -175,7 +175,7 @@ std::vector<uint8_t> read_head(const std::string& path) {
     }
     size_t bytes = 0;
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // opening a pipe must not block
-    struct stat status {};
+    struct stat status{};
     if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
         for (ssize_t got = 0; bytes < head.size(); bytes += static_cast<size_t>(got)) {
             got = read(file, head.data() + bytes, head.size() - bytes);
@@ -237,7 +237,7 @@ namespace {
 
 // The usable plugins that have this table, in the order in which they were found.
 template <class Table>
-std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, Table rt_plugin::*table) {
+std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, Table rt_plugin::* table) {
     std::vector<const rt_plugin*> list;
     for (const PluginRecord& record : records)
         if (record.plugin && !record.shadowed && record.plugin->*table) list.push_back(record.plugin);
@@ -245,14 +245,14 @@ std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, T
 }
 
 template <class Table>
-const rt_plugin* find(const std::vector<PluginRecord>& records, Table rt_plugin::*table, std::string_view id) {
+const rt_plugin* find(const std::vector<PluginRecord>& records, Table rt_plugin::* table, std::string_view id) {
     for (const rt_plugin* plugin : usable(records, table))
         if (id == plugin->id) return plugin;
     return nullptr;
 }
 
 template <class Table>
-std::vector<const rt_plugin*> sorted(const std::vector<PluginRecord>& records, Table rt_plugin::*table) {
+std::vector<const rt_plugin*> sorted(const std::vector<PluginRecord>& records, Table rt_plugin::* table) {
     std::vector<const rt_plugin*> list = usable(records, table);
     std::sort(list.begin(), list.end(), [](const rt_plugin* a, const rt_plugin* b) { return std::strcmp(a->id, b->id) < 0; });
     return list;

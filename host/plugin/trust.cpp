@@ -35,7 +35,7 @@ std::string name_of_content(const std::string& path) {
 
 // Names a version of a file without reading it.
 std::string stamp_of(const std::string& path) {
-    struct stat status {};
+    struct stat status{};
     if (stat(path.c_str(), &status) != 0) return {};
     return path + ' ' + std::to_string(status.st_size) + ' ' + std::to_string(status.st_ino) + ' ' +
            std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec);

@@ -155,7 +155,7 @@ void on_out_of_memory() {
 // second thread that crashes at the same moment ends the process before anything is reported.
 void take_crash_signals() {
     if (kHasCrashReports) return;
-    struct sigaction action {};
+    struct sigaction action{};
     action.sa_sigaction = on_crash;
     action.sa_flags = SA_SIGINFO | SA_ONSTACK;
     for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);

@@ -136,7 +136,7 @@ Problem detail::restrict_files(const std::vector<std::string>& folders, const st
         rule.parent_fd = open(path.c_str(), O_PATH | O_CLOEXEC);
         if (rule.parent_fd < 0) return;  // then the path is not readable, which is safe
         // The kernel refuses a file's rule with rights of folders.
-        struct stat status {};
+        struct stat status{};
         if (fstat(rule.parent_fd, &status) == 0 && !S_ISDIR(status.st_mode)) rule.allowed_access &= kRightsOfFiles;
         syscall(SYS_landlock_add_rule, fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
         close(rule.parent_fd);

@@ -39,7 +39,9 @@ TEST(AlignedBytes, BlocksInUseAreNotShared) {
 }
 
 TEST(AlignedBytes, KeptMemoryIsLimited) {
-    { const AlignedBytes huge(AlignedBytes::most_kept() + 4 * kMiB, false); }
+    {
+        const AlignedBytes huge(AlignedBytes::most_kept() + 4 * kMiB, false);
+    }
     EXPECT_LE(AlignedBytes::kept(), AlignedBytes::most_kept());
     for (size_t size = AlignedBytes::most_kept() / 2; size > kMiB; size -= size / 8) {
         const AlignedBytes memory(size, false);

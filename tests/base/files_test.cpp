@@ -65,7 +65,7 @@ TEST(OutputFile, CommitReplacesTheFileAndKeepsItsRights) {
     ASSERT_EQ(chmod(path.c_str(), 0640), 0);
     clarity::write_text_file(path, "two");
     EXPECT_EQ(scratch.read("a.txt"), "two");
-    struct stat status {};
+    struct stat status{};
     ASSERT_EQ(stat(path.c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777u, 0640u);
     EXPECT_EQ(names_in(scratch), std::vector<std::string>{"a.txt"});
@@ -76,7 +76,7 @@ TEST(OutputFile, ANewFileHasTheRightsOfTheUmask) {
     const mode_t before = umask(027);
     clarity::write_text_file(scratch.path("a.txt"), "");
     umask(before);
-    struct stat status {};
+    struct stat status{};
     ASSERT_EQ(stat(scratch.path("a.txt").c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777u, 0640u);
 }

@@ -208,8 +208,7 @@ TEST(Measure, RunningOutOfMemoryAffectsOnlyItsOwnContender) {
 
 // A contender which tunes itself, as ray queries on a GPU do. ms: time of each variant at full clock. slowdown: factor on the
 // time of the n-th run, while the clock rises.
-Contender tuned(
-    std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
+Contender tuned(std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
     const auto tuner = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
     const auto runs = std::make_shared<unsigned>(0);
     return {"tuned", [=] {

@@ -396,7 +396,9 @@ TEST(RowsFile, IsTheWholeReportOnceItIsFinished) {
     }
     EXPECT_EQ(scratch.read("a.json"), bench_json(report));
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.path("")), {}), 1);
-    { RowsFile untouched(scratch.path("b.json")); }
+    {
+        RowsFile untouched(scratch.path("b.json"));
+    }
     EXPECT_FALSE(std::filesystem::exists(scratch.path("b.json")));
 }
 

@@ -78,8 +78,7 @@ TEST(Light, LambertsCosineFromADirection) {
         view.lights = {directional_light({std::sin(angle), 0, std::cos(angle)}, 0.8f)};
         const double expected = 0.5 * 0.8 * std::max(0.0, std::cos(angle));
         SCOPED_TRACE(std::to_string(degrees) + " degrees");
-        expect_picture(
-            trace(plane_scene(), view, 64, 48, 1), view, [&](const Ray&) { return expected; }, 1e-5, 64 * 48);
+        expect_picture(trace(plane_scene(), view, 64, 48, 1), view, [&](const Ray&) { return expected; }, 1e-5, 64 * 48);
     }
 }
 
@@ -205,8 +204,7 @@ TEST(Light, LightsAndAmbientAddUp) {
     view.lights = {directional_light({0, 0, 1}, 0.25f), directional_light({0, 1, 1}, 0.5f), directional_light({0, 0, -1}, 9)};
     view.ambient = {0.1f, 0.2f, 0.3f};
     const double expected = 0.5 * (0.25 + 0.5 * std::sqrt(0.5) + 0.2);
-    expect_picture(
-        trace(plane_scene(), view, 16, 16, 1), view, [&](const Ray&) { return expected; }, 1e-5, 256);
+    expect_picture(trace(plane_scene(), view, 16, 16, 1), view, [&](const Ray&) { return expected; }, 1e-5, 256);
 }
 
 // The Blinn-Phong highlight is strongest where the half vector is the normal: there, on a plane with a light beside the eye, it
@@ -282,10 +280,8 @@ TEST(Shadow, NotFromBehindTheLamp) {
     view.lights = {point_light({0, 0, 2}, 1)};
     expect_picture(
         trace(scene, view, 48, 48, 1), view,
-        [](const Ray& line) {
-            return 0.5 * normalized(Vec{0, 0, 2} - line.at(-line.origin[2] / line.direction[2]))[2];
-        },
-        1e-5, 48 * 48);
+        [](const Ray& line) { return 0.5 * normalized(Vec{0, 0, 2} - line.at(-line.origin[2] / line.direction[2]))[2]; }, 1e-5,
+        48 * 48);
 }
 
 // No shadow acne: a surface does not shade itself, for every scale, place and angle.

@@ -59,8 +59,7 @@ TEST(Mirror, ShowsObjectsAtTheirMirroredPlace) {
 TEST(Mirror, DepthOneShowsNoReflection) {
     const View view = lamp_view();
     const Picture picture = trace(lamp_over_mirror(), view, 160, 120, 1);
-    expect_picture(
-        picture, view, [](const Ray& l) { return lamp_truth(l, 0); }, 1e-5, 15000);
+    expect_picture(picture, view, [](const Ray& l) { return lamp_truth(l, 0); }, 1e-5, 15000);
     EXPECT_EQ(picture.stats.secondary, 0u);
 }
 
@@ -97,8 +96,7 @@ TEST(Mirror, AMeshReflectsLikeAPlane) {
     mesh.meshes = triangles.meshes;
     mesh.instances = triangles.instances;
     const View view = lamp_view();
-    expect_picture(
-        trace(mesh, view, 160, 120, 2), view, [](const Ray& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
+    expect_picture(trace(mesh, view, 160, 120, 2), view, [](const Ray& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
 }
 
 TEST(Glass, FresnelAtNormalIncidence) {

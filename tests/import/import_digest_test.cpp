@@ -67,15 +67,10 @@ TEST(SceneDigest, ChangesWithAllThatIsSeen) {
         {"an instance", [](Scene& s) { s.instances[0].world_from_object[3] = 1; }},
         {"the background", [](Scene& s) { s.background[0] = 1; }},
         {"the sky", [](Scene& s) { s.sky.values.kind = RT_SKY_CONSTANT; }},
-        {"a texel of the sky",
-         [](Scene& s) {
-             s.sky.texels = {1, 2, 3};
-         }},
+        {"a texel of the sky", [](Scene& s) { s.sky.texels = {1, 2, 3}; }},
         {"a key", [](Scene& s) { s.motion.key_values.own().back() += 1; }},
         {"a clip's name", [](Scene& s) { s.motion.clips[0].name = "walk"; }},
-        {"an edit", [](Scene& s) {
-             s.edits.push_back({"light.0", "off", "a.scene:1:1"});
-         }}};
+        {"an edit", [](Scene& s) { s.edits.push_back({"light.0", "off", "a.scene:1:1"}); }}};
     for (const auto& [what, change] : changes) {
         Scene changed = scene;
         change(changed);

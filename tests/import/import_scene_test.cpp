@@ -92,14 +92,8 @@ TEST(Scene, validate_names_every_damage) {
         {"sphere 0: its centre", [](Scene& s) { s.spheres[0].center[1] = kNan; }},
         {"sphere 0: its radius", [](Scene& s) { s.spheres[0].radius = -1; }},
         {"sphere 0: material", [](Scene& s) { s.spheres[0].material = 9; }},
-        {"plane 0: its normal",
-         [](Scene& s) {
-             s.planes[0].normal = {0, 2, 0};
-         }},
-        {"plane 0: its normal",
-         [](Scene& s) {
-             s.planes[0].normal = {0, kNan, 0};
-         }},
+        {"plane 0: its normal", [](Scene& s) { s.planes[0].normal = {0, 2, 0}; }},
+        {"plane 0: its normal", [](Scene& s) { s.planes[0].normal = {0, kNan, 0}; }},
         {"plane 0: its offset", [](Scene& s) { s.planes[0].offset = kNan; }},
         {"plane 0: material", [](Scene& s) { s.planes[0].material = 9; }},
         {"polygon 0: fewer", [](Scene& s) { s.polygons[0].corner_count = 2; }},

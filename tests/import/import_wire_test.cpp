@@ -197,8 +197,7 @@ TEST(Wire, the_scene_is_not_held_twice) {
     sent.texels.assign(8 << 20, 7);  // 32 MB
     sent.textures = {{0, 4096, 2048, 0, 0, 0, 0}};
     write_scene(file, sent);
-    struct stat before {
-    }, after{};
+    struct stat before{}, after{};
     ASSERT_EQ(fstat(file.fd(), &before), 0);
     ASSERT_GE(before.st_blocks, (32 << 20) / 512);
     const Scene got = read_scene(file);

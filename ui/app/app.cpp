@@ -78,12 +78,12 @@ volatile std::sig_atomic_t asked_to_end = 0;
 class EndOnSignal {
  public:
     EndOnSignal() {
-        struct sigaction action {};
+        struct sigaction action{};
         action.sa_handler = [](int) { asked_to_end = 1; };
         action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
         for (const int signal : {SIGTERM, SIGHUP, SIGINT}) {
             // A shell starts background jobs with SIGINT ignored; do not change that.
-            struct sigaction old {};
+            struct sigaction old{};
             if (sigaction(signal, nullptr, &old) == 0 && old.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
         }
     }

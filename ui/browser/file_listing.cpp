@@ -74,7 +74,7 @@ Listing list_folder(const DesiredListing& desired) {
         if (found->d_name[0] == '.') continue;
         FileEntry entry;
         entry.name = found->d_name;
-        struct stat about {};
+        struct stat about{};
         if (fstatat(dirfd(folder.get()), found->d_name, &about, 0) != 0) continue;  // deleted meanwhile, or a broken link
         entry.folder = S_ISDIR(about.st_mode);
         if (!entry.folder && !S_ISREG(about.st_mode)) continue;

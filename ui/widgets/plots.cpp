@@ -63,7 +63,7 @@ struct LogAxis {
     }
 };
 
-LogAxis axis_of(const std::vector<LogSeries>& series, double std::pair<double, double>::*coordinate, float from, float to) {
+LogAxis axis_of(const std::vector<LogSeries>& series, double std::pair<double, double>::* coordinate, float from, float to) {
     double least = INFINITY, most = -INFINITY;
     for (const LogSeries& one : series)
         for (const auto& point : one.points)

@@ -27,7 +27,7 @@ struct PendingEdit {
 
 // For the widget just drawn: whether its value applies now. It applies at once, or when the mouse button is released.
 template <class Value>
-bool settled(ImGuiID id, bool edited, bool at_once, Value shown, Value& value, Value PendingEdit::*member) {
+bool settled(ImGuiID id, bool edited, bool at_once, Value shown, Value& value, Value PendingEdit::* member) {
     const bool done = ImGui::IsItemDeactivatedAfterEdit();
     if (ImGui::IsItemActive()) {
         pending.id = id;

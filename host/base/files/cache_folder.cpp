@@ -19,7 +19,7 @@ std::filesystem::path cache_folder() {
 }
 
 bool is_own_folder(const std::filesystem::path& folder) {
-    struct stat status {};
+    struct stat status{};
     return lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid() &&
            (status.st_mode & 022) == 0;
 }

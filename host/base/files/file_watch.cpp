@@ -57,7 +57,7 @@ bool FileWatch::State::same_file(const State& other) const {
 
 // Reads the state of a file without its hash.
 FileWatch::State FileWatch::look(const std::string& path) {
-    struct stat status {};
+    struct stat status{};
     State state;
     if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return state;
     state.device = status.st_dev;

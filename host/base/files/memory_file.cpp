@@ -24,7 +24,7 @@ constexpr uint64_t kAtOnce = uint64_t{1} << 30;  // bytes: one call transfers le
 }
 
 struct stat status_of(int fd) {
-    struct stat status {};
+    struct stat status{};
     if (fstat(fd, &status) != 0) fail("looked at", std::strerror(errno));
     return status;
 }
@@ -72,7 +72,7 @@ std::optional<MemoryFile> MemoryFile::open(const Address& address) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return std::nullopt;
     MemoryFile file(fd);
-    struct stat status {};
+    struct stat status{};
     if (fstat(fd, &status) != 0 || status.st_dev != address.device || status.st_ino != address.inode) return std::nullopt;
     return file;
 }

@@ -24,7 +24,7 @@ namespace clarity {
 namespace {
 
 bool is_stream(const std::string& path) {
-    struct stat status {};
+    struct stat status{};
     return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
@@ -115,7 +115,7 @@ int create_temporary(const std::string& folder, std::string& name) {
         // it.
         while (flock(file, LOCK_EX) != 0 && errno == EINTR) {
         }
-        struct stat status {};
+        struct stat status{};
         if (fstat(file, &status) == 0 && status.st_nlink > 0) return file;
         ::close(file);
     }
@@ -124,7 +124,7 @@ int create_temporary(const std::string& folder, std::string& name) {
 // Finds what rename() would refuse before any work is done. Returns nothing if nothing is wrong.
 Problem why_not_writable(const std::string& path) {
     if (path.empty()) return "the name is empty";
-    struct stat status {};
+    struct stat status{};
     if (stat(path.c_str(), &status) == 0) {
         if (S_ISDIR(status.st_mode)) return "it is a folder; add a file name";
         if (!S_ISREG(status.st_mode)) return access(path.c_str(), W_OK) == 0 ? "" : std::strerror(errno);
@@ -179,7 +179,7 @@ void OutputFile::sync() {
 }
 
 void OutputFile::commit() {
-    struct stat replaced {};
+    struct stat replaced{};
     const bool replaces = !stream_ && stat(path_.c_str(), &replaced) == 0;
     if (replaces) {
         // The new file gets the permissions of the old one. A file system without permissions refuses, which does no harm.

@@ -23,7 +23,7 @@ constexpr unsigned char kMagic[3] = {0x1F, 0x8B, 8};  // 8: deflate, the only me
 class Packed {
  public:
     explicit Packed(const std::string& path) : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-        struct stat status {};
+        struct stat status{};
         if (file_ >= 0 && fstat(file_, &status) == 0 && S_ISREG(status.st_mode)) bytes_ = static_cast<uint64_t>(status.st_size);
     }
     ~Packed() {

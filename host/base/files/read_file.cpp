@@ -36,7 +36,7 @@ class Descriptor {
 
 Problem try_read_file(const std::string& path, uint64_t limit_bytes, std::string& content) {
     const Descriptor file(path);
-    struct stat status {};
+    struct stat status{};
     if (file.get() < 0 || fstat(file.get(), &status) != 0) return cannot_be_read(errno);
     if (S_ISDIR(status.st_mode)) return "is a folder; name a file in it";
     if (!S_ISREG(status.st_mode)) return "is no regular file, and may have no end; save its content to a file and name that";

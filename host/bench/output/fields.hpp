@@ -48,7 +48,7 @@ Json value_json(const Value& value) {
 
 // A field which writes and reads the member as it is.
 template <class Owner, class Value>
-Field<Owner> plain(const char* key, Value Owner::*member, Look look = {}) {
+Field<Owner> plain(const char* key, Value Owner::* member, Look look = {}) {
     Field<Owner> field{key, [=](const Owner& o) { return value_json(o.*member); },
                        [=](const Json& json, Owner& o) { o.*member = json.get<Value>(); }, look};
     if constexpr (std::is_arithmetic_v<Value>) field.number = [=](const Owner& o) { return double(o.*member); };
@@ -57,7 +57,7 @@ Field<Owner> plain(const char* key, Value Owner::*member, Look look = {}) {
 
 // A field that is written as null if the member is empty (0, "").
 template <class Owner, class Value>
-Field<Owner> unless_empty(const char* key, Value Owner::*member, Look look = {}) {
+Field<Owner> unless_empty(const char* key, Value Owner::* member, Look look = {}) {
     Field<Owner> field = plain(key, member, look);
     field.write = [=](const Owner& o) { return o.*member > Value() ? value_json(o.*member) : Json(); };
     return field;

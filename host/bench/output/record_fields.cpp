@@ -30,7 +30,7 @@ Summary read_summary(const Json& json) {
 }
 
 // A summary of times; null if it is 0, because rays are not timed by the host's clock.
-Field<BenchRecord> times(const char* key, Summary BenchRecord::*member) {
+Field<BenchRecord> times(const char* key, Summary BenchRecord::* member) {
     return {key, [=](const BenchRecord& r) { return (r.*member).median > 0 ? summary_json(r, r.*member) : Json(); },
             [=](const Json& json, BenchRecord& r) { r.*member = read_summary(json); }};
 }
@@ -45,7 +45,7 @@ Field<BenchRecord> count_of(Field<BenchRecord> field) {
 }
 
 // A size as "4x2"; null for 0x0.
-Field<BenchRecord> size(const char* key, int BenchRecord::*w, int BenchRecord::*h) {
+Field<BenchRecord> size(const char* key, int BenchRecord::* w, int BenchRecord::* h) {
     return {key,
             [=](const BenchRecord& r) { return r.*w > 0 ? Json(std::to_string(r.*w) + "x" + std::to_string(r.*h)) : Json(); },
             [=](const Json& json, BenchRecord& r) {
@@ -55,7 +55,7 @@ Field<BenchRecord> size(const char* key, int BenchRecord::*w, int BenchRecord::*
             }};
 }
 
-Field<BenchRecord> parts(const char* key, Parts BenchRecord::*member) {
+Field<BenchRecord> parts(const char* key, Parts BenchRecord::* member) {
     return figure_of<BenchRecord>({key,
                                    [=](const BenchRecord& r) {
                                        if ((r.*member).empty()) return Json();
@@ -73,7 +73,7 @@ Field<BenchRecord> parts(const char* key, Parts BenchRecord::*member) {
 
 // A struct within the record. present: tells whether there is anything to write.
 template <class Part>
-Field<BenchRecord> nested(const char* key, Part BenchRecord::*member, const Fields<Part>& (*fields)(),
+Field<BenchRecord> nested(const char* key, Part BenchRecord::* member, const Fields<Part>& (*fields)(),
                           bool (*present)(const Part&)) {
     return figure_of<BenchRecord>(
         {key, [=](const BenchRecord& r) { return present(r.*member) ? write_fields(fields(), r.*member) : Json(); },
@@ -102,7 +102,7 @@ const Fields<LightRun>& light_fields() {
     static const Fields<Point> of_point = {plain("samples", &Point::samples), plain("ms", &Point::ms),
                                            plain("rmse", &Point::rmse), plain("trimmed_rmse", &Point::trimmed_rmse),
                                            plain("relmse", &Point::relmse)};
-    const auto if_told = [](const char* key, int LightRun::*member) {
+    const auto if_told = [](const char* key, int LightRun::* member) {
         Field<LightRun> field = plain(key, member);
         field.write = [=](const LightRun& l) { return l.*member >= 0 ? Json(l.*member) : Json(); };
         return field;
@@ -299,7 +299,7 @@ const Fields<BenchRecord>& record_fields() {
 
 const Fields<BenchRun>& run_fields() {
     using R = BenchRun;
-    const auto before_after = [](const char* key, double R::*before, double R::*after) {
+    const auto before_after = [](const char* key, double R::* before, double R::* after) {
         const Fields<R> both = {plain("before", before), plain("after", after)};
         return Field<R>{key, [=](const R& run) { return write_fields(both, run); },
                         [=](const Json& json, R& run) { read_fields(json, both, run); }};

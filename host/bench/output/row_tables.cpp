@@ -66,7 +66,7 @@ std::string last_of_name(R r) {
 }
 
 // A column of one of the named times.
-Column part(const char* name, Parts BenchRecord::*of) {
+Column part(const char* name, Parts BenchRecord::* of) {
     return col(name, [=](R r) {
         const auto at = std::find_if((r.*of).begin(), (r.*of).end(), [&](const auto& p) { return p.first == name; });
         return at == (r.*of).end() ? 0 : at->second;

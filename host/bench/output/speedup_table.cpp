@@ -26,7 +26,7 @@ bool together(const BenchRecord& a, const BenchRecord& b) {
 }
 
 void add_mean(TextTable& table, const std::vector<SpeedupMean>& means, const BenchRecord& of, const char* what,
-              double SpeedupMean::*value, double SpeedupMean::*spread) {
+              double SpeedupMean::* value, double SpeedupMean::* spread) {
     std::vector<std::string> cells = {what, of.variant};
     for (const char* measure : kMeasures) {
         std::string found;

@@ -103,9 +103,8 @@ Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, con
     std::set<std::pair<Defines, size_t>> programs;
     for (; !left.empty() && spent < most; ++traced) {
         const double begin = processor_s();
-        auto next = std::find_if(left.begin(), left.end(), [&](const Tried& t) {
-            return t.defines == usual || programs.count({t.defines, t.turn}) > 0;
-        });
+        auto next = std::find_if(left.begin(), left.end(),
+                                 [&](const Tried& t) { return t.defines == usual || programs.count({t.defines, t.turn}) > 0; });
         if (next == left.end()) next = left.begin();
         programs.insert({next->defines, next->turn});
         Outcome outcome =

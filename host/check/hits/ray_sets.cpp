@@ -98,9 +98,8 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count, uint64_t see
         [&](std::vector<rt_ray>& rays) {
             plain(rays, {"instanced", "instanced", "instanced, tiny", "instanced, far away"}, count / 4);
         });
-    add("hits.primitives", "rays at spheres and polygons", [&](std::vector<rt_ray>& rays) {
-        plain(rays, {"spheres", "polygons"}, count / 3);
-    });
+    add("hits.primitives", "rays at spheres and polygons",
+        [&](std::vector<rt_ray>& rays) { plain(rays, {"spheres", "polygons"}, count / 3); });
     add("hits.axes", "rays along one axis or within a plane of two, zeros of either sign, also within faces of boxes",
         [&](std::vector<rt_ray>& rays) {
             for (size_t i = 0; i < count; ++i) {

@@ -35,7 +35,7 @@ bool server_time(const std::string& beside, double& seconds) {
     const std::string path = beside + "." + host_name() + "-" + std::to_string(getpid());
     const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file < 0) return false;
-    struct stat status {};
+    struct stat status{};
     const bool known = write(file, "?", 1) == 1 && fstat(file, &status) == 0;
     close(file);
     unlink(path.c_str());
@@ -50,7 +50,7 @@ bool has_expired(const std::string& path) {
     long process = 0;
     if (file >> host >> process && host == host_name() && process > 0 && kill(pid_t(process), 0) != 0 && errno == ESRCH)
         return true;
-    struct stat status {};
+    struct stat status{};
     if (stat(path.c_str(), &status) != 0) return errno == ENOENT;
     double now = 0;
     return server_time(path, now) && now - seconds_of(status.st_mtim) > FrameClaim::kExpiresAfterS;
@@ -72,8 +72,7 @@ struct FrameClaim::Impl {
     }
     // Whether the file of that name is the one that is open here: another process may have taken the claim for expired.
     bool is_ours() const {
-        struct stat mine {
-        }, named{};
+        struct stat mine{}, named{};
         return fstat(file, &mine) == 0 && stat(path.c_str(), &named) == 0 && mine.st_ino == named.st_ino &&
                mine.st_dev == named.st_dev;
     }
@@ -99,7 +98,7 @@ std::unique_ptr<FrameClaim> FrameClaim::take(const std::string& picture) {
 
 void FrameClaim::remove_expired(const std::string& picture) {
     const std::string path = claim_path(picture);
-    struct stat status {};
+    struct stat status{};
     if (stat(path.c_str(), &status) == 0 && has_expired(path)) unlink(path.c_str());
 }
 

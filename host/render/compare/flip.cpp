@@ -165,10 +165,10 @@ std::array<Plane, 2> features(const Plane& luminance, unsigned width, unsigned h
     double sum = 0;
     for (const double t : smooth) sum += t;
     for (double& t : smooth) t /= sum;
-    const Taps across[] = {balanced(taps(
-                               radius, [](double x, double s) { return -x * bell(x, s); }, sigma)),
-                           balanced(taps(
-                               radius, [](double x, double s) { return (x * x / (s * s) - 1) * bell(x, s); }, sigma))};
+    const Taps across[] = {
+        balanced(taps(
+            radius, [](double x, double s) { return -x * bell(x, s); }, sigma)),
+        balanced(taps(radius, [](double x, double s) { return (x * x / (s * s) - 1) * bell(x, s); }, sigma))};
     std::array<Plane, 2> out;
     for (size_t k = 0; k < 2; ++k) {
         out[k] = filtered(luminance, width, height, across[k], smooth);

@@ -134,9 +134,8 @@ ByteImage false_colors(const FloatImage& values, const std::string& name, const 
             return Rgb{byte_of(0.5 + 0.5 * v[0]), byte_of(0.5 + 0.5 * v[1]), byte_of(0.5 + 0.5 * v[2])};
         });
     } else if (how == Aov::Paint::texture) {
-        paint(values, rgba, [](const float* v) {
-            return Rgb{byte_of(v[0] - std::floor(v[0])), byte_of(v[1] - std::floor(v[1])), 0};
-        });
+        paint(values, rgba,
+              [](const float* v) { return Rgb{byte_of(v[0] - std::floor(v[0])), byte_of(v[1] - std::floor(v[1])), 0}; });
     } else {
         const Table& map = entries(scale.map);
         const float factor = scale.max > scale.min ? 255 / (scale.max - scale.min) : 0, min = scale.min;

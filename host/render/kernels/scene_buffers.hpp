@@ -10,12 +10,12 @@
 namespace clarity {
 
 struct SceneBuffer {
-    const char *type, *name;            // in rt_ctx; as an argument of kernels it is called ctx_NAME
-    const char* what;                   // for messages
-    size_t checked_bytes;               // if not 0: the size of the type, which is compared with the device's
-    bool SceneFeatures::*of = nullptr;  // only kernels of scenes with this feature have it
-    bool of_emitters = false;           // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
-    bool of_layers = false;             // only kernels with RT_LOBE_LAYERS or models of plugins have it
+    const char *type, *name;             // in rt_ctx; as an argument of kernels it is called ctx_NAME
+    const char* what;                    // for messages
+    size_t checked_bytes;                // if not 0: the size of the type, which is compared with the device's
+    bool SceneFeatures::* of = nullptr;  // only kernels of scenes with this feature have it
+    bool of_emitters = false;            // only kernels with kPicksLights have it; it comes from the frame (render/emitters)
+    bool of_layers = false;              // only kernels with RT_LOBE_LAYERS or models of plugins have it
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {

@@ -156,12 +156,12 @@ NoiseReport noise_report(const Replay& replay, const NoiseNames& names) {
     report.luminance = values.mean;
     report.variance = values.finite > 1 ? values.squares / (values.finite - 1) : 0;
     report.histogram = histogram_of(values);
-    report.by_bounce = shares(
-        replay, values, [](const rt_path_record& r) { return r.bounce; }, [](long n) { return std::to_string(n); });
-    report.by_lobe = shares(
-        replay, values, [](const rt_path_record& r) { return r.first; }, [](long n) { return lobe_name(rt_u32(n)); });
-    report.by_strategy = shares(
-        replay, values, [](const rt_path_record& r) { return r.how; }, [](long n) { return strategy_name(rt_u32(n)); });
+    report.by_bounce =
+        shares(replay, values, [](const rt_path_record& r) { return r.bounce; }, [](long n) { return std::to_string(n); });
+    report.by_lobe =
+        shares(replay, values, [](const rt_path_record& r) { return r.first; }, [](long n) { return lobe_name(rt_u32(n)); });
+    report.by_strategy =
+        shares(replay, values, [](const rt_path_record& r) { return r.how; }, [](long n) { return strategy_name(rt_u32(n)); });
     report.by_light = shares(
         replay, values, [](const rt_path_record& r) { return r.light_number; },
         [&](long n) { return light_title(names, int(n)); });

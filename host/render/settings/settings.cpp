@@ -65,7 +65,7 @@ Setting with_number(Setting s, double min, double max, Read read, Write write) {
 
 template <class Number>
 Setting number(const std::string& key, std::string label, std::string help, double min, double max, Effect effect,
-               Number Settings::*member) {
+               Number Settings::* member) {
     return with_number<Number>(
         row_of(key, std::move(label), std::move(help), effect, member), min, max,
         [member](const Settings& settings) { return settings.*member; },
@@ -95,7 +95,7 @@ Setting kernel_number(const std::string& key, std::string label, std::string hel
     return with_number<Number>(std::move(s), min, max, read, write);
 }
 
-Setting boolean(const std::string& key, std::string label, std::string help, Effect effect, bool Settings::*member) {
+Setting boolean(const std::string& key, std::string label, std::string help, Effect effect, bool Settings::* member) {
     Setting s = with_range(row_of(key, std::move(label), std::move(help), effect, member), Setting::Kind::boolean, 0, 1);
     s.get = [member](const Settings& settings) { return std::string(settings.*member ? "true" : "false"); };
     s.set = [=](Settings& settings, const std::string& text) {
@@ -110,7 +110,7 @@ Setting boolean(const std::string& key, std::string label, std::string help, Eff
 }
 
 Setting choice(const std::string& key, std::string label, std::string help, const std::vector<std::string>& choices,
-               Effect effect, std::string Settings::*member) {
+               Effect effect, std::string Settings::* member) {
     Setting s = with_choices(row_of(key, std::move(label), std::move(help), effect, member), choices,
                              [member](Settings& settings, const std::string& text) { settings.*member = text; });
     s.get = [member](const Settings& settings) { return settings.*member; };
@@ -118,7 +118,7 @@ Setting choice(const std::string& key, std::string label, std::string help, cons
 }
 
 Setting size(const std::string& key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
-             int Settings::*width, int Settings::*height) {
+             int Settings::* width, int Settings::* height) {
     Setting s =
         with_range(row_of(key, std::move(label), std::move(help), effect, width, height), Setting::Kind::size, min, max);
     s.get = [=](const Settings& settings) {

@@ -173,12 +173,7 @@ class CellFinder {
             return;
         }
         if (!of.triangles || RT_REF_KIND(p.ref) != RT_REF_TRIANGLE)
-            return each_of(
-                parts,
-                [](int, int) {
-                    return Row{0, 0, 0};
-                },
-                body);
+            return each_of(parts, [](int, int) { return Row{0, 0, 0}; }, body);
         const TrianglePlane plane(of.triangles[RT_REF_INDEX(p.ref)]);
         const double reach = plane.reach(half_), step = plane.normal(0) * double{head_.size[0]};
         each_of(

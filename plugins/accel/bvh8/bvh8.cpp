@@ -40,8 +40,7 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
 // On the device: see rt_device.h.
 int32_t device_ranges(const rt_host* host, const rt_built* built, rt_u32 group, rt_tree_ranges* out) {
     const auto* const nodes = static_cast<const WideNode<8>*>(built->slots[0]);
-    return find_ranges(
-        host, built, group, out, [&](uint32_t at) -> const auto& { return nodes[at].child; });
+    return find_ranges(host, built, group, out, [&](uint32_t at) -> const auto& { return nodes[at].child; });
 }
 
 int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device_tree* tree, rt_u32 blocks, rt_u32 costs,

@@ -45,7 +45,7 @@ class MappedFile {
     void map(const std::string& path) {
         const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
         if (file < 0) throw std::runtime_error(std::string("cannot open the file: ") + std::strerror(errno));
-        struct stat about {};
+        struct stat about{};
         const bool known = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
         size_ = known ? static_cast<size_t>(about.st_size) : 0;
         void* memory = size_ > 0 ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;

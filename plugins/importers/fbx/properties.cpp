@@ -82,8 +82,7 @@ std::string plain_name(const Document& document, std::string_view name) {
     const size_t colons = name.find("::");
     if (!document.is_binary() && colons != name.npos) name.remove_prefix(colons + 2);
     std::string out = document.is_binary() ? std::string(name.substr(0, name.find(kSeparator))) : without_entities(name);
-    std::replace_if(
-        out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, ' ');
+    std::replace_if(out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7F; }, ' ');
     return out;
 }
 

@@ -226,9 +226,7 @@ TEST(GltfMotion, ChecksJoints) {
     EXPECT_EQ(refusal([](auto& f) { f["buffers"][1]["uri"] = data_uri(std::string("\0\0\0\0\7\0\0\0\0\0\0\0", 12)); }),
               "meshes[0].primitives[0].attributes.JOINTS_0: found joint number 7 at vertex 1, expected one of the 1 joints of "
               "skins[0]");
-    EXPECT_EQ(refusal([](auto& f) {
-                  f["skins"][0]["joints"] = {2, 1};
-              }),
+    EXPECT_EQ(refusal([](auto& f) { f["skins"][0]["joints"] = {2, 1}; }),
               "skins[0].inverseBindMatrices: found 1 matrices, expected 2, one for each joint");
     EXPECT_EQ(refusal([](auto& f) { f["skins"][0]["joints"] = nlohmann::json::array(); }),
               "skins[0].joints: found no joint, expected one or more");
@@ -255,9 +253,7 @@ TEST(GltfMotion, LeavesWrongChannelsOut) {
     expect(
         "animations[0].samplers[0].input: found the time 1.000000 s of key 1 after 4.000000 s, expected times that increase; "
         "the channel is left out",
-        0, 0, [](auto& f) {
-            f["buffers"][5]["uri"] = data_uri(floats({4, 1}));
-        });
+        0, 0, [](auto& f) { f["buffers"][5]["uri"] = data_uri(floats({4, 1})); });
     expect("accessors[8].count: found 1, expected 2 for animations[0].samplers[2].output; the channel is left out", 1, 4,
            [](auto& f) { f["accessors"][8]["count"] = 1; });
     expect(

@@ -108,10 +108,8 @@ TEST_F(GltfParts, CostCamerasAndLights) {
 }
 
 TEST_F(GltfParts, CostValuesOfMaterials) {
-    const Scene plain =
-        spared("baseColorFactor: found an array of 3, expected 4 numbers; the material keeps the default there", [](Model& m) {
-            m["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0, 0};
-        });
+    const Scene plain = spared("baseColorFactor: found an array of 3, expected 4 numbers; the material keeps the default there",
+                               [](Model& m) { m["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0, 0}; });
     ASSERT_EQ(plain.materials.size(), 2u);
     EXPECT_EQ(plain.materials[1].values.color[0], 1);
     EXPECT_EQ(plain.materials[1].values.emission[0], 0.5f) << "the rest of it";
@@ -139,10 +137,7 @@ TEST_F(GltfParts, CostTexturesAndImages) {
                                 [](Model& m) { m["images"][0]["uri"] = "data:image/png;base64,A!BC"; })),
               RT_NONE);
     EXPECT_EQ(texture_of(spared("'gone.png'", [](Model& m) { m["images"][0]["uri"] = "gone.png"; })), RT_NONE);
-    EXPECT_EQ(texture_of(spared("images[0].bufferView: found 44",
-                                [](Model& m) {
-                                    m["images"][0] = {{"bufferView", 44}};
-                                })),
+    EXPECT_EQ(texture_of(spared("images[0].bufferView: found 44", [](Model& m) { m["images"][0] = {{"bufferView", 44}}; })),
               RT_NONE);
     EXPECT_EQ(texture_of(spared("left out baseColorTexture (its picture is of KHR_texture_basisu alone)",
                                 [](Model& m) {
@@ -300,9 +295,8 @@ TEST_F(GltfParts, ColoursOfVerticesAreReadInEveryForm) {
         model.primitive()["attributes"]["COLOR_0"] = add(model);
         return import(model).colors.copy();
     };
-    const std::vector<float> plain = colors([](Model& m) {
-        return m.add(std::vector<float>{1, 0.25f, 0, 2, -1, 0, 0, 0, 0, 0, 0, 1}, "VEC3", 5126, 3);
-    });
+    const std::vector<float> plain =
+        colors([](Model& m) { return m.add(std::vector<float>{1, 0.25f, 0, 2, -1, 0, 0, 0, 0, 0, 0, 1}, "VEC3", 5126, 3); });
     EXPECT_EQ(plain, (std::vector<float>{1, 0.25f, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1}));
     const auto of_bytes = colors([](Model& m) {
         const size_t at = m.add(std::vector<uint8_t>{255, 51, 0, 102, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255}, "VEC4", 5121, 4);
@@ -496,9 +490,8 @@ TEST_F(GltfParts, TexturesOfAllUses) {
     EXPECT_EQ(map(RT_MAP_OCCLUSION).matrix[5], -0.25f) << "v points up";
     EXPECT_EQ(scene.tangents.size(), 6u);
     EXPECT_NE(scene.tangents[0], 0u);
-    spared("emissiveTexture.texCoord: found", [](Model& m) {
-        m["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", "x"}};
-    });
+    spared("emissiveTexture.texCoord: found",
+           [](Model& m) { m["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", "x"}}; });
     spared("emissiveTexture.index: found 7", [](Model& m) { m["materials"][0]["emissiveTexture"] = {{"index", 7}}; });
     // Of three sets the third is left out.
     spared("texCoord: found 5, expected one of the 2 sets that a material may use; the first set is taken", [](Model& m) {

@@ -287,21 +287,18 @@ TEST_F(Gltf, NamesThePlaceOfWrongContent) {
         m["nodes"] = {{{"mesh", 0}}, {{"children", {0}}}, {{"children", {0}}}};
         m["scenes"][0]["nodes"] = {1, 2};
     });
-    broken("meshes[0].primitives[0]: found the index 70 at position 1 of its indices, expected one below 4", [](Model& m) {
-        m.indices({0, 70, 1});
-    });
-    broken("nodes[1]: found a cycle of children", [](Model& m) {
-        m["nodes"] = {{{"mesh", 0}}, {{"children", {2}}}, {{"children", {1}}}};
-    });
+    broken("meshes[0].primitives[0]: found the index 70 at position 1 of its indices, expected one below 4",
+           [](Model& m) { m.indices({0, 70, 1}); });
+    broken("nodes[1]: found a cycle of children",
+           [](Model& m) { m["nodes"] = {{{"mesh", 0}}, {{"children", {2}}}, {{"children", {1}}}}; });
     broken("extensionsRequired[0]: found 'KHR_draco_point_compression'",
            [](Model& m) { m["extensionsRequired"] = {"KHR_draco_point_compression"}; });
     broken("bufferViews[0].extensions.EXT_meshopt_compression: found no member 'buffer'",
            [](Model& m) { m["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = json::object(); });
     broken("asset.version: found '1.0'", [](Model& m) { m["asset"]["version"] = "1.0"; });
     broken("meshes[0]: found no member 'primitives'", [](Model& m) { m["meshes"][0].erase("primitives"); });
-    broken("nodes[0].rotation: found an array of 3, expected 4 numbers", [](Model& m) {
-        m["nodes"][0]["rotation"] = {0, 0, 1};
-    });
+    broken("nodes[0].rotation: found an array of 3, expected 4 numbers",
+           [](Model& m) { m["nodes"][0]["rotation"] = {0, 0, 1}; });
 }
 
 TEST_F(Gltf, LeavesFacesOfMissingVerticesOut) {

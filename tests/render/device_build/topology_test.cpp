@@ -155,8 +155,9 @@ struct TreePlace {
     uint64_t first = 0, elements;
     rt_device_tree tree;
     TreePlace(rt_u32 slot_buffer, rt_u32 ranges, uint64_t count, uint64_t element_count)
-        : slot(slot_buffer), elements(element_count), tree{sizeof tree, 1, &slot, &first, &elements,
-                                                           RT_NONE,     0, count, ranges, 0} {}
+        : slot(slot_buffer),
+          elements(element_count),
+          tree{sizeof tree, 1, &slot, &first, &elements, RT_NONE, 0, count, ranges, 0} {}
     TreePlace(const TreePlace&) = delete;
 };
 

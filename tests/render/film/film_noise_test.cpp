@@ -70,9 +70,8 @@ TEST(FilmNoise, IsLookedAtNowAndThen) {
 // By its light, or the picture's where it is darker; so that neither dark nor bright parts get all samples.
 TEST(FilmNoise, PixelsRestWhenTheirErrorIsSmall) {
     const auto noisy = [](double light, double variance) {
-        FloatImage sums = film_of([&](unsigned x, unsigned) {
-            return x < 21 ? Pixel{1, 0.01, 100} : Pixel{light, variance, 100};
-        });
+        FloatImage sums =
+            film_of([&](unsigned x, unsigned) { return x < 21 ? Pixel{1, 0.01, 100} : Pixel{light, variance, 100}; });
         return mark_resting(sums, 0.1, 96) / double(kSize * kSize);
     };
     EXPECT_EQ(noisy(1, 0.5), 0);

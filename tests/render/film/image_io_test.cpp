@@ -232,7 +232,7 @@ TEST_F(ImageIo, AnOldFileIsReplacedAndKeepsItsRights) {
     std::ofstream(path("a.pfm")) << "old";
     chmod(path("a.pfm").c_str(), 0640);
     write_image(path("a.pfm"), sample_values(2, 2, 1), {});
-    struct stat status {};
+    struct stat status{};
     ASSERT_EQ(stat(path("a.pfm").c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 07777, 0640u);
     EXPECT_EQ(read_pfm(path("a.pfm")).width, 2u);

@@ -73,8 +73,7 @@ TEST(Pace, PiecesOfUnevenPicturesStayShort) {
 
 TEST(Pace, IgnoresTheTimeOfACompilation) {
     Pace pace;
-    trace(
-        pace, 12288, [](unsigned) { return 1e-4; }, 3000);
+    trace(pace, 12288, [](unsigned) { return 1e-4; }, 3000);
     EXPECT_EQ(trace(pace, 12288, [](unsigned) { return 1e-4; }).pieces, 1u);
 }
 
@@ -90,10 +89,7 @@ TEST(Pace, ExpectsTheTimeOfThePreviousPicture) {
 TEST(Pace, PiecesAreNotLargerThanTheLimit) {
     Pace pace;
     for (int picture = 0; picture < 2; ++picture)
-        EXPECT_GE(trace(
-                      pace, 1000, [](unsigned) { return 1e-4; }, 0, 300)
-                      .pieces,
-                  4u);
+        EXPECT_GE(trace(pace, 1000, [](unsigned) { return 1e-4; }, 0, 300).pieces, 4u);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ NoiseNames names_of(size_t lights, const char* strategy = "mis") {
     return names;
 }
 
-double sum_of(const std::vector<NoiseShare>& shares, double NoiseShare::*of) {
+double sum_of(const std::vector<NoiseShare>& shares, double NoiseShare::* of) {
     double sum = 0;
     for (const NoiseShare& share : shares) sum += share.*of;
     return sum;

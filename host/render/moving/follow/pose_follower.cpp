@@ -114,9 +114,8 @@ bool PoseFollower::wants_build_beside(const PosedFrom& from, const Pose& pose, W
 
 void PoseFollower::build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
                                 const AccelBuilder& build) {
-    beside_.reset(new Beside{from, BackgroundBuild([=](Progress& progress) -> BuiltPose {
-                                 return {scene, pose, build(*scene, progress)};
-                             })});
+    beside_.reset(new Beside{
+        from, BackgroundBuild([=](Progress& progress) -> BuiltPose { return {scene, pose, build(*scene, progress)}; })});
 }
 
 bool PoseFollower::wants_choice(const PosedFrom& from) const {

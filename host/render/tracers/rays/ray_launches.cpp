@@ -83,8 +83,7 @@ LaunchTimes RayQueries::trace_requeued(const Launch& launch) {
         return piece;
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launch.launcher.run(
-        *device_, queue, groups, groups, enqueue, [&] { launch.go_on(); }, launch.side_work);
+    return launch.launcher.run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); }, launch.side_work);
 }
 
 LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
@@ -105,8 +104,7 @@ LaunchTimes RayQueries::trace_fetching(const Launch& launch) {
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (launch.blocks + kGroup - 1) / kGroup;
-    return launch.launcher.run(
-        *device_, queue, groups, groups, enqueue, [&] { launch.go_on(); }, launch.side_work);
+    return launch.launcher.run(*device_, queue, groups, groups, enqueue, [&] { launch.go_on(); }, launch.side_work);
 }
 
 }  // namespace clarity

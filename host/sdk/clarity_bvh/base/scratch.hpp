@@ -43,12 +43,8 @@ class Scratch {
         else
             std::free(data_);
     }
-    T* data() const {
-        return static_cast<T*>(data_);
-    }
-    uint64_t count() const {
-        return count_;
-    }
+    T* data() const { return static_cast<T*>(data_); }
+    uint64_t count() const { return count_; }
 
  private:
     void* data_ = nullptr;

@@ -159,8 +159,7 @@ struct MortonOrder::Builder {
         const auto right = [&](uint32_t below) { return part_digits(begins, first + half, last, unsorted, buffer, below); };
         if (middle == end) return left(depth);
         if (middle == begin) return right(depth);
-        return add_top(
-            middle, [&] { return left(depth + 1); }, [&] { return right(depth + 1); });
+        return add_top(middle, [&] { return left(depth + 1); }, [&] { return right(depth + 1); });
     }
 
     // Splits primitives that all lie in one cell of the curve. Normally it lays a finer curve through the cell. It halves them

@@ -67,22 +67,16 @@ class Grid {
 #endif
     }
     // The coordinate of a byte, in double precision: its rounding error is far below any sensible margin.
-    double plane(uint32_t byte) const {
-        return base_ + cell_ * byte;
-    }
+    double plane(uint32_t byte) const { return base_ + cell_ * byte; }
 
  private:
 #ifdef CLARITY_BVH_SSE2
-    static __m128d both(double x) {
-        return _mm_set1_pd(x);
-    }
+    static __m128d both(double x) { return _mm_set1_pd(x); }
     static void store_four(int* p, __m128i a, __m128i b) {
         _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm_unpacklo_epi64(a, b));
     }
     // Two coordinates in cells from byte 0 on.
-    __m128d cells(__m128 two) const {
-        return _mm_mul_pd(_mm_sub_pd(_mm_cvtps_pd(two), both(base_)), both(per_cell_));
-    }
+    __m128d cells(__m128 two) const { return _mm_mul_pd(_mm_sub_pd(_mm_cvtps_pd(two), both(base_)), both(per_cell_)); }
 #endif
     // 2^exponent, for exponents of normal numbers. std::ldexp() takes ten times as long.
     static double power_of_two(int exponent) {

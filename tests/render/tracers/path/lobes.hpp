@@ -23,8 +23,7 @@ struct Lobe {
 Lobe lambert(float r, float g, float b);
 Lobe metal(float roughness, bool compensate = true);
 // White, of ior 1.5 and RT_MODEL_GLTF.
-Lobe layered(
-    const std::string& name, float roughness, const std::function<void(rt_layers&)>& change = [](rt_layers&) {});
+Lobe layered(const std::string& name, float roughness, const std::function<void(rt_layers&)>& change = [](rt_layers&) {});
 Lobe glass(float roughness, float eta, bool compensate = true);
 
 Lobe colored(Lobe lobe, float r, float g, float b);

@@ -94,9 +94,8 @@ TEST(PathSamplers, SeedsGiveOtherNumbers) {
 // Of every 64 samples of a pixel one is in each 64th of each dimension, and one in each box of that area of the first two: they
 // are a net, and stay one whatever scrambles them.
 TEST(PathSamplers, SobolIsEvenWithinAPixel) {
-    const std::vector<float> numbers = numbers_of(true, asked_of([](unsigned i) {
-                                                      return Asked{i / 1024, i % 256, i / 256 % 4, 1};
-                                                  }));
+    const std::vector<float> numbers =
+        numbers_of(true, asked_of([](unsigned i) { return Asked{i / 1024, i % 256, i / 256 % 4, 1}; }));
     for (size_t first = 0; first < kCount; first += 64) {
         const auto expect_one_in_each = [&](const std::function<unsigned(const float*)>& cell, const std::string& what) {
             std::vector<int> count(64);
