@@ -412,7 +412,7 @@ TEST(CommandLine, TakesWhatPagesSay) {
         const auto has = [&](const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); };
         if (words[0] == "render") {
             if (!has("-o")) words.insert(words.end(), {"-o", has("--frames") ? "a_####.exr" : "a.exr"});
-            words.emplace_back("none.scene");
+            words.insert(words.end(), {"none.scene", "--import-in-process"});
         } else if (words[0] == "bench") {
             words.emplace_back("--list");
         } else if (words[0] != "why" && words[0] != "info" && words[0] != "compare") {
