@@ -521,7 +521,7 @@ function leftOutSection() {
 function machineSection() {
     const runs = data.runs, looks = data.looks;
     const span = pair => figure(pair.before) + ' to ' + figure(pair.after);
-    const seen = new Map(records.map(r => [r.device + '\n' + r.driver, r]));
+    const seen = new Map(records.filter(r => !r.peer || r.driver).map(r => [r.device + '\n' + r.driver, r]));
     const keys = ['fps', 'mrays_per_s', 'rays'];
     const rows = records.map(
         r =>
