@@ -62,7 +62,8 @@ RT_INLINE rt_vec rt_sky_picture(const rt_ctx *ctx, rt_vec direction, vmask lanes
         share[l] = rt_sky_share(ctx->sky_picks, (uint)w, (uint)h, (uint)min(max(cell_row[l], 0), h - 1), (uint)min(max(cell_column[l], 0), w - 1));
     }
     *density = rt_sky_density_of_place(rt_load(share), sine);
-    return rt_mul(rt_scale(rt_vfloat(sky->sky_scale), rt_spread(sky->sky_color)), rt_vec_of(rt_load(red), rt_load(green), rt_load(blue)));
+    /* The texel's light first: the product of two factors may be less than a float holds. */
+    return rt_mul(rt_spread(sky->sky_color), rt_scale(rt_vfloat(sky->sky_scale), rt_vec_of(rt_load(red), rt_load(green), rt_load(blue))));
 }
 
 /* The number of the last of sums[0 .. count] that is at most `number`, of those before the last. */

@@ -163,16 +163,18 @@ RT_INLINE vfloat rt_channel(const rt_taps *taps, int channel)
 
 #ifdef RT_HAS_BRIGHT_TEXTURES
 #define RT_BRIGHT 4u /* a flag of rt_texture: as kBrightTexture in host/scene/bright_texture.hpp */
-/* The same of a bright texture: numbers of 9 bits, and their exponent in the highest 5. It has no alpha. */
-RT_INLINE vfloat rt_bright_channel(const rt_taps *taps, int channel)
+/* The same of a bright texture: numbers of 9 bits, and their exponent in the highest 5, times a power of two: bits 8 to 15 of the
+ * texture's flags. It has no alpha. */
+RT_INLINE vfloat rt_bright_channel(const rt_taps *taps, uint flags, int channel)
 {
+    const int power = (int)(flags << 16) >> 24;
     vfloat sum = rt_vfloat(0.0f);
     if (channel == 3) return rt_vfloat(1.0f);
     for (int k = 0; k < RT_TAPS; ++k) {
         const vint texel = taps->color[k], exponent = ((texel >> rt_vint(27)) & rt_vint(31)) + rt_vint(127 - 24);
         sum += taps->weight[k] * rt_as_vfloat(exponent << rt_vint(23)) * rt_to_float((texel >> rt_vint(9 * channel)) & rt_vint(511));
     }
-    return sum;
+    return sum * rt_vfloat(as_float((power + 127) << 23));
 }
 #endif
 
@@ -183,7 +185,7 @@ RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, c
     const rt_taps taps = rt_load_texels(ctx, &texture, lanes, p);
 #ifdef RT_HAS_BRIGHT_TEXTURES
     if (texture.flags & RT_BRIGHT)
-        return rt_vec_of(rt_bright_channel(&taps, 0), rt_bright_channel(&taps, 1), rt_bright_channel(&taps, 2));
+        return rt_vec_of(rt_bright_channel(&taps, texture.flags, 0), rt_bright_channel(&taps, texture.flags, 1), rt_bright_channel(&taps, texture.flags, 2));
 #endif
     if (texture.flags & RT_TEXTURE_LINEAR) return rt_vec_of(rt_channel(&taps, 0), rt_channel(&taps, 1), rt_channel(&taps, 2));
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f);
@@ -213,7 +215,7 @@ RT_INLINE vfloat rt_sample_channel(const rt_ctx *ctx, uint index, vmask lanes, c
     const rt_texture texture = ctx->textures[index];
     const rt_taps taps = rt_load_texels(ctx, &texture, lanes, p);
 #ifdef RT_HAS_BRIGHT_TEXTURES
-    if (texture.flags & RT_BRIGHT) return rt_min(rt_bright_channel(&taps, channel), rt_vfloat(1.0f));
+    if (texture.flags & RT_BRIGHT) return rt_min(rt_bright_channel(&taps, texture.flags, channel), rt_vfloat(1.0f));
 #endif
     return rt_channel(&taps, channel);
 }

@@ -1,6 +1,7 @@
 // A log of our own, because the core should need no compiled library besides the OpenCL loader.
 #include "base/log.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -27,6 +28,8 @@ struct LogState {
     bool to_stderr = true;
     std::unique_ptr<std::FILE, CloseFile> file;
     std::string file_path;
+    bool file_is_new = false;  // made by set_log_file()
+    bool file_failed = false;
     // Shared, so that a listener may log or replace itself while it is being called.
     std::shared_ptr<const std::function<void(LogLevel, const std::string&)>> listener;
 };
@@ -101,6 +104,15 @@ std::string file_line(LogLevel level, const std::string& text) {
     return line_head + printable(text) + "\n";
 }
 
+// A file that was made here and got nothing goes.
+void end_file(LogState& s) {
+    struct stat status{};
+    const bool got_nothing = fstat(fileno(s.file.get()), &status) == 0 && S_ISREG(status.st_mode) && status.st_size == 0;
+    if (s.file_is_new && got_nothing) unlink(s.file_path.c_str());
+    s.file.reset();
+    s.file_failed = true;
+}
+
 }  // namespace
 
 void log(LogLevel level, const std::string& text) {
@@ -117,10 +129,11 @@ void log(LogLevel level, const std::string& text) {
             const std::string line = file_line(level, text);
             const bool written = std::fwrite(line.data(), 1, line.size(), s.file.get()) == line.size();
             if (!written || std::fflush(s.file.get()) != 0) {
-                const std::string why = s.file_path + ": cannot write the log: " + std::strerror(errno) + "; it ends here";
+                const std::string why = s.file_path + ": cannot write the log: " + std::strerror(errno) +
+                                        "; it ends here; free some space or write it elsewhere";
                 const std::string last = stderr_line(LogLevel::warning, why);
                 if (s.to_stderr) std::fwrite(last.data(), 1, last.size(), stderr);
-                s.file.reset();
+                end_file(s);
             }
         }
     }
@@ -138,6 +151,7 @@ void set_log_to_stderr(bool on) {
 }
 
 void set_log_file(const std::string& path) {
+    const bool is_new = access(path.c_str(), F_OK) != 0;
     std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "ae"));
     if (!file)
         throw Error(Exit::usage, path + ": cannot open it as the log file: " + std::strerror(errno) +
@@ -145,6 +159,13 @@ void set_log_file(const std::string& path) {
     const std::lock_guard<std::mutex> lock(state().mutex);
     state().file = std::move(file);
     state().file_path = path;
+    state().file_is_new = is_new;
+    state().file_failed = false;
+}
+
+bool log_file_failed() {
+    const std::lock_guard<std::mutex> lock(state().mutex);
+    return state().file_failed;
 }
 
 void set_log_listener(std::function<void(LogLevel, const std::string&)> listener) {

@@ -16,6 +16,8 @@ void set_log_level(LogLevel least);
 void set_log_to_stderr(bool on);
 // Also appends the log to this file. Throws Error if the file cannot be opened.
 void set_log_file(const std::string& path);
+// Whether the file of the log could not be written, which a warning has said: it ended before the log did.
+bool log_file_failed();
 // The listener is called with every line of every level, from any thread. It replaces the previous one. For the window and
 // tests.
 void set_log_listener(std::function<void(LogLevel, const std::string&)> listener);

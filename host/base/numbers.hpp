@@ -26,6 +26,16 @@ bool read_number(std::string_view text, Number& value) {
     return true;
 }
 
+// Reads a share: 0.05, or 5%. As read_number().
+template <class Number>
+bool read_share(std::string_view text, Number& value) {
+    if (text.empty() || text.back() != '%') return read_number(text, value);
+    double percent = 0;
+    if (!read_number(text.substr(0, text.size() - 1), percent)) return false;
+    value = static_cast<Number>(percent / 100);
+    return true;
+}
+
 // Reads finite numbers with commas between them. Returns an empty list if the text is anything else.
 template <class Number>
 std::vector<Number> read_numbers(std::string_view text) {

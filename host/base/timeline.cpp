@@ -1,17 +1,13 @@
 #include "base/timeline.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/files/output_file.hpp"
 #include "base/log.hpp"
 
 namespace clarity::timeline {
@@ -25,7 +21,6 @@ constexpr size_t kMostSpans = 1000000;
 // Never destroyed: threads of drivers may still be at work when the program ends.
 struct Recorder {
     std::mutex mutex;
-    std::ofstream file;
     std::string path;
     double begin_us = 0;
     std::vector<std::string> tracks;  // by number
@@ -58,14 +53,19 @@ const std::string& track_of_thread() {
     return name;
 }
 
+constexpr size_t kPiece_bytes = 1 << 20;  // of text that is collected before it is written
+
 // One line for each event, so that a person can read and search the file.
-void write_events(Recorder& r) {
+void write_events(const Recorder& r, OutputFile& file) {
+    std::string text = "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n";
     auto line = [&, first = true](nlohmann::json event) mutable {
         event["pid"] = 1;
-        r.file << (first ? "" : ",\n") << event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+        text += (first ? "" : ",\n") + event.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
         first = false;
+        if (text.size() < kPiece_bytes) return;
+        file.write(text.data(), text.size());
+        text.clear();
     };
-    r.file << "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n";
     line({{"ph", "M"}, {"name", "process_name"}, {"args", {{"name", "clarity"}}}});
     for (size_t t = 0; t < r.tracks.size(); ++t) {
         line({{"ph", "M"}, {"name", "thread_name"}, {"tid", t}, {"args", {{"name", r.tracks[t]}}}});
@@ -81,17 +81,19 @@ void write_events(Recorder& r) {
         if (span.bytes > 0) event["args"] = {{"bytes", span.bytes}};
         line(std::move(event));
     }
-    r.file << "\n]}\n";
+    text += "\n]}\n";
+    file.write(text.data(), text.size());
 }
 
 }  // namespace
 
 void record(const std::string& path) {
+    try {
+        check_writable(path);
+    } catch (const Error& e) {
+        throw Error(e.code(), std::string("--trace: ") + e.what());
+    }
     Recorder& r = recorder();
-    r.file.open(path);
-    if (!r.file)
-        throw Error(Exit::usage, "--trace " + path + ": the file cannot be written: " + std::strerror(errno) +
-                                     "; choose a folder that exists and may be written");
     r.path = path;
     r.begin_us = now_us();
     name_of_thread() = "program";
@@ -105,9 +107,9 @@ void write() {
     for (const auto& more : r.before_writing) more();
     detail::recording = false;
     const std::lock_guard lock(r.mutex);
-    write_events(r);
-    r.file.close();
-    if (!r.file) log(LogLevel::warning, "--trace " + r.path + ": the timeline could not be written; is the disk full?");
+    OutputFile file(r.path);
+    write_events(r, file);
+    file.commit();
     if (r.left_out > 0)
         log(LogLevel::warning,
             "--trace " + r.path + ": " + std::to_string(r.left_out) +

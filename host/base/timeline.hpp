@@ -29,7 +29,7 @@ inline bool recording() {
 
 // Starts to record. Throws Error if the file cannot be written. For one call, before other threads start.
 void record(const std::string& path);
-// Writes the file, if one is recorded, and ends the recording. Logs a warning if it cannot be written.
+// Writes the file, if one is recorded, and ends the recording. Throws Error if it cannot be written; then there is no file.
 void write();
 
 inline double now_us() {

@@ -1,4 +1,7 @@
 // clarity: parses the command line, runs one command, and turns its exceptions into a message and an exit code.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -62,9 +65,11 @@ int fail(Exit code, const std::string& message, const std::string& details = {})
     return static_cast<int>(code);
 }
 
-int run_and_report(int argc, char** argv) {
+// Runs `work` and returns its exit code, or that of the exception that it ends with.
+template <class Work>
+int reported(const Work& work) {
     try {
-        return run(argc, argv);
+        return work();
     } catch (const Error& e) {
         return fail(e.code(), e.what(), e.details());
     } catch (const std::bad_alloc&) {
@@ -72,6 +77,22 @@ int run_and_report(int argc, char** argv) {
     } catch (const std::exception& e) {
         return fail(Exit::failed, std::string("unexpected failure: ") + e.what());
     }
+}
+
+// What is written when the command is done: the timeline, and the last of stdout. A log that ended early is a failure, too.
+int finish() {
+    timeline::write();
+    errno = 0;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw Error(Exit::failed, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
+    return static_cast<int>(log_file_failed() ? Exit::failed : Exit::done);
+}
+
+// Opens what the caller has closed of stdin, stdout and stderr, for reading alone. Otherwise the next file that is opened would
+// take that number, and get what is printed; so printing fails, as on a closed file.
+void hold_standard_files() {
+    for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(number, F_GETFD) < 0) (void)!open("/dev/null", O_RDONLY);
 }
 
 // All that this program does in workers.
@@ -85,13 +106,9 @@ int main(int argc, char** argv) {
     // Workers must set their resource limits before anything else runs.
     if (const clarity::worker::JobKind* job = clarity::worker::kind_of_worker(argc, argv, clarity::kJobs))
         return clarity::worker::worker_main(*job, argc, argv);
-    const int code = clarity::run_and_report(argc, argv);
-    clarity::timeline::write();
-    errno = 0;
-    if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-        clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
-        return code ? code : static_cast<int>(clarity::Exit::failed);
-    }
+    clarity::hold_standard_files();
+    int code = clarity::reported([&] { return clarity::run(argc, argv); });
+    if (const int end = clarity::reported(clarity::finish); code == 0) code = end;
     // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them; other
     // drivers may wait for a launch that never ends.
     if (code != 0 || clarity::any_never_released()) {

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "import/importer_choice.hpp"
 
 namespace clarity {
@@ -142,13 +143,9 @@ void add_pose(CLI::App& app, PoseOptions& pose) {
 CLI::Validator percent() {
     return CLI::Validator(
         [](std::string& text) {
-            if (text.empty() || text.back() != '%') return std::string();
-            const std::string number = text.substr(0, text.size() - 1);
             double share = 0;
-            if (!CLI::detail::lexical_cast(number, share)) return text + " is no number of percent";
-            char all_digits[40];
-            std::snprintf(all_digits, sizeof all_digits, "%.17g", share / 100);
-            text = all_digits;
+            if (!read_share(text, share)) return "`" + text + "` is no share, such as 0.05 or 5%";
+            text = exact_text(share);
             return std::string();
         },
         "");

@@ -31,12 +31,14 @@ bool are_finite(const std::array<float, 3>& value) {
     return std::all_of(value.begin(), value.end(), [](float x) { return std::isfinite(x); });
 }
 
-std::string range_text(const Key& key) {
-    if (key.max < kMostNumber) return "from " + exact_text(key.min) + " to " + exact_text(key.max);
-    return key.min < 0   ? "numbers of at most 1e15"
-           : key.min > 0 ? exact_text(key.min) + " or more"
-                         : "0 or more, nothing negative";
-}
+// The limits as the floats that values are. Text that names a limit is rounded to the same float, so it is in the range: the
+// float that is nearest to 1e-12 is less than 1e-12.
+struct Limits {
+    explicit Limits(const Key& key) : least(static_cast<float>(key.min)), most(static_cast<float>(key.max)) {}
+    bool hold(float x) const { return x >= least && x <= most; }  // no for NaN
+
+    float least, most;
+};
 
 }  // namespace
 
@@ -68,9 +70,9 @@ void set_value(const Key& key, void* values, const std::array<float, 3>& value) 
 }
 
 Problem range_fault(const Key& key, const std::array<float, 3>& value) {
-    const size_t count = count_of(key);
-    const auto is_outside = [&](float x) { return !(x >= key.min && x <= key.max); };
-    if (std::any_of(value.begin(), value.begin() + count, is_outside)) return range_text(key);
+    const Limits limits(key);
+    if (!std::all_of(value.begin(), value.begin() + count_of(key), [&](float x) { return limits.hold(x); }))
+        return "from " + exact_text(key.min) + " to " + exact_text(key.max);
     if (key.kind == RT_KEY_VECTOR && value == std::array<float, 3>{}) return "a vector other than 0,0,0, which has no length";
     return {};
 }
@@ -92,11 +94,11 @@ Problem fault_of(const std::vector<Key>& keys, const void* values) {
 
 std::array<float, 3> nearest_value(const Key& key, const std::array<float, 3>& value) {
     std::array<float, 3> nearest = value;
-    const auto least = static_cast<float>(key.min), most = static_cast<float>(key.max);
+    const Limits limits(key);
     for (size_t k = 0; k < count_of(key); ++k) {
         // Files write 0 for what they do not say.
-        const bool is_missing = !std::isfinite(value[k]) || (least > 0 && value[k] < least);
-        nearest[k] = is_missing ? key.def[k] : std::clamp(value[k], least, most);
+        const bool is_missing = !std::isfinite(value[k]) || (limits.least > 0 && value[k] < limits.least);
+        nearest[k] = is_missing ? key.def[k] : std::clamp(value[k], limits.least, limits.most);
     }
     return range_fault(key, nearest) ? key.def : nearest;
 }

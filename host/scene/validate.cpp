@@ -183,7 +183,8 @@ Problem check_looks(const Scene& s) {
             return text("texture", i, "texels past the last one");
         if (t.wrap % RT_WRAP_ALONG_V > RT_WRAP_MIRROR || t.wrap / RT_WRAP_ALONG_V > RT_WRAP_MIRROR)
             return text("texture", i, "unknown wrap modes");
-        if (t.flags & ~(RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST | kBrightTexture)) return text("texture", i, "unknown flags");
+        if (t.flags & ~(RT_TEXTURE_LINEAR | RT_TEXTURE_NEAREST | kBrightTexture | (is_bright(t) ? kBrightPower : 0)))
+            return text("texture", i, "unknown flags");
     }
     return {};
 }

@@ -135,7 +135,8 @@ print(bool(clarity.Scene(numpy.eye(3), [[0, 1, 2]]).on(accel='bvh2').any([0, 0, 
                 self.assertEqual((process.returncode, words[:1], words[2:], err), (0, ["interrupted"], ["True"], ""), out)
                 heard = float(words[1]) - sent
                 logging.getLogger(__name__).warning("%s: Ctrl-C was heard after %.2f s", name, heard)
-                self.assertLess(heard, 2)  # 0.5 s on a machine that does nothing else
+                if "CLARITY_TEST_CLOCKS" in os.environ:  # as in tests/support/clock.hpp
+                    self.assertLess(heard, 2)  # 0.5 s on a machine that does nothing else
             shutil.rmtree(caches["XDG_CACHE_HOME"], ignore_errors=True)
 
     def test_of_another_version_are_refused(self):

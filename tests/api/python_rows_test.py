@@ -79,8 +79,8 @@ except KeyboardInterrupt:
 """
         with subprocess.Popen([sys.executable, "-c", lines], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             self.assertEqual(process.stdout.readline(), "going\n")
-            time.sleep(0.3)
-            children = self.children_of(process.pid)
+            while not (children := self.children_of(process.pid)):  # it starts one for what it is asked
+                time.sleep(0.05)
             self.assertEqual(len(children), 1)
             process.send_signal(signal.SIGINT)
             out, err = process.communicate(timeout=120)

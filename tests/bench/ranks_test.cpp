@@ -137,8 +137,7 @@ TEST_F(BenchRanks, AnInterruptEndsTheRanks) {
     ranks("echo $$ >" + scratch_.path("pid") + "; exec sleep 600");
     RunOptions options;
     options.signal = SIGINT;
-    options.signal_after_s = 2;
-    options.limit_s = 30;
+    options.signal_when_made = scratch_.path("pid");
     const ProgramResult result = bench({"--ranks", "1", "--device", "cpu"}, options);
     EXPECT_EQ(result.exit_code, 130) << result.err;
     const std::string pid = scratch_.read("pid");

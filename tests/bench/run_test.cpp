@@ -23,7 +23,7 @@ class Run : public testing::Test {
         request_.accels = {"bvh2"};
         request_.baselines = false;
         request_.settings = {{"size", "32x24"}};
-        request_.time_limit_s = 120;
+        request_.time_limit_s = 600;
         request_.only = {"/primary", "/shadow", "/reflection"};
         options_.devices = {Workbench::get().device().info()};
     }

@@ -98,11 +98,13 @@ TEST_F(CheckpointedPictures, GoOnAfterManyKills) {
     int kills = 0;
     for (ProgramResult result;; ++kills) {
         ASSERT_LT(kills, 60) << result.err;
-        // Ever later, so that a slow machine comes to the end, too.
-        options.signal_after_s = 0.7 + 0.07 * (kills % 9) + 0.03 * kills;
+        // Not before the first checkpoint, and ever later, so that a slow machine comes to the end, too.
+        options.signal_when = "samples";
+        options.signal_after_s = 0.7 + 0.07 * (kills % 9) + 0.01 * kills * kills;
         const bool two = kills % 2 == 1;  // on two devices, every other time
-        result = render(
-            "a.pfm", {"--spp", spp, "--resume", out("a.ckpt"), "--every", "0.05", "--device", two ? "cpu/2" : "cpu"}, options);
+        result = render("a.pfm",
+                        {"--spp", spp, "--resume", out("a.ckpt"), "--every", "0.05", "-v", "--device", two ? "cpu/2" : "cpu"},
+                        options);
         if (result.exit_code == 0) break;
         ASSERT_EQ(result.exit_code, 128 + SIGKILL) << result.err;
         EXPECT_FALSE(fs::exists(out("a.pfm")));
@@ -123,7 +125,7 @@ TEST_F(CheckpointedPictures, GoOnInMotionBlur) {
     int ends = 0;
     for (ProgramResult result;; ++ends) {
         ASSERT_LT(ends, 60) << result.err;
-        options.signal_after_s = 1 + 0.1 * (ends % 7);
+        options.signal_after_s = 1 + 0.1 * (ends % 7) + 0.02 * ends * ends;  // ever later, as above
         result = render("a_#.pfm", more, options);
         if (result.exit_code == 0) break;
     }

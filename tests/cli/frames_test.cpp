@@ -289,7 +289,11 @@ TEST_F(Frames, ProcessesThatAreKilledLeaveCompleteFrames) {
     options.signal = SIGKILL;
     int killed = 0;
     for (int kill = 0; kill < 12; ++kill) {
-        options.signal_after_s = 0.4 + 0.11 * (kill % 6);
+        // Every other time at some moment, else once two more frames are there.
+        options.signal_after_s = kill % 2 == 0 ? 0.4 + 0.11 * (kill % 6) : -1;
+        options.signal_when_made = kill % 2 == 0 ? std::string()
+                                                 : out(kill < 9 ? "f_0" + std::to_string(kill + 1) + ".png"
+                                                                : "f_" + std::to_string(kill + 1) + ".png");
         killed += run_program(words("f_##.png", all), options).exit_code == 128 + SIGKILL;
         check(false);
     }

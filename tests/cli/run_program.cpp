@@ -82,16 +82,17 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const RunOp
 
     ProgramResult result;
     std::optional<double> signalled_s;
+    const bool signals = options.signal_after_s >= 0 || !options.signal_when.empty() || !options.signal_when_made.empty();
     bool out_open = true, err_open = true;
     while (out_open || err_open) {
         pollfd waits[2] = {{out_open ? out.read : -1, POLLIN, 0}, {err_open ? err.read : -1, POLLIN, 0}};
         poll(waits, 2, 10);
         if (waits[0].revents) out_open = drain(out.read, result.out);
         if (waits[1].revents) err_open = drain(err.read, result.err);
-        const bool due = (options.signal_after_s >= 0 && elapsed() >= options.signal_after_s) ||
-                         (!options.signal_when.empty() && result.err.find(options.signal_when) != std::string::npos) ||
-                         (!options.signal_when_made.empty() && access(options.signal_when_made.c_str(), F_OK) == 0);
-        if (!signalled_s && due) {
+        const bool is_late = options.signal_after_s < 0 || elapsed() >= options.signal_after_s;
+        const bool is_said = options.signal_when.empty() || result.err.find(options.signal_when) != std::string::npos;
+        const bool is_made = options.signal_when_made.empty() || access(options.signal_when_made.c_str(), F_OK) == 0;
+        if (signals && !signalled_s && is_late && is_said && is_made) {
             kill(child, options.signal);
             signalled_s = elapsed();
         }

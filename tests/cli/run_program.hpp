@@ -13,14 +13,15 @@ struct ProgramResult {
 
 struct RunOptions {
     std::map<std::string, std::string> environment;  // added to the test's own; "" removes a variable
-    double signal_after_s = -1;                      // when `signal` is sent, seconds after the start; -1: never
-    std::string signal_when;                         // or: send it as soon as stderr contains this text
-    std::string signal_when_made;                    // or: as soon as this file is there
-    int signal = 0;                                  // 0: none is sent, but its time is taken
-    bool terminal = false;                           // make stderr a terminal (its text then has CR LF)
-    double limit_s = 120;                            // then the program is killed, and the exit code is 137
-    std::vector<std::string> wrapper;                // words before the program: a tool which runs it
-    std::string stdout_path;                         // file which stdout is written to instead of `out`
+    // When `signal` is sent: once all that are set are true.
+    double signal_after_s = -1;        // seconds after the start
+    std::string signal_when;           // stderr contains this text
+    std::string signal_when_made;      // this file is there
+    int signal = 0;                    // 0: none is sent, but its time is taken
+    bool terminal = false;             // make stderr a terminal (its text then has CR LF)
+    double limit_s = 300;              // then the program is killed, and the exit code is 137
+    std::vector<std::string> wrapper;  // words before the program: a tool which runs it
+    std::string stdout_path;           // file which stdout is written to instead of `out`
 };
 
 // Runs the program which CLARITY_WORKER names: `clarity` of the build.

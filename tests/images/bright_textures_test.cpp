@@ -55,6 +55,25 @@ TEST(BrightTextures, ShineAsBrightAsTheyAre) {
     }
 }
 
+// Light of a scene that a picture's texels divide by a power of two, in kernels and in the table of lamps.
+TEST(BrightTextures, ShineByTheirPowerOfTwo) {
+    for (const int power : {-112, -20, 34}) {
+        Scene scene =
+            lamp({light(3, 3, 3), light(3, 3, 3), light(3, 3, 3), light(3, 3, 3)}, RT_TEXTURE_NEAREST | bright_flags(power));
+        EXPECT_EQ(mean_of_map(scene, 0, 0), std::ldexp(3, power));
+        scene = white_square();
+        scene.materials[0].values = diffuse(0, 0, 0);
+        for (float& channel : scene.materials[0].values.emission) channel = 1;
+        add_map(scene, 0, RT_MAP_EMISSION, add_texture(scene, 1, {light(40, 5, 1)}, bright_flags(power)));
+        for (const FloatImage& image : all_pictures(scene)) {
+            const auto seen = pixel(image, 32, 32);
+            const double wanted[3] = {40, 5, 1};
+            for (size_t k = 0; k < 3; ++k)
+                EXPECT_NEAR(seen[k] / std::ldexp(wanted[k], power), 1, 1e-3) << power << ", channel " << k;
+        }
+    }
+}
+
 TEST(BrightTextures, LightWhatIsAroundThem) {
     const Scene plain = lamp({}), bright = lamp({light(3, 3, 3), light(3, 3, 3), light(3, 3, 3), light(3, 3, 3)},
                                                 RT_TEXTURE_NEAREST | kBrightTexture);

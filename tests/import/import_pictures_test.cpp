@@ -105,6 +105,25 @@ TEST(ImportPictures, OfFloatsKeepTheLightOfWhatShines) {
     }
 }
 
+// However dark or bright the whole picture is.
+TEST(ImportPictures, OfFloatsKeepTheirDigits) {
+    const Scratch folder;
+    for (const float scale : {1e-30f, 1e-6f, 1e-3f, 1e5f, 1e14f}) {
+        FloatImage image = bright_picture();
+        for (float& number : image.pixels) number *= scale;
+        image.pixels[4] *= 1e-4f;
+        write_image(folder.path("a.pfm"), image, {});
+        const ScenePtr scene = scene_with(folder, "a.pfm", "emission_map t");
+        EXPECT_TRUE(scene->warnings.empty()) << scene->warnings[0];
+        const auto light = [&](size_t texel) {
+            return bright_light(scene->textures[0], scene->texels[texel])[1] / double(scale);
+        };
+        EXPECT_NEAR(light(0), 4, 0.01) << scale;
+        EXPECT_NEAR(light(3), 0.5, 0.001) << scale;
+        EXPECT_NEAR(light(4), 1.25, 0.01) << "the smaller picture, " << scale;
+    }
+}
+
 TEST(ImportPictures, OfFloatsSayWhatIsLost) {
     const Scratch folder;
     folder.write("a.hdr", kHdr);
@@ -120,7 +139,7 @@ TEST(ImportPictures, OfFloatsSayWhatIsLost) {
     write_image(folder.path("dim.exr"), image, {});
     EXPECT_TRUE(scene_with(folder, "dim.exr", "color_map t")->warnings.empty());
     warned("dim.exr", "alpha blend color_map t", "material 'm' has no alpha of the picture of its colour");
-    image.pixels[4] = -2, image.pixels[5] = HUGE_VALF, image.pixels[6] = 1e6f;
+    image.pixels[4] = -2, image.pixels[5] = HUGE_VALF, image.pixels[6] = 1e16f;
     write_image(folder.path("odd.pfm"), image, {});
     warned("odd.pfm", "emission_map t",
            "texture 'odd.pfm': 2 of its numbers are negative or not finite; they count as 0; 1 of its");

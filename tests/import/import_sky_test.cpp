@@ -1,6 +1,7 @@
 // import_sky_test.cpp -- the sky of a text scene comes from its file, through the import worker, as floats.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "support/scenes.hpp"
@@ -95,7 +96,13 @@ TEST(ImportSky, BadPicturesAreWarnings) {
     folder.write("odd.pfm", odd);
     const ScenePtr repaired = load_scene(folder.write("c.scene", "sky odd.pfm\nsphere\n"));
     EXPECT_EQ(repaired->sky.values.kind, RT_SKY_PICTURE);
-    EXPECT_TRUE(warned(*repaired, "1 of its numbers"));
+    EXPECT_TRUE(warned(*repaired, "1 of its numbers are negative or not finite; they count as 0"));
+    const float bright = 1e16f;
+    std::memcpy(&odd[odd.size() - 4], &bright, 4);
+    folder.write("odd.pfm", odd);
+    const ScenePtr ended = load_scene(folder.write("d.scene", "sky odd.pfm\nsphere\n"));
+    EXPECT_TRUE(warned(*ended, "1 of its numbers are above 1e15, where light ends"));
+    EXPECT_EQ(*std::max_element(ended->sky.texels.begin(), ended->sky.texels.end()), 1e15f);
 }
 
 TEST(ImportSky, DamagedSkiesAreRefused) {

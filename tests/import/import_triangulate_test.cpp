@@ -8,6 +8,7 @@
 
 #include "base/angle.hpp"
 #include "scene/triangulate.hpp"
+#include "support/clock.hpp"
 
 namespace clarity {
 namespace {
@@ -194,7 +195,7 @@ TEST(Triangulate, huge_faces_take_seconds_at_most) {
     const Points arrow = {{0, 0}, {2, 1}, {0, 2}, {1, 1}, {0.5, 0.9}};
     EXPECT_EQ(triangles_of(arrow, triangulator), triangles_of(arrow)) << "later faces do not pay for it";
     EXPECT_EQ(triangulator.given_up(), 1u);
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kMostSeconds);
+    EXPECT_LT(test::seconds_since(start), test::at_most(kMostSeconds));
 }
 
 }  // namespace

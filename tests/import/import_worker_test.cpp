@@ -11,15 +11,14 @@
 
 #include "import/importer_choice.hpp"
 #include "import_case.hpp"
+#include "support/clock.hpp"
 
 namespace clarity {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using test::seconds_since;
 
 class Worker : public ImportCase {
  protected:
@@ -57,7 +56,7 @@ TEST_F(Worker, memory_is_bounded) {
     const std::string message = failure_of_text("allocate");
     EXPECT_TRUE(contains(message, "case.cltest: "));
     EXPECT_TRUE(contains(message, "memory"));
-    EXPECT_LT(seconds_since(start), 10);
+    EXPECT_LT(seconds_since(start), test::at_most(10));
 }
 
 TEST_F(Worker, memory_follows_the_size_of_what_is_loaded) {
@@ -77,12 +76,12 @@ TEST_F(Worker, hangs_end_at_the_limit) {
         const std::string message = failure_of_text(text);
         EXPECT_TRUE(contains(message, "made no progress for 1.5 s") || contains(message, "processor time")) << text;
         EXPECT_GT(seconds_since(start), 1.0) << text;
-        EXPECT_LT(seconds_since(start), 8.0) << text;
+        EXPECT_LT(seconds_since(start), test::at_most(8)) << text;
     }
 }
 
 TEST_F(Worker, progress_keeps_a_slow_import_alive) {
-    options_.time_limit_s = 1;
+    options_.time_limit_s = 2;  // less than all of it takes
     EXPECT_EQ(import_text("work 25\ntriangles good 1").placed_triangle_count(), 1u);
 }
 
@@ -158,8 +157,7 @@ TEST_F(Worker, cancel_answers_at_once) {
         EXPECT_THROW(import_scene(plugins, {file("case.cltest", text)}, options_, progress), Cancelled) << text;
         const double answer_s = seconds_since(cancelled);
         canceller.join();
-        // Cancelling should take 0.1 s; the rest is for busy machines.
-        EXPECT_LT(answer_s, kSanitizer ? 1.0 : 0.3) << text;
+        EXPECT_LT(answer_s, test::at_most(kSanitizer ? 1.0 : 0.3)) << text;
     }
 }
 
@@ -257,9 +255,7 @@ TEST_F(Worker, it_dies_with_its_parent) {
         import_scene(PluginRegistry::of({CLARITY_TEST_IMPORTER}), {hanging}, options_, progress);
         _exit(0);
     }
-    for (int i = 0; i < 500 && !std::filesystem::exists(marker); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    ASSERT_TRUE(std::filesystem::exists(marker)) << "the import never began";
+    ASSERT_TRUE(test::comes([&] { return std::filesystem::exists(marker); })) << "the import never began";
     const auto workers = [&] {
         int count = 0;
         for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -273,8 +269,7 @@ TEST_F(Worker, it_dies_with_its_parent) {
     EXPECT_EQ(workers(), 1);
     kill(parent, SIGKILL);
     waitpid(parent, nullptr, 0);
-    for (int i = 0; i < 200 && workers() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    EXPECT_EQ(workers(), 0);
+    EXPECT_TRUE(test::comes([&] { return workers() == 0; }));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/files/library_files.hpp"
+#include "support/clock.hpp"
 #include "support/scratch.hpp"
 
 namespace clarity {
@@ -34,15 +35,11 @@ class LibraryWatchTest : public testing::Test {
         fs::remove(path_);
         scratch_.write("sound.so", content(kFolder + from));
     }
-    // What apply() gives within `seconds`, of which a user has to wait two at most.
-    std::vector<RebuiltLibrary> applied(double seconds = 2) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-        while (std::chrono::steady_clock::now() < end) {
-            std::vector<RebuiltLibrary> all = watch_.apply();
-            if (!all.empty()) return all;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        return {};
+    // What apply() gives within `seconds`. A user has to wait two at most.
+    std::vector<RebuiltLibrary> applied(double seconds = test::at_most(2)) {
+        std::vector<RebuiltLibrary> all;
+        test::comes([&] { return !(all = watch_.apply()).empty(); }, seconds);
+        return all;
     }
     const rt_plugin* plugin() const { return plugins_.accel("sound"); }
 
@@ -100,11 +97,10 @@ TEST_F(LibraryWatchTest, ALibraryThatWasRefusedAtTheStartIsTakenOnceItIsRight) {
     ASSERT_EQ(plugins.accel("sound"), nullptr);
     LibraryWatch watch(plugins, [] {});
     scratch_.write("later.so", content(kFolder + "sound.so"));
-    for (int i = 0; i < 200 && !plugins.accel("sound"); ++i) {
+    EXPECT_TRUE(test::comes([&] {
         watch.apply();
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    EXPECT_NE(plugins.accel("sound"), nullptr);
+        return plugins.accel("sound") != nullptr;
+    }));
 }
 
 // A linker may write for a while, and may stop in between.

@@ -81,6 +81,33 @@ TEST(Keys, RefuseWhatIsOutsideOfTheirRange) {
     EXPECT_EQ(nearest_value(material_key("reflect"), {7, 0, 0})[0], 1);
 }
 
+// The least and the greatest number that a message names are taken, as text and in a struct, and nothing beyond them.
+TEST(Keys, HaveTheLimitsThatMessagesName) {
+    std::vector<const std::vector<Key>*> tables = {&material_keys()};
+    for (const LightKind& kind : light_kinds()) tables.push_back(&kind.keys);
+    for (const SkyKind& kind : sky_kinds()) tables.push_back(&kind.keys);
+    for (const std::vector<Key>* table : tables)
+        for (const Key& key : *table) {
+            if (key.kind == RT_KEY_WORD || key.kind == RT_KEY_FLAG) continue;
+            SCOPED_TRACE(key.name);
+            const auto answer = [&](const std::string& one) {
+                std::string text = one, expected;
+                for (size_t k = 1; k < count_of(key); ++k) text += "," + one;
+                std::array<float, 3> value{};
+                return read_value(key, text, value, expected) ? "" : expected;
+            };
+            const std::string least = exact_text(key.min), most = exact_text(key.max);
+            if (key.kind != RT_KEY_VECTOR || key.min != 0) {
+                EXPECT_EQ(answer(least), "");
+            }
+            EXPECT_EQ(answer(most), "");
+            const std::string range = "from " + least + " to " + most;
+            EXPECT_EQ(answer(exact_text(std::nextafter(static_cast<float>(key.min), -INFINITY))), range);
+            EXPECT_EQ(answer(exact_text(std::nextafter(static_cast<float>(key.max), INFINITY))), range);
+            EXPECT_EQ(answer(exact_text(key.max + std::fabs(key.max))), key.max == 0 ? "" : range);
+        }
+}
+
 TEST(Keys, ATransformMovesEachLightAsItsKeysSay) {
     // Twice as large, turned a quarter about z, then moved.
     const Matrix m = {0, -2, 0, 10, 2, 0, 0, 20, 0, 0, 2, 30};

@@ -61,8 +61,10 @@ TEST_F(Compare, TheCaptionSaysWhatItCounts) {
         ASSERT_NE(at, std::string::npos) << speed;
         ms[side] = std::stod(speed);
     }
-    EXPECT_LT(ms[0], ms[1]);
-    EXPECT_LT(ms[1], double(state["other"]["frame_ms"]) * 3);
+    if (clocks_count()) {
+        EXPECT_LT(ms[0], ms[1]);
+        EXPECT_LT(ms[1], double(state["other"]["frame_ms"]) * 3);
+    }
     const std::string verdict = state["caption"]["verdict"];
     EXPECT_NE(verdict.find("faster"), std::string::npos) << verdict;
     EXPECT_NEAR(std::stod(verdict), ms[1] / ms[0], 0.05 * ms[1] / ms[0]);

@@ -2,6 +2,7 @@
 // pictures arrive in order, the last one arrives, and no picture changes while someone holds it. Each test runs with a device
 // that copies while it traces, as GPUs do (a CPU which claims to), and with one that does not.
 #include "ui/threads/frame_thread.hpp"
+#include "support/clock.hpp"
 
 #include <gtest/gtest.h>
 
@@ -92,13 +93,8 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
         return seen_.empty() ? 0 : seen_.back().picture->job.revision;
     }
     template <class Condition>
-    bool wait_for(const Condition& condition, double seconds = 60) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-        while (!condition()) {
-            if (std::chrono::steady_clock::now() > end) return false;
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        return true;
+    bool wait_for(const Condition& condition) {
+        return test::comes(condition);
     }
     // Waits until the thread is idle and has said so.
     bool settles() {
@@ -263,10 +259,12 @@ TEST_P(FrameThreads, ComparedSidesAreTimedOneAfterTheOther) {
         const FrameTimes times = thread_.times(side);
         const double least = double(*std::min_element(times.frames_ms().begin(), times.frames_ms().end()));
         EXPECT_GE(least, kCopies_ms * 0.98) << side << ": one of its copies is not counted";
-        EXPECT_LT(least, kCopies_ms + kCopy_ms * 0.9) << side << ": another's copy is counted";
+        EXPECT_LT(least, clocks_count() ? kCopies_ms + kCopy_ms * 0.9 : 1e3 * kHangs_s)
+            << side << ": another's copy is counted";
         // By the device's clock the wait for other things is no work.
         ASSERT_EQ(times.kernels_ms().size(), times.size());
-        EXPECT_LT(double(*std::min_element(times.kernels_ms().begin(), times.kernels_ms().end())), kCopy_ms);
+        EXPECT_LT(double(*std::min_element(times.kernels_ms().begin(), times.kernels_ms().end())),
+                  clocks_count() ? kCopy_ms : 1e3 * kHangs_s);
         EXPECT_GT(double(times.kernels_ms().front()), 0);
     }
 }

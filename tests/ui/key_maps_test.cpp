@@ -50,7 +50,7 @@ class KeyMaps : public WindowTest, public ::testing::WithParamInterface<std::str
  protected:
     void press(const KeyBinding& binding) { window->key(x_name(binding.name)); }
     bool reaches(const std::string& key, const nlohmann::json& value) {
-        return window->reaches([&](const nlohmann::json& state) { return state.contains(key) && state[key] == value; }, 20);
+        return window->reaches([&](const nlohmann::json& state) { return state.contains(key) && state[key] == value; });
     }
     void check(const KeyMap& map, const KeyBinding& binding);
     void check_motion(const KeyMap& map, const KeyBinding& binding);

@@ -141,12 +141,13 @@ TEST_F(Keys, AHeldKeyMovesUntilItIsReleased) {
     window->key("Right");
     window->settle();
     const Point tapped = window->state()["eye"];
+    const double step = distance_between(tapped, start);
     window->key_down("Right");
-    usleep(600000);
+    EXPECT_TRUE(
+        window->reaches([&](const nlohmann::json& state) { return distance_between(state["eye"], tapped) > 3 * step; }));
     window->key_up("Right");
     window->settle();
     const Point held = window->state()["eye"];
-    EXPECT_GT(distance_between(held, tapped), 3 * distance_between(tapped, start));
     usleep(300000);
     window->settle();
     EXPECT_EQ(Point(window->state()["eye"]), held);
@@ -160,12 +161,12 @@ class Typing : public WindowTest {
  protected:
     void type_into_path(WindowDriver& window) {
         ASSERT_EQ(window.command("focus path"), "");
-        ASSERT_TRUE(window.reaches([](const nlohmann::json& state) { return bool(state["typing"]); }, 20));
+        ASSERT_TRUE(window.reaches([](const nlohmann::json& state) { return bool(state["typing"]); }));
     }
     static void leave_field(WindowDriver& window) {
         const auto area = window.state()["area"];
         window.click(double(area[0]) + 20, double(area[1]) + 20);
-        ASSERT_TRUE(window.reaches([](const nlohmann::json& state) { return !state["typing"]; }, 20));
+        ASSERT_TRUE(window.reaches([](const nlohmann::json& state) { return !state["typing"]; }));
         window.settle();
     }
     static void expect_unmoved(const nlohmann::json& before, const nlohmann::json& now) {
@@ -210,7 +211,7 @@ TEST_F(Typing, AKeyHeldBeforeIsReleasedInTheTextField) {
     const auto window = open();
     const auto before = window->state();
     window->key_down("Left");
-    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"] != before["eye"]; }, 20));
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"] != before["eye"]; }));
     type_into_path(*window);
     window->key_up("Left");
     window->settle();
@@ -228,7 +229,7 @@ TEST_F(Typing, LosingTheFocusReleasesKeys) {
     window->take_focus();
     const auto before = window->state();
     window->key_down("Right");
-    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"] != before["eye"]; }, 20));
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"] != before["eye"]; }));
     other.take_focus();
     window->settle();  // with the key still down
     const auto moved = window->state();

@@ -123,7 +123,7 @@ class Layouts : public WindowTest {
         ASSERT_EQ(std::system(command.c_str()), 0) << command;
     }
     static bool shows(WindowDriver& window, const char* key, const nlohmann::json& value) {
-        return window.reaches([&](const nlohmann::json& state) { return state[key] == value; }, 20);
+        return window.reaches([&](const nlohmann::json& state) { return state[key] == value; });
     }
 };
 
@@ -218,7 +218,7 @@ TEST_F(Layouts, AKeyHeldWhileTheLayoutChangesIsReleased) {
     const auto light = [&] { return window->state()["light"]; };
     const auto before = light();
     window->key_down("25");  // W
-    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["light"] != before; }, 20));
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["light"] != before; }));
     use("fr");  // now it is Z
     window->key_up("25");
     window->settle();

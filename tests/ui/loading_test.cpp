@@ -33,10 +33,10 @@ TEST_F(Loading, AnswersWhileImportingAndBuilding) {
     std::vector<double> answers;
     const auto begin = Clock::now();
     bool arrived = false;
-    while (!arrived && seconds_since(begin) < 120) {
+    while (!arrived && seconds_since(begin) < test::kHangs_s) {
         const auto press = Clock::now();
         window->key("f");
-        ASSERT_NE(window->line("fps ", 10), "");
+        ASSERT_NE(window->line("fps "), "");
         answers.push_back(seconds_since(press) * 1e3);
         if (answers.size() % 5 == 0) arrived = !window->state()["busy"];
     }
@@ -51,9 +51,9 @@ TEST_F(Loading, AnswersWhileImportingAndBuilding) {
     std::printf("inside the window: longest answer %.0f ms, longest frame %.0f ms\n", double(now["slowest_answer_ms"]),
                 double(now["slowest_frame_ms"]));
     EXPECT_GE(answers.size(), 5u);
-    EXPECT_LT(median, 100);
-    // A busy machine may delay us for a moment. A window that waits for the work takes longer than this.
-    EXPECT_LT(last, 1000);
+    EXPECT_LT(median, 1e3 * at_most(0.1));
+    // A window that waits for the work takes longer than this.
+    EXPECT_LT(last, 1e3 * at_most(1));
 }
 
 TEST_F(Loading, EscapeCancelsAnImport) {

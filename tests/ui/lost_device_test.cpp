@@ -126,14 +126,14 @@ class DriverFaults : public FaultyDriverTest {
         const auto begin = std::chrono::steady_clock::now();
         do {
             window.key("f");
-            ASSERT_NE(window.line("fps ", 10), "") << one.words << ": keys are not answered";
+            ASSERT_NE(window.line("fps "), "") << one.words << ": keys are not answered";
             state = window.state();
-        } while (!says(state, one.says) && seconds_since(begin) < 60);
+        } while (!says(state, one.says) && seconds_since(begin) < test::kHangs_s);
         std::printf("%-18s | %4.1f s | %3.0f ms | %s\n", one.words, seconds_since(begin), double(state["slowest_answer_ms"]),
                     (std::string(state["message"]) + " / " + std::string(state["stage"])).c_str());
         EXPECT_TRUE(says(state, one.says)) << one.words << ": " << state["message"] << state["stage"];
         // A busy machine may delay us for a moment. A window that waits for the driver takes longer than this.
-        EXPECT_LT(double(state["slowest_answer_ms"]), 1000) << one.words;
+        EXPECT_LT(double(state["slowest_answer_ms"]), 1e3 * at_most(1)) << one.words;
     }
     // Likewise. Then the fault is gone, and the window has the picture that it had before.
     void meet(WindowDriver& window, const Fault& one) {
@@ -177,7 +177,7 @@ TEST_F(DriverFaults, ALaunchThatHangs) {
     const auto begin = std::chrono::steady_clock::now();
     window->quit();
     EXPECT_EQ(window->exit_code(), 0);
-    EXPECT_LT(seconds_since(begin), 5 + 10);
+    EXPECT_LT(seconds_since(begin), at_most(5 + 10));
     EXPECT_NE(window->errors().find("did not stop within 5 s after the window was closed"), std::string::npos)
         << window->errors();
 }

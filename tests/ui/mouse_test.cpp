@@ -246,11 +246,8 @@ TEST_F(Mouse, TheWheelMovesTheCameraCloser) {
 
 TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
     const auto was = window->state();
-    // On a busy machine more than the time of a double click may pass between the two; then they are two clicks.
-    for (int i = 0; i < 3 && window->state()["target"] == was["target"]; ++i) {
-        window->double_click(at(1.2, -0.4));
-        window->settle();
-    }
+    window->double_click(at(1.2, -0.4));
+    window->settle();
     const auto now = window->state();
     EXPECT_LT(distance_between(now["target"], {1.2, -0.4, 0}), 0.05);
     EXPECT_LT(distance_between(now["eye"], now["target"]), 0.9 * distance_between(was["eye"], was["target"]));
@@ -303,7 +300,7 @@ TEST_F(Moving, PicturesAreReducedAndSharpenAtRest) {
     }
     window->key_down("Left");
     const bool reduced =
-        window->reaches([](const nlohmann::json& state) { return state["reduced"] && state["size"] != "320x240"; }, 30);
+        window->reaches([](const nlohmann::json& state) { return state["reduced"] && state["size"] != "320x240"; });
     window->key_up("Left");
     EXPECT_TRUE(reduced);
     window->settle();
@@ -329,7 +326,7 @@ TEST_F(Moving, FullResolutionIfRequested) {
     window->key_down("Left");
     const auto begin = std::chrono::steady_clock::now();
     int seen = 0;
-    for (; seconds_since(begin) < 1; ++seen) EXPECT_FALSE(window->state()["reduced"]);
+    for (; seconds_since(begin) < 1; ++seen) EXPECT_FALSE(window->state()["reduced"]);  // no clock: it looks for so long
     window->key_up("Left");
     EXPECT_GT(seen, 0);
     window->settle();

@@ -92,7 +92,7 @@ TEST_F(Panel, RefusedValuesChangeNothing) {
     for (const char* key : {"depth", "packet", "accel"}) EXPECT_EQ(after[key], before[key]) << key;
 }
 
-// The requirement is 2 s on the idle reference machine. This bound leaves room for a busy machine.
+// The requirement is 2 s on the idle reference machine.
 TEST_F(Panel, PacketSizeChangesQuicklyWithAColdCache) {
     const TemporaryFolder cache;
     const auto window = open({{"POCL_CACHE_DIR", cache.path()}, {"XDG_CACHE_HOME", cache.path()}});
@@ -103,7 +103,7 @@ TEST_F(Panel, PacketSizeChangesQuicklyWithAColdCache) {
     EXPECT_EQ(window->state()["packet"], "8x8");
     std::printf("packet 4x4 to 8x8, compiler's cache empty at start: %.2f s\n", seconds);
     RecordProperty("packet_change_ms", int(seconds * 1e3));
-    EXPECT_LT(seconds, 6);
+    EXPECT_LT(seconds, at_most(6));
 }
 
 // // The first clicks of a new user: open a file, save the picture, show the volumes, compare two structures, undo.
@@ -113,14 +113,14 @@ namespace fs = std::filesystem;
 class Buttons : public WindowTest {
  protected:
     static bool reaches(WindowDriver& window, const std::string& key, const nlohmann::json& value) {
-        return window.reaches([&](const nlohmann::json& state) { return state[key] == value; }, 20);
+        return window.reaches([&](const nlohmann::json& state) { return state[key] == value; });
     }
 };
 
 TEST_F(Buttons, ToolbarButtonsWork) {
     const auto window = open();
     window->click_on("Volumes");
-    EXPECT_TRUE(window->reaches([](const nlohmann::json& state) { return state["level"] != -1 && state["volumes"] > 0; }, 20));
+    EXPECT_TRUE(window->reaches([](const nlohmann::json& state) { return state["level"] != -1 && state["volumes"] > 0; }));
     window->click_on("Volumes");
     EXPECT_TRUE(reaches(*window, "level", -1));
     window->click_on("Inspect");

@@ -11,7 +11,6 @@ namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 class Window : public WindowTest {};
 
@@ -87,13 +86,12 @@ TEST_F(Window, ShowsAnImportWarningOnce) {
 
 TEST_F(Window, WithoutADisplayExplainsHowToRender) {
     WindowDriver window({source_path("scenes/primitives.scene")}, {{"DISPLAY", ""}});
-    const auto begin = Clock::now();
-    while (window.running() && seconds_since(begin) < 20) usleep(20000);
+    EXPECT_TRUE(comes([&] { return !window.running(); }));
     EXPECT_EQ(window.exit_code(), 2);
     EXPECT_NE(window.errors().find("clarity render"), std::string::npos) << window.errors();
     // DISPLAY names a display that does not exist.
     WindowDriver gone({source_path("scenes/primitives.scene")}, {{"DISPLAY", ":4711"}});
-    while (gone.running() && seconds_since(begin) < 40) usleep(20000);
+    EXPECT_TRUE(comes([&] { return !gone.running(); }));
     EXPECT_EQ(gone.exit_code(), 2);
     EXPECT_NE(gone.errors().find("clarity render"), std::string::npos) << gone.errors();
 }
@@ -135,16 +133,12 @@ TEST_F(Window, ASignalClosesItAndLeavesNoCopiesOfLibrariesBehind) {
     fs::copy_file(installed, built);
     std::ofstream(built, std::ios::app) << ' ';  // the same content would be left alone
     fs::rename(built, library);
-    const auto begin = Clock::now();
-    while (copies() == 0 && seconds_since(begin) < 60) usleep(20000);
-    ASSERT_EQ(copies(), 1);
+    ASSERT_TRUE(comes([&] { return copies() == 1; }));
     window.settle();
     window.quit_by(SIGTERM);
     EXPECT_EQ(window.exit_code(), 130) << window.errors();
     // After a signal another process removes the folders, when this one has ended.
-    const auto end = Clock::now();
-    while (copies() != 0 && seconds_since(end) < 60) usleep(20000);
-    EXPECT_EQ(copies(), 0);
+    EXPECT_TRUE(comes([&] { return copies() == 0; }));
 }
 
 // // Files opened, dropped, broken, empty: a file that cannot be read causes a message and never ends the program.

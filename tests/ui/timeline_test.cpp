@@ -131,38 +131,42 @@ TEST_F(Timeline, PlaysAndSteps) {
     ASSERT_TRUE(timeline(*window)["playing"]);
     std::vector<double> shown;
     double last = 0;
-    for (int i = 0; i < 14; ++i) {
+    double passed = 0;
+    for (int i = 0; i < 14 || (shown.size() < 3 && passed < test::kHangs_s); ++i) {
         usleep(50000);
+        passed = seconds_since(begin);
         const auto now = timeline(*window);
         last = now["time_s"];
         if (now["shown_s"].is_number() && (shown.empty() || now["shown_s"] != shown.back())) shown.push_back(now["shown_s"]);
     }
-    const double passed = seconds_since(begin);
+    const double later = seconds_since(begin);
     window->key("space");
     window->settle();
     EXPECT_GE(shown.size(), 3u) << "several poses are shown";
-    EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end()));
-    EXPECT_LE(last, 0.5 + 0.25 * passed);
-    EXPECT_GT(last, 0.5 + 0.25 * passed * 0.5);
+    if (later < 4) {  // then it has not come round
+        EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end()));
+    }
+    EXPECT_LE(last, 0.5 + 0.25 * later);
+    if (clocks_count()) {
+        EXPECT_GT(last, 0.5 + 0.25 * passed * 0.5);
+    }
     auto now = timeline(*window);
     EXPECT_FALSE(now["playing"]);
     const double frame = double(now["time_s"]) * 24;
     EXPECT_NEAR(frame, std::round(frame), 1e-9) << "it pauses at a frame";
     EXPECT_EQ(difference(window->picture(), render("--frames " + std::to_string(std::lround(frame))), 0), 0);
-    EXPECT_LT(double(window->state()["slowest_answer_ms"]), 500);  // a window that waits for the structures takes longer
+    EXPECT_LT(double(window->state()["slowest_answer_ms"]),
+              1e3 * at_most(0.5));  // a window that waits for the structures takes longer
 
     // It comes round, and stays in the loop.
     ASSERT_EQ(window->command("speed 4"), "");
     window->click_on("play");
-    bool wrapped = false;
-    for (int i = 0; i < 40 && !wrapped; ++i) {
+    EXPECT_TRUE(comes([&] {
         const double time = timeline(*window)["time_s"];
         EXPECT_GE(time, 0.5);
         EXPECT_LT(time, 1.5);
-        wrapped = time < last;
-        last = time;
-    }
-    EXPECT_TRUE(wrapped);
+        return time < std::exchange(last, time);
+    }));
     window->key("Escape");
     window->settle();
     now = timeline(*window);
@@ -296,14 +300,14 @@ TEST_F(Timeline, ScrubbingWhileStructuresAreBuiltShowsOnlyWholePoses) {
     window->line("{", 1);
     window->key("space");
     window->key("f");
-    EXPECT_NE(window->line("fps ", 5), "");
+    EXPECT_NE(window->line("fps "), "");
     ASSERT_EQ(window->command("accel bvh8"), "");
     EXPECT_TRUE(window->reaches([](const nlohmann::json& state) { return state["accel"] == "bvh8"; }));
     EXPECT_TRUE(timeline(*window)["playing"]);
     window->key("space");
     window->settle();
     expect_as_command(*window);
-    EXPECT_LT(double(window->state()["slowest_answer_ms"]), 500);
+    EXPECT_LT(double(window->state()["slowest_answer_ms"]), 1e3 * at_most(0.5));
     EXPECT_EQ(window->state()["message"], "");
     window->quit();
     EXPECT_EQ(window->exit_code(), 0);

@@ -234,7 +234,8 @@ void App::run_script() {
                           times_,
                           [this](const std::vector<std::string>& files) { window_->drop(files); },
                           [this](const std::string& path) { capture_path_ = path; },
-                          [this] { window_->close(); }};
+                          [this] { window_->close(); },
+                          [this](float seconds) { window_->set_double_click_s(seconds); }};
     script_->step(window);
 }
 

@@ -213,7 +213,8 @@ void GlWindow::begin_frame() {
 // further press.
 void GlWindow::keep_clicks_apart() {
     ImGuiIO& io = ImGui::GetIO();
-    io.MouseDoubleClickTime = kDoubleClickSeconds + 2 * io.DeltaTime;  // the time of a press is known to a frame
+    io.MouseDoubleClickTime = (double_click_s_ > 0 ? double_click_s_ : kDoubleClickSeconds) +
+                              2 * io.DeltaTime;  // the time of a press is known to a frame
     if (left_presses_ > 0) {
         io.MouseDown[0] = !left_was_down_;
         if (io.MouseDown[0]) --left_presses_;

@@ -64,6 +64,7 @@ class GlWindow {
     std::map<int, int> down_;  // keys that are down, by scancode: what each means
     std::vector<std::string> dropped_;
     bool any_event_ = false;
+    float double_click_s_ = 0;    // see set_double_click_s()
     int left_presses_ = 0;        // presses of the left mouse button which ImGui has not seen
     bool left_was_down_ = false;  // what ImGui saw in the last frame
     std::string ini_path_;        // a member, because ImGui keeps a pointer to its text

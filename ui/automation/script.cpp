@@ -212,6 +212,8 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
         window.drop(dropped_files(text));
     } else if (command == "moving_fps") {
         session.desired.moving_fps = std::strtof(text.c_str(), nullptr);
+    } else if (command == "double_click") {
+        window.set_double_click(std::strtof(text.c_str(), nullptr));
     } else if (command == "cancel") {
         session.cancel();
     } else if (command == "edit") {

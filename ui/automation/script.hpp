@@ -10,6 +10,7 @@
 //   tab NAME                    the panel's tab
 //   map thesis|viewer           the key map
 //   moving_fps N                frame rate to hold while something moves; 0: all pixels
+//   double_click S              seconds between the clicks of a double click, at most; 0: as usual
 //   continuous 0|1              trace again and again, to measure
 //   cancel                      cancels what is being prepared
 //   quit                        closes the window

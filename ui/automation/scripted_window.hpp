@@ -28,6 +28,7 @@ struct ScriptedWindow {
     std::function<void(const std::vector<std::string>&)> drop;  // files onto the window
     std::function<void(const std::string&)> capture;            // writes the next frame to this path as PNG
     std::function<void()> close;
+    std::function<void(float)> set_double_click;  // seconds between its clicks at most; 0: as usual
 };
 
 }  // namespace clarity::ui

@@ -8,7 +8,8 @@
 
 namespace clarity {
 
-inline constexpr float kBrightestShared = 65408;  // 511/512 of 2^16
+inline constexpr float kBrightestShared = 65408;           // 511/512 of 2^16
+inline constexpr float kDarkestShared = 1.0f / (1 << 16);  // 2^-16: what is darker has less than 9 digits
 
 // r in the lowest bits, the exponent in the highest. rgb: finite and not negative; what is beyond kBrightestShared becomes it.
 inline uint32_t to_shared_exponent(const float* rgb) {

@@ -5,7 +5,6 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
-#include "base/pictures/shared_exponent.hpp"
 #include "import/sink/shape_parts.hpp"
 #include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
@@ -94,8 +93,8 @@ std::string SceneSink::lost_light(const Material& material) {
     if (number == RT_NONE || !is_bright(scene.textures[number])) return {};
     const rt_texture& texture = scene.textures[number];
     const uint32_t* const texels = scene.texels.data() + texture.first;
-    const auto is_above_1 = [](uint32_t texel) {
-        const std::array<float, 3> light = from_shared_exponent(texel);
+    const auto is_above_1 = [&](uint32_t texel) {
+        const std::array<float, 3> light = bright_light(texture, texel);
         return std::max({light[0], light[1], light[2]}) > 1;
     };
     if (material.values.model != RT_MODEL_UNLIT &&

@@ -34,8 +34,8 @@ Problem key_fault(const rt_key& key, const rt_key_values& values) {
     if (values.count > 0 && !values.numbers) return who + " has no numbers";
     for (rt_u32 i = 0; i < values.count; ++i) {
         const float x = values.numbers[i];
-        if (!is_usable(x)) return who + ": a number is not finite or too large";
-        if (x < key.min || x > key.max)
+        if (!is_usable(x)) return who + ": a number is not finite, or beyond 1e15";
+        if (x < static_cast<float>(key.min) || x > static_cast<float>(key.max))  // 1e-12, as a float, is less than 1e-12
             return who + ": " + number_text(x) + " is out of range, expected " + number_text(key.min) + " to " +
                    number_text(key.max) + " (" + key.help + ")";
         if (key.kind == RT_KEY_WHOLE && x != std::floor(x)) return who + ": " + number_text(x) + " is no whole number";

@@ -10,7 +10,6 @@
 #include "base/files/read_file.hpp"
 #include "base/parallel_for.hpp"
 #include "base/pictures/picture_read.hpp"
-#include "base/pictures/shared_exponent.hpp"
 #include "base/pictures/srgb.hpp"
 #include "base/problem.hpp"
 #include "base/text.hpp"
@@ -27,10 +26,9 @@ namespace {
 
 // A sky from the six pictures of a cube.
 
-// A square picture, RGBA8, top row first, as rt_sky_desc::faces has it; or the light itself.
+// A square picture, RGBA8, top row first, as rt_sky_desc::faces has it; or the light itself (scene/bright_texture.hpp).
 struct CubeFace {
-    rt_u32 side = 0;
-    bool is_bright = false;  // scene/bright_texture.hpp
+    rt_texture picture{};
     std::vector<uint32_t> texels;
 };
 using Cube = std::array<CubeFace, 6>;
@@ -60,8 +58,8 @@ Faces decoded(const Cube& cube) {
     Faces faces;
     for (size_t f = 0; f < 6; ++f)
         for (const uint32_t texel : cube[f].texels) {
-            if (cube[f].is_bright) {
-                faces[f].push_back(from_shared_exponent(texel));
+            if (is_bright(cube[f].picture)) {
+                faces[f].push_back(bright_light(cube[f].picture, texel));
                 continue;
             }
             const double scale = 255.0 / std::max(1u, texel >> 24);
@@ -96,7 +94,7 @@ Radiance seen(const Faces& faces, rt_u32 side, const Vec& d) {
 // Each texel is the mean of 2 x 2 directions.
 void show_cube(const Cube& cube, const std::array<double, 4>& turn, Sky& sky) {
     const Faces faces = decoded(cube);
-    const rt_u32 side = cube[0].side, width = std::clamp<rt_u32>(4 * side, 8, 4096), height = width / 2;
+    const rt_u32 side = cube[0].picture.width, width = std::clamp<rt_u32>(4 * side, 8, 4096), height = width / 2;
     sky.values.width = width;
     sky.values.height = height;
     std::vector<float> texels(size_t(3) * width * height);
@@ -113,17 +111,6 @@ void show_cube(const Cube& cube, const std::array<double, 4>& turn, Sky& sky) {
         }
     });
     sky.texels = std::move(texels);
-}
-
-// Radiance is finite and not negative. Returns how many numbers were not.
-size_t make_sound(std::vector<float>& texels) {
-    size_t repaired = 0;
-    for (float& texel : texels) {
-        if (is_usable(texel) && texel >= 0) continue;
-        texel = 0;
-        ++repaired;
-    }
-    return repaired;
 }
 
 // The unit quaternion of a description; none if it has no length.
@@ -155,14 +142,12 @@ bool SceneBuilder::take_faces(const std::string& path, const rt_sky_desc& d, Sky
             if (const Problem why = try_read_file(found.path, kMaxPictureFileBytes, content)) return missing(why.text());
         }
         const uint8_t* const bytes = face.path ? reinterpret_cast<const uint8_t*>(content.data()) : face.bytes;
-        rt_texture picture{};
+        rt_texture& picture = cube[i].picture;
         std::string lost;
         if (const Problem why =
                 decode_texture(bytes, face.path ? content.size() : face.byte_count, cube[i].texels, picture, lost))
             return missing("face " + std::to_string(i) + ": " + why.text());
-        cube[i].is_bright = clarity::is_bright(picture);
-        cube[i].side = picture.width;
-        if (picture.width != picture.height || cube[i].side != cube[0].side)
+        if (picture.width != picture.height || picture.width != cube[0].picture.width)
             return missing("face " + std::to_string(i) + " has " + std::to_string(picture.width) + " x " +
                            std::to_string(picture.height) + " texels; faces are squares of one size");
     }
@@ -205,9 +190,8 @@ Problem SceneBuilder::set_sky(const std::string& path, const rt_sky_desc& d) {
             values.width = image.width;
             values.height = image.height;
             std::vector<float> texels(image.pixels.begin(), image.pixels.end());
-            if (const size_t repaired = make_sound(texels))
-                warn(path, "sky '" + sky.file + "': " + std::to_string(repaired) +
-                               " of its numbers are negative or not finite; they count as 0");
+            const std::string changed = make_sound_light(texels.data(), texels.size());
+            if (!changed.empty()) warn(path, "sky '" + sky.file + "': " + changed);
             sky.texels = std::move(texels);
         } catch (const Error& e) {
             return missing(e.what());

@@ -22,12 +22,14 @@
 #include <vector>
 
 #include "base/parallel_for.hpp"
+#include "base/pictures/light_range.hpp"
 #include "base/pictures/picture_read.hpp"
 #include "base/pictures/shared_exponent.hpp"
 #include "base/pictures/srgb.hpp"
 #include "base/text.hpp"
 #include "rt_plugin.h"
 #include "scene/bright_texture.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity::import {
 namespace {
@@ -62,31 +64,26 @@ std::string as_text(const uint8_t* bytes, uint64_t byte_count) {
     return {reinterpret_cast<const char*>(bytes), static_cast<size_t>(byte_count)};
 }
 
-// Radiance is finite and not negative.
 Problem decode_floats(const std::string& bytes, std::vector<uint32_t>& texels, rt_texture& texture, std::string& lost) {
     try {
         const std::array<unsigned, 2> size = size_of_floats(bytes);
         if (Problem why = check_size(size[0], size[1], texels)) return why;
-        const FloatImage image = decode_picture(bytes);
-        texture = {static_cast<rt_u32>(texels.size()), image.width, image.height, 0, kBrightTexture, 0, 0};
+        FloatImage image = decode_picture(bytes);
         const size_t count = size_t(image.width) * image.height;
+        lost = make_sound_light(image.pixels.data(), 3 * count);
+        LightRange light;  // of the brightest channels, which the others share their exponent with
+        for (size_t i = 0; i < count; ++i) {
+            const float* const rgb = &image.pixels[3 * i];
+            light.add(std::max({rgb[0], rgb[1], rgb[2]}));
+        }
+        const int power = power_that_fits(light, {kDarkestShared, kBrightestShared});
+        texture = {static_cast<rt_u32>(texels.size()), image.width, image.height, 0, bright_flags(power), 0, 0};
         texels.resize(texture.first + count);
-        size_t unsound = 0, too_bright = 0;
         for (size_t i = 0; i < count; ++i) {
             float rgb[3];
-            for (size_t k = 0; k < 3; ++k) {
-                const float x = image.pixels[3 * i + k];
-                const bool is_sound = x >= 0 && std::isfinite(x);
-                unsound += !is_sound;
-                too_bright += is_sound && x > kBrightestShared;
-                rgb[k] = is_sound ? x : 0;
-            }
+            for (size_t k = 0; k < 3; ++k) rgb[k] = std::ldexp(image.pixels[3 * i + k], -power);
             texels[texture.first + i] = to_shared_exponent(rgb);
         }
-        if (unsound > 0) lost = std::to_string(unsound) + " of its numbers are negative or not finite; they count as 0";
-        if (too_bright > 0)
-            lost +=
-                (lost.empty() ? "" : "; ") + std::to_string(too_bright) + " of its numbers are above 65408, where light ends";
         return {};
     } catch (const std::exception& e) {
         return "the picture cannot be read: " + std::string(e.what());
@@ -173,6 +170,7 @@ struct ByteTexels {
         return out;
     }
 };
+// Without the texture's power of two, which smaller pictures have, too.
 struct BrightTexels {
     void add(float share, uint32_t texel, float (&sum)[4]) const {
         const std::array<float, 3> light = from_shared_exponent(texel);
@@ -207,6 +205,23 @@ void add_smaller(const Kind& kind, std::vector<uint32_t>& texels, rt_texture& te
 
 }  // namespace
 
+std::string make_sound_light(float* numbers, size_t count) {
+    size_t unsound = 0, too_bright = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const bool is_sound = numbers[i] >= 0 && std::isfinite(numbers[i]);
+        const float kept = is_sound ? std::min(numbers[i], kMostCoordinate) : 0;
+        unsound += !is_sound;
+        too_bright += is_sound && kept < numbers[i];
+        numbers[i] = kept;
+    }
+    std::string changed;
+    if (unsound > 0) changed = std::to_string(unsound) + " of its numbers are negative or not finite; they count as 0";
+    if (too_bright > 0)
+        changed +=
+            (changed.empty() ? "" : "; ") + std::to_string(too_bright) + " of its numbers are above 1e15, where light ends";
+    return changed;
+}
+
 Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture,
                        std::string& lost) {
     lost.clear();
@@ -227,11 +242,11 @@ Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<ui
 
 void make_bytes(std::vector<uint32_t>& texels, rt_texture& texture) {
     for (size_t i = texture.first; i < texels.size(); ++i) {
-        const std::array<float, 3> rgb = from_shared_exponent(texels[i]);
+        const std::array<float, 3> rgb = bright_light(texture, texels[i]);
         const auto byte = [&](size_t k) { return static_cast<uint32_t>(std::min(rgb[k], 1.0f) * 255 + 0.5f); };
         texels[i] = byte(0) | byte(1) << 8 | byte(2) << 16 | 0xff000000u;
     }
-    texture.flags &= ~kBrightTexture;
+    texture.flags &= ~(kBrightTexture | kBrightPower);
 }
 
 uint64_t memory_of_texture(const uint8_t* bytes, uint64_t byte_count) {

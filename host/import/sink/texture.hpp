@@ -1,6 +1,7 @@
 // texture.hpp -- decodes pictures into texels, and makes of them what materials use: smaller pictures, normals of heights,
 // opacity.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,6 +23,10 @@ inline constexpr uint64_t kMaxPictureFileBytes = 256u << 20;
 // light is lost, for a warning; empty: nothing.
 Problem decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture,
                        std::string& lost);
+
+// Makes numbers of a picture light: what is negative or not finite becomes 0, what is above 1e15 becomes that
+// (scene/usable.hpp). Returns what was changed, for a warning; empty: nothing.
+std::string make_sound_light(float* numbers, size_t count);
 
 // Makes RGBA8 of a bright texture: numbers of 0..1 in linear steps. The texture's picture is the last one in `texels`.
 void make_bytes(std::vector<uint32_t>& texels, rt_texture& texture);

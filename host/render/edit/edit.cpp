@@ -15,11 +15,12 @@
 #include "scene/map_uses.hpp"
 #include "scene/material_keys.hpp"
 #include "scene/surface_models.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity {
 namespace {
 
-constexpr float kMostShift = 1e15f, kLeastScale = 1e-6f;
+constexpr float kLeastScale = 1e-6f;
 
 std::vector<std::string> split(const std::string& text, char at) {
     std::vector<std::string> parts(1);
@@ -220,7 +221,7 @@ void read_shift(const Scene& scene, InstanceEdits& edits, const std::string& key
         read_floats(key, value, n.data(), 3, scales ? "x,y,z or one number" : "x,y,z");
     }
     for (const float x : n) {
-        if (!(std::fabs(x) <= kMostShift)) refuse_value(key, value, "numbers of at most 1e15");
+        if (!is_usable(x)) refuse_value(key, value, "numbers of at most 1e15");
         if (scales && !(std::fabs(x) >= kLeastScale)) refuse_value(key, value, "factors other than 0");
     }
     (scales ? shift.scale : path[2] == "rotate" ? shift.degrees : shift.translate) = n;
@@ -335,7 +336,8 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
         edited.follows_path = false;
     } else if (key == "camera.aperture" || key == "camera.focus") {
         float length = 0;
-        if (!read_number(value, length) || length < 0) refuse_value(key, value, "a length, 0 or more");
+        if (!read_number(value, length) || length < 0 || !is_usable(length))
+            refuse_value(key, value, "a length from 0 to 1e15");
         (key == "camera.focus" ? view.camera.focus : view.camera.aperture) = length;
     } else if (key == "camera_path") {
         edited.camera_path = read_path(value, scene.origin);

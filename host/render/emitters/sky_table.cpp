@@ -6,7 +6,7 @@
 #include "base/angle.hpp"
 #include "base/half.hpp"
 #include "base/parallel_for.hpp"
-#include "base/pictures/shared_exponent.hpp"
+#include "base/pictures/light_range.hpp"
 #include "base/pictures/srgb.hpp"
 #include "scene/bright_texture.hpp"
 
@@ -36,7 +36,7 @@ int64_t wrapped(int64_t at, int64_t size, rt_u32 mode) {
 double brightness(uint32_t texel, const rt_texture& texture) {
     double sum = 0;
     if (is_bright(texture)) {
-        for (const float light : from_shared_exponent(texel)) sum += light;
+        for (const float light : bright_light(texture, texel)) sum += light;
         return sum / 3;
     }
     for (int k = 0; k < 3; ++k) {
@@ -50,8 +50,9 @@ double brightness(uint32_t texel, const rt_texture& texture) {
 
 SkyTable make_sky_table(const Sky& sky) {
     SkyTable table;
-    for (const float texel : sky.texels)
-        while (texel > kLargestHalf * table.scale) table.scale *= 2;
+    LightRange light;
+    for (const float texel : sky.texels) light.add(texel);
+    table.scale = std::ldexp(1.0f, power_that_fits(light, {kLeastNormalHalf, kLargestHalf}));
     const size_t w = sky.values.width, h = sky.values.height;
     if (sky.values.kind != RT_SKY_PICTURE || w == 0 || h == 0) return table;
     const float* const texels = sky.texels.data();

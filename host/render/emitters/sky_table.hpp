@@ -16,7 +16,7 @@ struct SkyTable {
     std::vector<rt_u32> picks;
     double flux = 0;               // integral of the picture's mean color over all directions
     std::vector<uint16_t> halves;  // the texels divided by `scale`, each rounded to a half
-    float scale = 1;               // a power of two: 1 unless a texel is larger than the largest half
+    float scale = 1;               // a power of two: 1 where halves hold all texels with all digits
 };
 
 // A cell of a row is as likely as the light that its part of the sky sends, bilinear between texels.

@@ -47,7 +47,7 @@ Setting with_choices(Setting s, const std::vector<std::string>& choices, Read re
     return s;
 }
 
-// Gives a row of a number its text. `value` is the number's place in Settings, `whole` whether it is an integer.
+// Gives a row of a number its text. A number that is not whole and goes from 0 to 1 is a share: 5% is 0.05.
 template <class Number, class Read, class Write>
 Setting with_number(Setting s, double min, double max, Read read, Write write) {
     constexpr bool kWhole = std::is_integral_v<Number>;
@@ -55,9 +55,11 @@ Setting with_number(Setting s, double min, double max, Read read, Write write) {
     s.get = [read](const Settings& settings) { return exact_text(static_cast<double>(read(settings))); };
     s.set = [=, key = s.key](Settings& settings, const std::string& text) {
         Number value = 0;
-        if (!read_number(text, value) || value < min || value > max)
+        const bool is_share = !kWhole && min == 0 && max == 1;
+        if (!(is_share ? read_share(text, value) : read_number(text, value)) || value < min || value > max)
             refuse_value(key, text,
-                         (kWhole ? "a whole number from " : "a number from ") + exact_text(min) + " to " + exact_text(max));
+                         (kWhole ? "a whole number from " : "a number from ") + exact_text(min) + " to " + exact_text(max) +
+                             (is_share ? ", or from 0% to 100%" : ""));
         write(settings, value);
     };
     return s;

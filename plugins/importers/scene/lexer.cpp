@@ -1,5 +1,6 @@
 #include "lexer.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -132,8 +133,10 @@ Number parse_number(std::string_view text) {
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (status == std::errc::invalid_argument) return {0, NumberError::not_a_number};
     if (end != text.data() + text.size()) return {0, NumberError::trailing_text};
-    if (status != std::errc() || !(std::fabs(value) <= static_cast<double>(kMaxNumber))) return {0, NumberError::out_of_range};
-    return {static_cast<float>(value), NumberError::none};
+    // Compared as floats: 1e15 is more than the float that is nearest to it.
+    const auto rounded = static_cast<float>(std::clamp(value, -1e30, 1e30));
+    if (status != std::errc() || !(std::fabs(rounded) <= kMaxNumber)) return {0, NumberError::out_of_range};
+    return {rounded, NumberError::none};
 }
 
 }  // namespace scene_format

@@ -145,7 +145,10 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
                 set_value(light.looks, keys[i]->name, value);
         }
     }
-    for (float& c : desc.color) c = std::min(c * intensity, kMaxNumber);
+    for (float& c : desc.color) {
+        c *= intensity;
+        if (!(c <= kMaxNumber)) s.fail_at_last("its colour times `intensity` is out of range; expected 1e+15 at most");
+    }
     document.lights.push_back(std::move(light));
 }
 

@@ -38,7 +38,7 @@ std::string by_chromium(const BenchReport& report, const Scratch& scratch, const
     const std::string file = scratch.path("index.html");
     std::ofstream(file) << report_page(report);
     const std::string command =
-        "timeout 60 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir='" +
+        "timeout 300 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --user-data-dir='" +
         scratch.path("profile") + "' --virtual-time-budget=5000 " + options + " 'file://" + file + "' 2>/dev/null";
     std::string out;
     if (FILE* pipe = popen(command.c_str(), "r")) {

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "measure.hpp"
+#include "support/clock.hpp"
 
 namespace clarity::test {
 namespace {
@@ -26,8 +27,7 @@ class HostileModel : public testing::Test {
             EXPECT_NE(message.find(name), message.npos) << message;
             EXPECT_EQ(message.find('\n'), message.npos) << message;
         }
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        EXPECT_LT(took.count(), kSecondsAtMost) << name;
+        EXPECT_LT(seconds_since(start), at_most(kSecondsAtMost)) << name;
         rusage children{};
         getrusage(RUSAGE_CHILDREN, &children);
         EXPECT_LT(children.ru_maxrss, 2L << 20) << name;

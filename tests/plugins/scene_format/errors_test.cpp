@@ -1,8 +1,12 @@
 // Faulty scene files and their messages: where the error is, what was read, and what was expected.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "recorder.hpp"
 #include "scene/light_kinds.hpp"
+#include "scene/material_keys.hpp"
 
 namespace {
 
@@ -171,6 +175,34 @@ TEST(SceneFormatErrors, NameLineColumnWhatWasReadAndWhatWasExpected) {
         EXPECT_EQ(r.why, message) << c.text;
         EXPECT_TRUE(r.order.empty() && r.materials.empty() && r.cameras.empty()) << "half-loaded: " << c.text;
     }
+}
+
+// Numbers of lights and materials go up to what the message about a greater one names, and down to what that about a lesser one
+// does.
+TEST(SceneFormatErrors, NameTheLimitsOfNumbers) {
+    std::vector<std::pair<std::string, const std::vector<clarity::Key>*>> statements = {
+        {"material m model gltf", &clarity::material_keys()}};
+    for (const clarity::LightKind& kind : clarity::light_kinds())
+        statements.emplace_back("light " + std::string(kind.name), &kind.keys);
+    for (const auto& [statement, keys] : statements)
+        for (const clarity::Key& key : *keys) {
+            if (key.kind == RT_KEY_WORD || key.kind == RT_KEY_FLAG || key.kind == RT_KEY_VECTOR) continue;
+            const auto why = [&, begin = statement + " " + key.name](double number) {
+                char digits[40];
+                std::snprintf(digits, sizeof digits, " %.9g", number);
+                std::string text = begin;
+                for (size_t k = 0; k < clarity::count_of(key); ++k) text += digits;
+                return import_text(text + "\nsphere").why;
+            };
+            EXPECT_EQ(why(key.min), "") << statement;
+            EXPECT_EQ(why(key.max), "") << statement;
+            for (const double limit : {key.min, key.max}) {
+                const double beyond = limit == key.min ? key.min - std::max(1.0, std::fabs(key.min)) : 2 * key.max;
+                char named[40];
+                std::snprintf(named, sizeof named, "%g", std::fabs(limit));
+                EXPECT_NE(why(beyond).find(named), std::string::npos) << statement << " " << key.name << ": " << why(beyond);
+            }
+        }
 }
 
 TEST(SceneFormatErrors, SeveralAreReportedAtOnceInFileOrder) {

@@ -1,4 +1,5 @@
 #include "clarity_bvh/base/spare_blocks.hpp"
+#include "support/clock.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,14 +19,6 @@ void* large_block(size_t bytes) {
 void release(void* p, size_t) {
     std::free(p);
 }
-bool comes(SpareBlocks& blocks, size_t offered) {
-    for (int i = 0; i < 2000; ++i) {
-        if (blocks.offered() == offered) return true;
-        std::this_thread::sleep_for(5ms);
-    }
-    return false;
-}
-
 // They wait: static objects of the program do, too.
 SpareBlocks& waiting(SpareBlocks::Clock::duration idle) {
     return *new SpareBlocks(8 * SpareBlocks::kLarge, release, idle);
@@ -49,7 +42,7 @@ TEST(SpareBlocks, AreOfferedOnceNobodyUsesThem) {
         void* const q = large_block(2 * bytes);
         blocks.give(p, bytes);
         blocks.give(q, 2 * bytes);
-        EXPECT_TRUE(comes(blocks, 3 * bytes));
+        EXPECT_TRUE(clarity::test::comes([&] { return blocks.offered() == 3 * bytes; }));
         EXPECT_EQ(blocks.sum(), 3 * bytes);
         EXPECT_EQ(blocks.take(bytes), p);
         EXPECT_EQ(blocks.take(2 * bytes), q);

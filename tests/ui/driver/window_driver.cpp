@@ -21,10 +21,6 @@ namespace clarity::ui {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 Pixels read_png(const std::string& path) {
     Pixels pixels;
     int channels = 0;
@@ -184,13 +180,13 @@ bool WindowDriver::running() {
 void WindowDriver::quit() {
     send("quit");
     const auto begin = Clock::now();
-    while (running() && seconds_since(begin) < 60) read_more(0.05);
+    while (running() && seconds_since(begin) < test::kHangs_s) read_more(0.05);
 }
 
 void WindowDriver::quit_by(int signal) {
     if (running()) kill(pid_, signal);
     const auto begin = Clock::now();
-    while (running() && seconds_since(begin) < 60) read_more(0.05);
+    while (running() && seconds_since(begin) < test::kHangs_s) read_more(0.05);
 }
 
 void WindowDriver::send(const std::string& text) {
@@ -252,7 +248,7 @@ void WindowDriver::settle(double seconds) {
 nlohmann::json WindowDriver::query(const std::string& text) {
     const std::string error = command(text);
     EXPECT_EQ(error, "");
-    const std::string answer = line("{", 1);
+    const std::string answer = line("{");
     return answer.empty() ? nlohmann::json::object() : nlohmann::json::parse(answer);
 }
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "support/clock.hpp"
+
 namespace clarity::ui {
 
 struct Pixels {
@@ -57,7 +59,10 @@ std::string source_path(const std::string& relative);
 std::string shared_path(const std::string& relative);
 // The path of the executable under test.
 std::string program_path();
-double seconds_since(std::chrono::steady_clock::time_point begin);
+using test::at_most;
+using test::clocks_count;
+using test::comes;
+using test::seconds_since;
 
 // A position on the screen in pixels.
 struct Place {
@@ -82,7 +87,7 @@ class WindowDriver {
 
     // Returns whether the state meets the condition within `seconds`.
     using Condition = std::function<bool(const nlohmann::json& state)>;
-    bool reaches(const Condition& condition, double seconds = 60);
+    bool reaches(const Condition& condition, double seconds = test::kHangs_s);
 
     // Real events through xdotool. Keys have their X names: "Left", "ctrl+z".
     void key(const std::string& name);
@@ -106,7 +111,7 @@ class WindowDriver {
     void take_focus();  // gives the keyboard to this window
 
     // Returns the next line of stdout that begins with `prefix`; empty if there is none within `seconds`.
-    std::string line(const std::string& prefix, double seconds);
+    std::string line(const std::string& prefix, double seconds = test::kHangs_s);
     void quit();               // and waits until the program has ended
     void quit_by(int signal);  // the same
     bool running();
