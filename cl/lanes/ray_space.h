@@ -28,13 +28,15 @@
 
 #define RT_DOT(ax, ay, az, bx, by, bz) fma(ax, bx, fma(ay, by, (az) * (bz)))
 
-/* The normal of a triangle, (b - a) x (c - a), not of unit length. */
+/* The normal of a triangle, (b - a) x (c - a), not of unit length. Times a coordinate it is a volume, which is no float in scenes of 1e13 and
+ * keeps few digits in those of 1e-14: there the edges count as multiplied by RT_NORMAL_SCALE. */
+#define RT_NORMAL_SCALE (1.0f / RT_SCENE_SCALE)
 RT_INLINE void rt_triangle_normal(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz, float *nx,
                                   float *ny, float *nz)
 {
 #pragma OPENCL FP_CONTRACT OFF
-    const float e1x = bx - ax, e1y = by - ay, e1z = bz - az;
-    const float e2x = cx - ax, e2y = cy - ay, e2z = cz - az;
+    const float e1x = (bx - ax) * RT_NORMAL_SCALE, e1y = (by - ay) * RT_NORMAL_SCALE, e1z = (bz - az) * RT_NORMAL_SCALE;
+    const float e2x = (cx - ax) * RT_NORMAL_SCALE, e2y = (cy - ay) * RT_NORMAL_SCALE, e2z = (cz - az) * RT_NORMAL_SCALE;
     *nx = e1y * e2z - e1z * e2y;
     *ny = e1z * e2x - e1x * e2z;
     *nz = e1x * e2y - e1y * e2x;

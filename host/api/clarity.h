@@ -77,6 +77,8 @@ typedef struct clarity_rays {
     int32_t type; /* of all four arrays */
     uint64_t count;
     const void *origins; /* in the coordinates of the files, also far from 0 */
+    /* A ray hits nothing if its direction is zero, or not finite in single precision, or has no component of at least 2^-60. Any other
+     * length is right, and t counts in it. */
     const void *directions;
     const void *t_min; /* NULL: 0 */
     const void *t_max; /* NULL: infinity */

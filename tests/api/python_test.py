@@ -11,7 +11,7 @@ import unittest
 import numpy as np
 
 import clarity
-from python_case import QUICK, STRUCTURES, Case, some_rays, text_of
+from python_case import Case, QUICK, STRUCTURES, some_rays, soup, text_of
 
 
 class Hits(Case):
@@ -306,6 +306,38 @@ print(ten - before, peak() - before)
                 sys.setprofile(None)
             with self.subTest(name=name):
                 self.assertTrue(8 < len(steps) < limit, steps)
+
+    def test_of_directions_that_are_none_are_none(self):
+        vertices, faces = soup(300, 3)
+        origins, directions = some_rays(400, 4)
+        nan, infinity = np.nan, np.inf
+        none = np.array([[0, 0, 0], [-0., 0, -0.], [nan, 0, -1], [1, nan, nan], [0, 0, -infinity], [infinity, 1, 0], [1e-40, 0, 0],
+                         [-8e-19, 8e-19, 0], [0, 1e300, 0]])
+        mixed, none = np.array(directions, np.float64), none[np.arange(200) % len(none)]
+        mixed[1::2] = none
+        rt = clarity.Scene(vertices, faces).on(accel="bvh2")
+        right, counts = rt.closest(origins, directions), rt.count(origins, directions)
+        self.assertGreater(right.mask[1::2].sum(), 50)
+        with np.errstate(over="ignore"):
+            narrow = mixed.astype(np.float32)
+        for given in (narrow, mixed):
+            with self.subTest(type=given.dtype):
+                hit = rt.closest(origins, given)
+                np.testing.assert_array_equal(hit.t[::2], right.t[::2])
+                self.assertTrue(np.all(np.isinf(hit.t[1::2])) and np.all(hit.prim[1::2] == -1))
+                self.assertFalse(rt.any(origins, given)[1::2].any() or rt.any(rt.pack(origins, given))[1::2].any())
+                np.testing.assert_array_equal(rt.count(origins, given), np.where(np.arange(400) % 2, 0, counts))
+                self.assertFalse(np.any(rt.all(origins, given).ray % 2))
+        for direction in none[:9]:
+            self.assertEqual(rt.closest(origins[0], direction).t, infinity)
+        for power in (-50, -20, 20, 60, 110):  # any other length is right
+            with self.subTest(power=power):
+                hit = rt.closest(origins, np.ldexp(directions, power))
+                np.testing.assert_array_equal(hit.prim, right.prim)
+                np.testing.assert_array_equal(np.ldexp(hit.t, power), right.t)
+                np.testing.assert_array_equal(rt.count(origins, np.ldexp(directions, power)), counts)
+                np.testing.assert_array_equal(rt.all(origins, np.ldexp(directions, power)).t,
+                                              np.ldexp(rt.all(origins, directions).t, -power))
 
     def test_far_from_the_origin_keep_their_digits(self):
         far = np.array([5e6, -3e6, 7e6])
