@@ -162,7 +162,7 @@ int32_t clarity_scene_bounds(const clarity_scene *scene, double lo[3], double hi
 int32_t clarity_tracer_new(const clarity_scene *scene, const clarity_options *options, const clarity_watch *watch, clarity_tracer **tracer);
 void clarity_tracer_free(clarity_tracer *tracer);
 /* As JSON: its device and structure, as the keys of `clarity render --stats` say, and of its ray queries so far `rays`, `device_ms`, and
- * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until the next call for this tracer or its end. */
+ * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until this thread asks for it again, or the tracer's end. */
 int32_t clarity_tracer_info(clarity_tracer *tracer, const char **json);
 int32_t clarity_closest(clarity_tracer *tracer, const clarity_rays *rays, const clarity_hits *hits, const clarity_watch *watch);
 /* Rays that are traced often: they are read from the arrays once, and stay on the tracer's device, 32 bytes each. They serve
