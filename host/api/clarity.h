@@ -1,7 +1,8 @@
 /* clarity.h -- Clarity as a library: scenes, ray queries and pictures from C, and through it from other languages. C99.
  *
  * - A function returns CLARITY_OK or another code below. After another code clarity_error_text() tells what was tried, why it failed
- *   and what to do, and results are as they were before the call. Nothing is printed and nothing ends the process.
+ *   and what to do, and results are as they were before the call; arrays of more than 1,024 rays may have the first hits of a call that
+ *   was cancelled or failed on the way. Nothing is printed and nothing ends the process.
  * - Texts are UTF-8. Devices, structures and settings are the texts of the command line: "gpu", "bvh4,max_leaf=4", "spp=16".
  * - A struct begins with its size in bytes, which the caller sets: sizeof of the caller's header. Later versions append fields, and 0 in
  *   a field means what it meant before the field was there. So set the other fields to 0 first.

@@ -72,6 +72,10 @@ class Query {
     size_t count() const { return traced().size(); }
     void expect(int32_t code, const char* words) { code_ = code, words_ = words; }
     bool expects_work() const { return code_ == CLARITY_OK; }
+    // A failed call has left these bytes alone. Calls with many rays may be cancelled when the first ones are done.
+    void must_leave(const Step& step, const Bytes& bytes, int32_t code) const {
+        step.must(bytes.is_untouched() || (code == CLARITY_CANCELLED && count() > 1024), "a failed call has written results");
+    }
     // The call has ended.
     void ended(const Step& step, int32_t code) const {
         const bool stops = watch_.kind == Watch::Kind::cancelled || watch_.kind == Watch::Kind::cancels_soon;
@@ -155,7 +159,7 @@ void closest(Step& step) {
     }
     query.ended(step, code);
     if (code != CLARITY_OK) {
-        for (const Bytes& bytes : arrays) step.must(bytes.is_untouched(), "a failed call has written hits");
+        for (const Bytes& bytes : arrays) query.must_leave(step, bytes, code);
         return;
     }
     if (!hits.t) return;
@@ -186,7 +190,7 @@ void any(Step& step) {
         code = clarity_any(nullptr, query.rays(), to, query.watch());
     }
     query.ended(step, code);
-    if (code != CLARITY_OK) return step.must(occluded.is_untouched(), "a failed call has written");
+    if (code != CLARITY_OK) return query.must_leave(step, occluded, code);
     const std::string why = compared(worlds, query.count(), [&](const World& world, size_t i) {
         if (to[i] > 1) return "occluded is " + std::to_string(to[i]);
         return fault_of_any(world, query.traced()[i], to[i] == 1);
@@ -213,7 +217,7 @@ void count_hits(Step& step) {
         code = clarity_count(nullptr, query.rays(), to, query.watch());
     }
     query.ended(step, code);
-    if (code != CLARITY_OK) return step.must(counts.is_untouched(), "a failed call has written counts");
+    if (code != CLARITY_OK) return query.must_leave(step, counts, code);
     const std::string why = compared(
         worlds, query.count(), [&](const World& world, size_t i) { return fault_of_count(world, query.traced()[i], to[i]); });
     if (!why.empty()) step.fail(tracer->accel + ": " + why);
