@@ -1,7 +1,8 @@
 /* clarity.h -- Clarity as a library: scenes, ray queries and pictures from C, and through it from other languages. C99.
  *
  * - A function returns CLARITY_OK or another code below. After another code clarity_error_text() tells what was tried, why it failed
- *   and what to do, and results are as they were before the call. Nothing is printed and nothing ends the process.
+ *   and what to do, and results are as they were before the call; arrays of more than 1,024 rays may have the first hits of a call that
+ *   was cancelled or failed on the way. Nothing is printed and nothing ends the process.
  * - Texts are UTF-8. Devices, structures and settings are the texts of the command line: "gpu", "bvh4,max_leaf=4", "spp=16".
  * - A struct begins with its size in bytes, which the caller sets: sizeof of the caller's header. Later versions append fields, and 0 in
  *   a field means what it meant before the field was there. So set the other fields to 0 first.
@@ -164,7 +165,7 @@ int32_t clarity_scene_bounds(const clarity_scene *scene, double lo[3], double hi
 int32_t clarity_tracer_new(const clarity_scene *scene, const clarity_options *options, const clarity_watch *watch, clarity_tracer **tracer);
 void clarity_tracer_free(clarity_tracer *tracer);
 /* As JSON: its device and structure, as the keys of `clarity render --stats` say, and of its ray queries so far `rays`, `device_ms`, and
- * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until the next call for this tracer or its end. */
+ * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until this thread asks for it again, or the tracer's end. */
 int32_t clarity_tracer_info(clarity_tracer *tracer, const char **json);
 int32_t clarity_closest(clarity_tracer *tracer, const clarity_rays *rays, const clarity_hits *hits, const clarity_watch *watch);
 /* Rays that are traced often: they are read from the arrays once, and stay on the tracer's device, 32 bytes each. They serve

@@ -1,9 +1,11 @@
 // handles.hpp -- what the handles of the library hold.
 #pragma once
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "api/clarity.h"
@@ -96,11 +98,11 @@ struct clarity_tracer {
     bool of_arrays_;  // the scene is one mesh of the caller's
     clarity::PoseFollower follower_;
     bool vertices_moved_ = false;
-    std::string info_;
-    uint64_t rays_ = 0;                     // that were traced
-    double device_ms_ = 0;                  // for them
-    double traced_ms_ = 0;                  // since the last move
-    uint64_t id_ = clarity::new_packing();  // of this tracer, and of rays that it packs for one call
-    size_t batch_;                          // rays that are traced in one go
+    std::map<std::thread::id, std::string> infos_;  // the last one that each thread was told
+    uint64_t rays_ = 0;                             // that were traced
+    double device_ms_ = 0;                          // for them
+    double traced_ms_ = 0;                          // since the last move
+    uint64_t id_ = clarity::new_packing();          // of this tracer, and of rays that it packs for one call
+    size_t batch_;                                  // rays that are traced in one go
     std::optional<clarity::FrameRenderer> frames_;
 };

@@ -214,8 +214,10 @@ const char* clarity_tracer::info() {
                                    {"bytes_to_device", copies.bytes_written()},
                                    {"bytes_from_device", copies.bytes_read()}};
     for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = value;
-    info_ = json.dump(2);
-    return info_.c_str();
+    // Another thread may ask while this one still reads.
+    std::string& info = infos_[std::this_thread::get_id()];
+    info = json.dump(2);
+    return info.c_str();
 }
 
 void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {

@@ -225,6 +225,29 @@ static void test_threads(void) {
     CHECK(code == CLARITY_USAGE && strstr(clarity_error_text(), "`scene` is null"));
 }
 
+static void* ask_info(void* of) {
+    const float origin[] = {0.75f, 0.25f, 1}, direction[] = {0, 0, -1};
+    float t = 0;
+    const char* json = NULL;
+    const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
+    const clarity_rays query = one_ray(origin, direction);
+    WORKS(clarity_closest(of, &query, &hits, NULL)); /* so its text is another one */
+    for (int i = 0; i < 100; ++i) WORKS(clarity_tracer_info(of, &json));
+    return NULL;
+}
+
+/* What a thread was told about a tracer stays while another thread asks, too. */
+static void test_info(clarity_tracer* tracer) {
+    const char* json = NULL;
+    char copy[4096];
+    pthread_t other;
+    WORKS(clarity_tracer_info(tracer, &json));
+    CHECK(strlen(json) < sizeof copy);
+    snprintf(copy, sizeof copy, "%s", json);
+    CHECK(pthread_create(&other, NULL, ask_info, tracer) == 0 && pthread_join(other, NULL) == 0);
+    CHECK(strcmp(json, copy) == 0);
+}
+
 static void test_fork(clarity_scene* scene, clarity_tracer* tracer) {
     const pid_t child = fork();
     if (child == 0) {
@@ -272,6 +295,7 @@ int main(int argc, char** argv) {
     test_all_hits(scene);
     test_kept(scene, "lanes=1");
     test_kept(scene, "lanes=16");
+    test_kept_moved(scene);
     test_packed(scene);
     test_move(scene);
     test_rows();
@@ -279,6 +303,7 @@ int main(int argc, char** argv) {
     test_pictures(scene);
     test_watch(scene);
     test_threads();
+    test_info(tracer);
     test_fork(scene, tracer);
     clarity_tracer_free(tracer);
     clarity_scene_free(scene);
