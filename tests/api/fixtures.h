@@ -54,5 +54,6 @@ void test_packed(const clarity_scene* scene);
 void test_kept(const clarity_scene* scene, const char* lanes);
 void test_kept_moved(const clarity_scene* scene);
 void test_all_hits(const clarity_scene* scene);
+void test_turns(const clarity_scene* scene);
 
 #endif

@@ -293,6 +293,7 @@ int main(int argc, char** argv) {
     test_rays(scene, "bvh2", "lanes=1");
     test_rays(scene, "grid", "lanes=8");
     test_all_hits(scene);
+    test_turns(scene);
     test_kept(scene, "lanes=1");
     test_kept(scene, "lanes=16");
     test_kept_moved(scene);

@@ -368,3 +368,35 @@ void test_all_hits(const clarity_scene* scene) {
     CHECK(clarity_all(tracer, &query, &hits, &watch) == CLARITY_CANCELLED && !hits.owner);
     clarity_tracer_free(tracer);
 }
+
+/* Three turns through these structures, whose programs stay in the process: more than 16 of them, which come back. */
+void test_turns(const clarity_scene* scene) {
+    const char* const accels[] = {"bvh2",    "grid", "linear", "brute", "bvh4",   "bvh8", "cwbvh",
+                                  "spheres", "bsp",  "kdtree", "grid2", "octree", "lbvh", "ploc"};
+    const size_t count = getenv("CLARITY_QUICK_TESTS") ? 1 : sizeof accels / sizeof accels[0];
+    const float origins[] = {0.75f, 0.25f, 4, 3, 3, 4}, direction[] = {0, 0, -2};
+    clarity_rays query = one_ray(origins, direction);
+    query.count = 2;
+    query.origin_steps[0] = 3 * sizeof(float);
+    for (size_t i = 0; i < 3 * count; ++i) {
+        const clarity_options options = options_of(accels[i % count], NULL);
+        clarity_tracer* tracer = NULL;
+        WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+        float t[2] = {0};
+        int64_t counts[2] = {9, 9};
+        uint8_t occluded[2] = {9, 9};
+        const clarity_hits closest = hits_into(t, NULL, NULL, NULL);
+        clarity_all_hits all = {0};
+        all.struct_bytes = sizeof all;
+        WORKS(clarity_closest(tracer, &query, &closest, NULL));
+        WORKS(clarity_any(tracer, &query, occluded, NULL));
+        WORKS(clarity_count(tracer, &query, counts, NULL));
+        WORKS(clarity_all(tracer, &query, &all, NULL));
+        const int right = t[0] == 2 && isinf(t[1]) && occluded[0] == 1 && occluded[1] == 0 && counts[0] == 1 &&
+                          counts[1] == 0 && all.count == 1 && all.t[0] == 2;
+        if (!right) fprintf(report, "%s, turn %d\n", accels[i % count], (int)(i / count));
+        CHECK(right);
+        clarity_all_hits_free(&all);
+        clarity_tracer_free(tracer);
+    }
+}
