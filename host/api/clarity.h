@@ -11,7 +11,10 @@
  *   in ../../bin; clarity_set_program() or the variable CLARITY_WORKER name another one. Before drivers of OpenCL are loaded, it sets the
  *   variable POCL_CACHE_DIR of this process.
  * - After fork() the child gets CLARITY_FORKED from each call if the parent has used the library: drivers do not survive a fork. Start
- *   another program instead (in Python: multiprocessing with "spawn"). */
+ *   another program instead (in Python: multiprocessing with "spawn"). Calls of clarity_set_program() and
+ *   clarity_set_log() are no such use.
+ * - Functions of the caller, which hear of progress, rows and the log, get CLARITY_USAGE from each call: the library waits for them.
+ * - A process that ends while other threads trace calls clarity_end() first. */
 #ifndef CLARITY_H
 #define CLARITY_H
 #include <stdint.h>
@@ -29,6 +32,7 @@ enum {
     CLARITY_IMPORT_FAILED = 4,
     CLARITY_KERNEL_BUILD_FAILED = 5,
     CLARITY_FORKED = 6,
+    CLARITY_ENDED = 7, /* another thread has called clarity_end() */
     CLARITY_CANCELLED = 130
 };
 enum { CLARITY_FLOAT32 = 0, CLARITY_FLOAT64 = 1 };                                             /* types of numbers in arrays */
@@ -54,7 +58,8 @@ typedef struct clarity_watch {
 } clarity_watch;
 
 /* Triangles. The scene reads the arrays until it and all tracers of it are freed: they must not change or go before. Positions of
- * type CLARITY_FLOAT64 are copied during the call: they lie far from 0 where they need it, without a loss of digits. */
+ * type CLARITY_FLOAT64 are copied during the call: they lie far from 0 where they need it, without a loss of digits. Coordinates
+ * beyond 1e15 (float64: of the place that is subtracted) and a mesh smaller than 1e-13 are refused. */
 typedef struct clarity_mesh {
     uint32_t struct_bytes;
     int32_t type; /* of positions */
@@ -151,8 +156,14 @@ const char *clarity_error_details(void);
 
 /* The program `clarity`; before all other calls but the above. */
 int32_t clarity_set_program(const char *path);
+/* A digest of bytes as text: 32 digits in hexadecimal and a 0. Equal bytes have equal digests. It is found about as fast as memory is
+ * read: so a caller who was lent an array can tell later whether it is as it was. */
+int32_t clarity_digest(const void *bytes, uint64_t count, char digest[33]);
 /* Gets the lines of the log, from any thread, those of CLARITY_LOG_DEBUG too. NULL: nobody does. */
 int32_t clarity_set_log(void (*log)(void *user, int32_t level, const char *text), void *user);
+/* Before a process ends whose other threads may be in a call: cancels these calls and waits for them, 10 s at most. Further calls of
+ * other threads return CLARITY_ENDED, and what they free stays. This thread may go on. */
+int32_t clarity_end(void);
 
 int32_t clarity_scene_load(const char *const *files, uint64_t count, const clarity_watch *watch, clarity_scene **scene);
 int32_t clarity_scene_from_mesh(const clarity_mesh *mesh, const clarity_watch *watch, clarity_scene **scene);

@@ -77,6 +77,8 @@ struct clarity_tracer {
     // With the lock. all: where all answers go; null: to `take`.
     void trace(const clarity_rays& rays, const clarity::RayQuery& query, const TakeAnswers& take, const clarity::Answers* all);
     void check(const clarity_rays& rays) const;
+    // The caller may have written to arrays that were lent: builders and kernels trust their numbers. Throws Error(usage).
+    void check_arrays() const;
     clarity::RayQuery query_of(const clarity_rays& rays, Wanted wanted, clarity::Progress& progress) const;
     // Of the rays from `begin` on.
     clarity::ReadRays reader(const clarity_rays& rays, size_t begin) const;

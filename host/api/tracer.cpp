@@ -71,6 +71,22 @@ std::shared_ptr<Device> open_device(const std::string& choice) {
     return std::make_shared<Device>(choose_device(choice));
 }
 
+// A setting that does nothing for the picture is a mistake of the caller, which nothing else would tell; but `off` is what
+// there is. texts: of the call; the tracer's own settings serve other pictures, too.
+void check_used(const char* const* texts, const Settings& settings) {
+    for (; texts && *texts; ++texts) {
+        const std::string pair = *texts, key = pair.substr(0, pair.find('='));
+        const Setting* const setting = find_setting(key);
+        if (!setting || setting->get(settings) == "off") continue;
+        if (!setting->used(settings))
+            throw Error(Exit::usage, "setting `" + key + "`: it is for the tracer `" + setting->picture +
+                                         "` alone, and this picture is by `" + settings.tracer +
+                                         "`: add tracer=" + setting->picture + ", or leave it out");
+        if (key == "denoise" && settings.denoise == "on" && !denoises(settings))
+            throw Error(Exit::usage, "setting `denoise`: it filters colours, and this picture shows `" + settings.aov + "`");
+    }
+}
+
 rt_u32 mask_of(const clarity_rays& rays) {
     return rays.mask ? rays.mask : RT_SEEN_BY_ALL;
 }
@@ -91,9 +107,16 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
       keeping_(std::make_shared<KeepingDevice>(queries_.copies())),
       of_arrays_(scene.of_arrays),
       batch_(kFirstBatch) {
+    check_arrays();
     const auto accel = preparer_.build(placed_, settings_, progress);
     prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
     prepared_id_ = new_packing();
+}
+
+void clarity_tracer::check_arrays() const {
+    if (!of_arrays_) return;
+    if (const Problem why = validate(*placed_))
+        throw Error(Exit::usage, "the arrays of the scene were changed after it was made, and are no mesh now: " + why.text());
 }
 
 void clarity_tracer::check(const clarity_rays& rays) const {
@@ -300,6 +323,10 @@ void clarity_tracer::render(const clarity_picture& asked, clarity_picture& pictu
     Words words{settings_, {}};
     read_words(asked.settings, words);
     Settings& settings = words.settings;
+    check_used(asked.settings, settings);
+    const char* const of_tracer[] = {"denoise=on", nullptr};
+    if (settings_.denoise == "on" && settings.tracer == settings_.tracer && settings.aov == settings_.aov)
+        check_used(of_tracer, settings);
     const unsigned channels = find_aov(settings.aov).value_channels();
     const uint64_t floats = uint64_t(settings.width) * uint64_t(settings.height) * channels;
     const std::lock_guard<std::mutex> lock(keeping_->calls);
