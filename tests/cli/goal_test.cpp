@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
+#include "support/clock.hpp"
 #include "support/scratch.hpp"
 
 namespace {
@@ -63,8 +64,12 @@ TEST_F(Goal, AnErrorIsReachedWithTheSamplesThatItTakes) {
 TEST_F(Goal, ATimeIsKept) {
     const nlohmann::json some = stats({"--time-budget", "0.3"}), more = stats({"--time-budget", "1.2"});
     EXPECT_GT(some["samples"], 0);
-    EXPECT_GT(more["samples"], some["samples"]);
-    EXPECT_EQ(stats({"--time-budget", "0.001", "--spp", "100000"}).value("samples", 0) > 0, true);
+    const nlohmann::json least = stats({"--time-budget", "0.001", "--spp", "100000"});
+    EXPECT_GT(least.value("samples", 0), 0);
+    EXPECT_GT(more["samples"], least["samples"]);
+    if (clarity::test::clocks_count()) {
+        EXPECT_GT(more["samples"], some["samples"]);
+    }
 }
 
 TEST_F(Goal, IsRecorded) {
