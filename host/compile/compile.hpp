@@ -3,6 +3,8 @@
 // A program is compiled in a worker process first (host/worker), if compiles_in_worker(). Then the host gets it: as a binary
 // from the worker, or, where PoCL is slow to give one, as what PoCL has written into its cache (program_store.hpp). Programs
 // that were compiled once are known on disk (program_store.hpp), and need no worker.
+//
+// Where the compiler crashes, a warning says so, and the program is compiled without the compiler's optimiser.
 #pragma once
 #include <string>
 
