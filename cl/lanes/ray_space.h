@@ -60,19 +60,31 @@ RT_INLINE vfloat rt_pick(float4 quad, vint axis)
 #endif
 }
 
-/* A corner in the ray space of each lane. quad: the three numbers at `corner`, and any fourth. */
-RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, float4 quad, vfloat *x, vfloat *y, vfloat *z)
+/* A corner in the ray space of each lane, where all lanes have one dominant axis. */
+RT_INLINE void rt_to_ray_space_of_one_axis(const rt_rays *r, const global float *corner, vfloat *x, vfloat *y, vfloat *z)
 {
 #pragma OPENCL FP_CONTRACT OFF
-    if (r->same_axis) {
-        *z = r->pz - rt_vfloat(corner[r->kz]);
-        *x = RT_SHEARED(r->sx, *z, r->px, rt_vfloat(corner[r->kx]));
-        *y = RT_SHEARED(r->sy, *z, r->py, rt_vfloat(corner[r->ky]));
-    } else {
-        *z = r->pz - rt_pick(quad, r->axis_z);
-        *x = RT_SHEARED(r->sx, *z, r->px, rt_pick(quad, r->axis_x));
-        *y = RT_SHEARED(r->sy, *z, r->py, rt_pick(quad, r->axis_y));
-    }
+    *z = r->pz - rt_vfloat(corner[r->kz]);
+    *x = RT_SHEARED(r->sx, *z, r->px, rt_vfloat(corner[r->kx]));
+    *y = RT_SHEARED(r->sy, *z, r->py, rt_vfloat(corner[r->ky]));
+}
+
+/* The same where they have several. quad: the three numbers of the corner, and any fourth. */
+RT_INLINE void rt_to_ray_space_of_axes(const rt_rays *r, float4 quad, vfloat *x, vfloat *y, vfloat *z)
+{
+#pragma OPENCL FP_CONTRACT OFF
+    *z = r->pz - rt_pick(quad, r->axis_z);
+    *x = RT_SHEARED(r->sx, *z, r->px, rt_pick(quad, r->axis_x));
+    *y = RT_SHEARED(r->sy, *z, r->py, rt_pick(quad, r->axis_y));
+}
+
+/* The same of all rays. quad: the three numbers at `corner`, and any fourth. */
+RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, float4 quad, vfloat *x, vfloat *y, vfloat *z)
+{
+    if (r->same_axis)
+        rt_to_ray_space_of_one_axis(r, corner, x, y, z);
+    else
+        rt_to_ray_space_of_axes(r, quad, x, y, z);
 }
 
 #else

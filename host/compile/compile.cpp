@@ -31,12 +31,87 @@ std::optional<cl::Program> program_of(Device& device, const std::vector<char>& b
     }
 }
 
+// A program for one device. options: of the request, and what else the compiler is told.
+struct DeviceRequest {
+    DeviceRequest(const DeviceInfo& of, const CompileRequest& what, const char* more_options = "")
+        : info(of), request(what), options(what.options + more_options), key(program_key(of, what.source, options)) {}
+    const DeviceInfo& info;
+    const CompileRequest& request;
+    const std::string options, key;
+};
+
+BuildResult build_here(Device& device, const DeviceRequest& wanted) {
+    return build_program(device, wanted.request.source, wanted.options, wanted.request.what);
+}
+
 // Compiles a program that is not on disk, and keeps it there.
-CompileOutcome compile_first(const DeviceInfo& info, const CompileRequest& request, Progress& progress) {
-    CompileOutcome outcome = compile_in_worker(info, request.source, request.options, request.what, progress);
-    if (outcome.state == CompileOutcome::compiled)
-        keep_program(program_key(info, request.source, request.options), outcome.binary);
+CompileOutcome compile_first(const DeviceRequest& wanted, Progress& progress) {
+    CompileOutcome outcome =
+        compile_in_worker(wanted.info, wanted.request.source, wanted.options, wanted.request.what, progress);
+    if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
     return outcome;
+}
+
+// The program from its binary, or compiled here if that is empty or refused.
+BuildResult take(Device& device, const DeviceRequest& wanted, const std::vector<char>& binary) {
+    if (!binary.empty()) {
+        BuildResult result;
+        if (auto program = program_of(device, binary, wanted.options)) {
+            result.program = *program;
+            return result;
+        }
+        forget_program(wanted.key);
+    }
+    set_aside(wanted.key);
+    BuildResult built = build_here(device, wanted);
+    put_back(wanted.key);
+    return built;
+}
+
+// A program that was compiled before.
+std::optional<BuildResult> load(Device& device, const DeviceRequest& wanted) {
+    const auto stored = find_program(wanted.key);
+    if (!stored) return std::nullopt;
+    return take(device, wanted, *stored);
+}
+
+BuildResult compile(Device& device, const DeviceRequest& wanted, Progress& progress) {
+    const CompileOutcome outcome = compile_first(wanted, progress);
+    if (outcome.state == CompileOutcome::failed)
+        throw build_error(wanted.info, wanted.request.what, outcome.error, outcome.log);
+    if (outcome.state == CompileOutcome::no_device)
+        log(LogLevel::debug, "compiling in this process: the worker cannot open the device: " + outcome.log);
+    BuildResult result = take(device, wanted, outcome.binary);
+    result.log = outcome.log;
+    return result;
+}
+
+// LLVM 18, which PoCL 6.0 uses, ends the process where one of its passes has more to do when it is run again ("Instruction
+// Combining did not reach a fixpoint"). No text of ours can rule that out. So where a compiler crashes, the program is compiled
+// without the compiler's optimiser. Its pictures are the same, and take longer.
+constexpr const char* kNoOptimiser = " -cl-opt-disable";
+
+// Returns load(program), or, where that gives nothing, compile(program). If the compiler crashes at it, or has done so before,
+// the program is the one without the optimiser: it alone is kept then, which tells later starts. Throws the first
+// CompilerCrashed if there are two.
+template <class Load, class Compile>
+auto compile_in_spite_of_crashes(const DeviceInfo& info, const CompileRequest& request, const Load& load,
+                                 const Compile& compile) {
+    const DeviceRequest wanted(info, request);
+    if (auto loaded = load(wanted)) return *loaded;
+    const DeviceRequest plain(info, request, kNoOptimiser);
+    if (auto loaded = load(plain)) return *loaded;
+    try {
+        return compile(wanted);
+    } catch (const CompilerCrashed& crash) {
+        log(LogLevel::warning,
+            std::string(crash.what()) + "; compiling again without the compiler's optimiser, so pictures will take longer");
+        try {
+            return compile(plain);
+        } catch (const CompilerCrashed&) {
+            throw crash;
+        }
+    }
 }
 
 }  // namespace
@@ -44,43 +119,25 @@ CompileOutcome compile_first(const DeviceInfo& info, const CompileRequest& reque
 BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const timeline::Scope span("compile", [&] { return "compile " + request.what; });
-    const DeviceInfo& info = device.info();
-    const auto here = [&] {
-        BuildResult built = build_program(device, request.source, request.options, request.what);
-        built.ms = ms_since(start);
-        return built;
-    };
-    if (!compiles_in_worker()) return here();
-    const std::string key = program_key(info, request.source, request.options);
-    BuildResult result;
-    std::optional<std::vector<char>> binary = find_program(key);
-    if (!binary) {
-        CompileOutcome outcome = compile_first(info, request, progress);
-        if (outcome.state == CompileOutcome::failed) throw build_error(info, request.what, outcome.error, outcome.log);
-        if (outcome.state == CompileOutcome::no_device)
-            log(LogLevel::debug, "compiling in this process: the worker cannot open the device: " + outcome.log);
-        result.log = outcome.log;
-        binary = std::move(outcome.binary);
-    }
-    if (!binary->empty()) {
-        auto program = program_of(device, *binary, request.options);
-        if (program) {
-            result.program = *program;
-            result.ms = ms_since(start);
-            return result;
-        }
-        forget_program(key);
-    }
-    set_aside(key);
-    BuildResult built = here();
-    put_back(key);
+    if (!compiles_in_worker()) return build_program(device, request.source, request.options, request.what);
+    BuildResult built = compile_in_spite_of_crashes(
+        device.info(), request, [&](const DeviceRequest& wanted) { return load(device, wanted); },
+        [&](const DeviceRequest& wanted) { return compile(device, wanted, progress); });
+    built.ms = ms_since(start);
     return built;
 }
 
 void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress) {
     if (!compiles_in_worker() || !keeps_programs()) return;
+    struct Kept {};
     try {
-        if (!find_program(program_key(info, request.source, request.options))) compile_first(info, request, progress);
+        compile_in_spite_of_crashes(
+            info, request,
+            [](const DeviceRequest& wanted) { return find_program(wanted.key) ? std::optional<Kept>(Kept()) : std::nullopt; },
+            [&](const DeviceRequest& wanted) {
+                compile_first(wanted, progress);
+                return Kept();
+            });
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& e) {

@@ -3,6 +3,8 @@
 // A program is compiled in a worker process (host/worker), if compiles_in_worker(), and the host loads the binary that the
 // worker gives. Programs that were compiled once are known on disk (program_store.hpp), and need no worker. A driver that gives
 // no binary compiles a second time in this process, where it did no harm in the worker.
+//
+// Where the compiler crashes, a warning says so, and the program is compiled without the compiler's optimiser.
 #pragma once
 #include <string>
 

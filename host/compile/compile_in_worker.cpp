@@ -41,7 +41,10 @@ class Compilation : public worker::Job {
             run(job, outcome, progress);
             return outcome;
         } catch (const worker::JobDied& died) {
-            throw Error(died.code(), std::string(died.what()) + " (" + doing() + "); " + kSimplerForms, log_);
+            const std::string message = std::string(died.what()) + " (" + doing() + "); " + kSimplerForms;
+            if (died.cause == worker::Cause::crashed || died.cause == worker::Cause::exited)
+                throw CompilerCrashed(died.code(), message, log_);
+            throw Error(died.code(), message, log_);
         }
     }
 
