@@ -123,6 +123,7 @@ int32_t run(bool is_light, const std::function<void()>& call) noexcept {
                           "this process was forked from one that had used the library, and OpenCL drivers do not "
                           "survive that: start another program instead, or fork before the first call");
         call();
+        if (!failure().text.empty()) failure() = {};  // of a refused call of the caller's function
         return CLARITY_OK;
     } catch (const Cancelled& e) {
         return is_refused() ? refused_at_end() : failed(CLARITY_CANCELLED, e.what());
