@@ -96,7 +96,9 @@ def some_count(random):
     return random.choice([0, 1, 2, 5, 16, 17, 40, 200]) if random.random() < 0.95 else random.choice([4096, 5000, 20000])
 
 
-WRONG_NUMBERS = [None, "text", object(), [[1, 2]], [[1, 2, 3], [1, 2]], np.zeros((2, 4)), np.zeros(3, complex), {}, b"bytes", np.array(["a", "b", "c"])]
+WRONG_NUMBERS = [
+    None, "text", object(), [[1, 2]], [[1, 2, 3], [1, 2]], np.zeros((2, 4)), np.zeros(3, complex), {}, b"bytes", np.array(["a", "b"]),
+]
 
 
 class Sequences(Case):
@@ -106,7 +108,8 @@ class Sequences(Case):
         t, prim = np.asarray(hit.t), np.asarray(hit.prim)
         some = slice(None) if len(origins) <= 500 else slice(None, None, 53)
         o, d = origins[some], directions[some]
-        limits = [np.broadcast_to(np.float32(default if limit is None else limit), len(origins))[some][:, None] for limit, default in ((t_min, 0), (t_max, np.inf))]
+        limits = [0 if t_min is None else t_min, np.inf if t_max is None else t_max]
+        limits = [np.broadcast_to(np.float32(limit), len(origins))[some][:, None] for limit in limits]
         why = None
         for vertices in worlds:
             ray, found, at, narrow = brute_force(vertices, thing.faces, o, d, *limits)
@@ -138,11 +141,11 @@ class Sequences(Case):
         bad = faces.copy()
         bad[1, 1] = random.choice([9, -1, 2**31, 2**40])
         infinite = vertices.copy()
-        infinite[4, 1] = random.choice([np.nan, np.inf, 1e30])
-        arguments = random.choice([(vertices, bad), (infinite, faces), (vertices, faces.astype(float)), (vertices[:, :2], faces), (vertices, faces[0]),
-                                   (random.choice(WRONG_NUMBERS), faces), (vertices, random.choice(WRONG_NUMBERS))])
+        infinite[4, 1] = random.choice([np.nan, np.inf])
+        wrong = random.choice(WRONG_NUMBERS)
+        arguments = [(vertices, bad), (infinite, faces), (vertices, faces.astype(float)), (vertices[:, :2], faces), (vertices, faces[0])]
         with self.assertRaises((clarity.UsageError, TypeError)):
-            clarity.Scene(*arguments)
+            clarity.Scene(*random.choice(arguments + [(wrong, faces), (vertices, wrong)]))
 
     def load(self, s, random):
         if random.random() < 0.5:
@@ -157,14 +160,17 @@ class Sequences(Case):
             return
         accel = random.choice(STRUCTURES)
         rt = of.scene.on(accel=accel, **random.choice([{}, {"poses": "refit"}, {"poses": "build"}]))
-        put(random, s.tracers, Thing(rt=rt, scene=of.scene, faces=of.faces, accel=accel, of_file=of.of_file, worlds=[of.vertices], moved=0, at=of.vertices, shift=np.zeros(3, np.float32), moving=threading.Lock()))
+        # worlds: vertices of all moves so far; those from `moved` on are there, or will be at once.
+        thing = Thing(rt=rt, scene=of.scene, faces=of.faces, accel=accel, of_file=of.of_file, worlds=[of.vertices], moved=0)
+        thing.at, thing.shift, thing.moving = of.vertices, np.zeros(3, np.float32), threading.Lock()
+        put(random, s.tracers, thing)
 
     def wrong_tracer(self, s, random):
         of = taken(random, s.scenes)
         if of:
-            words = random.choice([{"accel": "no_such_tree"}, {"device": "no such device"}, {"no_such_setting": 1}, {"spp": "many"}, {"light.0": "off"}])
+            words = [{"accel": "no_such_tree"}, {"device": "no such device"}, {"no_such_setting": 1}, {"spp": "many"}, {"light.0": "off"}]
             with self.assertRaises((clarity.UsageError, clarity.DeviceError, ValueError)):
-                of.scene.on(**words)
+                of.scene.on(**random.choice(words))
 
     def traced(self, s, random, call):
         """A tracer, some rays, and what `call` gives for them, with the places that the scene may have had meanwhile."""
@@ -265,10 +271,10 @@ class Sequences(Case):
             return
         origins, directions, _, _ = rays(random, 3)
         call = random.choice([thing.rt.closest, thing.rt.any, thing.rt.count, thing.rt.all])
-        arguments = random.choice([(random.choice(WRONG_NUMBERS), directions), (origins, random.choice(WRONG_NUMBERS)), (origins[:2], directions),
-                                   (origins, directions, np.zeros(2)), (origins, directions, "far")])
+        wrong = random.choice(WRONG_NUMBERS)
+        arguments = [(wrong, directions), (origins, wrong), (origins[:2], directions), (origins, directions, np.zeros(2)), (origins, directions, "far")]
         with self.assertRaises((clarity.UsageError, TypeError)):
-            call(*arguments)
+            call(*random.choice(arguments))
         with self.assertRaises((clarity.UsageError, TypeError)):
             call(origins, directions, mask=random.choice([0, 256, -1, 2**40, 1.5, "all"]))
         if call == thing.rt.any:
@@ -305,10 +311,10 @@ class Sequences(Case):
     def wrong_move(self, s, random):
         thing = taken(random, s.tracers)
         if thing:
-            arguments = random.choice([{}, {"vertices": np.zeros((7, 3))}, {"vertices": np.full((len(thing.worlds[0]), 3), np.nan)}, {"instances": np.eye(4)},
-                                       {"instances": np.zeros((1, 3, 4))}, {"vertices": random.choice(WRONG_NUMBERS[1:])}])
+            places = [np.zeros((7, 3)), np.full((len(thing.worlds[0]), 3), np.nan), random.choice(WRONG_NUMBERS[1:])]
+            places = [{}, {"instances": np.eye(4)}, {"instances": np.zeros((1, 3, 4))}] + [{"vertices": place} for place in places]
             with self.assertRaises((clarity.UsageError, TypeError)):
-                thing.rt.move(**arguments)
+                thing.rt.move(**random.choice(places))
 
     def info(self, s, random):
         thing = taken(random, s.tracers)
@@ -333,8 +339,9 @@ class Sequences(Case):
             gc.collect()
 
     CALLS = {
-        "new_scene": 3, "wrong_scene": 1, "load": 0.05, "new_tracer": 3, "wrong_tracer": 0.5, "closest": 12, "closest_again": 6, "read_late": 6, "any": 4, "all": 4,
-        "read_list": 3, "pack": 3, "packed_elsewhere": 1, "wrong_rays": 3, "move": 2, "wrong_move": 1, "info": 2, "cancelled": 0.5, "let_go": 4,
+        "new_scene": 3, "wrong_scene": 1, "load": 0.05, "new_tracer": 3, "wrong_tracer": 0.5, "closest": 12, "closest_again": 6,
+        "read_late": 6, "any": 4, "all": 4, "read_list": 3, "pack": 3, "packed_elsewhere": 1, "wrong_rays": 3, "move": 2,
+        "wrong_move": 1, "info": 2, "cancelled": 0.5, "let_go": 4,
     }
 
     def run_sequence(self, number):
@@ -350,7 +357,8 @@ class Sequences(Case):
                 try:
                     getattr(self, steps[i])(sequence, random.Random(seeds[i]))
                 except BaseException as failure:
-                    failure.args = (f"CLARITY_SEQUENCES_SEED={SEED} CLARITY_SEQUENCES_FIRST={number}, step {i}, {steps[i]}, {sequence.threads} threads: {failure}",)
+                    where = f"CLARITY_SEQUENCES_SEED={SEED} CLARITY_SEQUENCES_FIRST={number}, step {i}, {steps[i]}, {sequence.threads} threads"
+                    failure.args = (f"{where}: {failure}",)
                     failures.append(failure)
                     return
 

@@ -129,6 +129,19 @@ const void* RayArrays::lay_out(Draw& draw, const std::vector<double>& numbers, s
     return begin;
 }
 
+// Positions as numbers of a type, and what the library makes of them.
+Bytes positions_as(bool is_double, std::vector<Point>& positions) {
+    Bytes bytes(positions.size() * 3 * (is_double ? 8 : 4));
+    for (size_t i = 0; i < positions.size(); ++i)
+        for (size_t k = 0; k < 3; ++k) {
+            if (is_double)
+                bytes.as<double>()[3 * i + k] = positions[i][k];
+            else
+                positions[i][k] = bytes.as<float>()[3 * i + k] = float(positions[i][k]);
+        }
+    return bytes;
+}
+
 Watch::Watch(Draw& draw, bool may) : kind(drawn(draw, may)), watch_(draw, clarity_watch{}) {
     clarity_watch& watch = *watch_.get();
     *cancel_.as<int32_t>() = kind == Kind::cancelled ? 1 : 0;
@@ -143,6 +156,19 @@ Watch::Kind Watch::drawn(Draw& draw, bool may) {
     if (draw.chance(0.6)) return Kind::none;
     if (!may || draw.chance(0.7)) return Kind::looks_on;
     return draw.one_of({Kind::cancelled, Kind::cancels_soon, Kind::wrong});
+}
+
+void Watch::ended(const Step& step, int32_t code, bool done_at_once) const {
+    switch (kind) {
+        case Kind::wrong:
+            return step.ended(code, CLARITY_USAGE, "clarity_watch::struct_bytes");
+        case Kind::cancelled:
+            return step.ended(code, CLARITY_CANCELLED, "", done_at_once);
+        case Kind::cancels_soon:
+            return step.ended(code, CLARITY_CANCELLED, "", true);
+        default:
+            step.ended(code);
+    }
 }
 
 int32_t Watch::tell(void* user, const char* stage, float fraction) {

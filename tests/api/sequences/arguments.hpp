@@ -40,6 +40,9 @@ class RayArrays {
 };
 size_t some_count(Draw& draw);
 
+// Positions as numbers of a type. They become what the library makes of them.
+Bytes positions_as(bool is_double, std::vector<Point>& positions);
+
 // A watch, or none.
 class Watch {
  public:
@@ -48,6 +51,8 @@ class Watch {
     Watch(Draw& draw, bool may);
     const clarity_watch* get() const { return kind == Kind::none ? nullptr : watch_.get(); }
     Kind kind;
+    // The call has ended, which had no other mistake. done_at_once: it may be too quick for a cancel.
+    void ended(const Step& step, int32_t code, bool done_at_once = false) const;
 
  private:
     static Kind drawn(Draw& draw, bool may);

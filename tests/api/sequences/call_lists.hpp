@@ -4,6 +4,6 @@
 
 namespace sequences {
 
-extern const std::vector<Call> kSceneCalls, kRayCalls, kOtherCalls;
+extern const std::vector<Call> kSceneCalls, kTracerCalls, kRayCalls, kOtherCalls;
 
 }  // namespace sequences

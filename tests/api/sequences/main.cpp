@@ -88,7 +88,7 @@ struct Cost {
 class Run {
  public:
     explicit Run(Common common) : common_(std::move(common)) {
-        for (const auto* list : {&kSceneCalls, &kRayCalls, &kOtherCalls})
+        for (const auto* list : {&kSceneCalls, &kTracerCalls, &kRayCalls, &kOtherCalls})
             for (const Call& call : *list)
                 weights_.push_back((weights_.empty() ? 0 : weights_.back()) + call.weight), calls_.push_back(call);
         costs_ = std::make_unique<Cost[]>(calls_.size());
@@ -131,8 +131,10 @@ class Run {
     void run(State& state, uint64_t number, Doing& here) {
         Step step{state, common_, Draw(options.seed, number)};
         // The first steps of a sequence make something to work with.
-        const double at = number % kSteps < 4 ? (number % kSteps < 2 ? 0 : 6) : step.draw.real(0, weights_.back());
-        const auto i = static_cast<size_t>(std::upper_bound(weights_.begin(), weights_.end(), at) - weights_.begin());
+        const bool first = number % kSteps < 4;
+        const double at = step.draw.real(0, weights_.back());
+        const auto i = first ? (number % kSteps < 2 ? 0 : kSceneCalls.size())
+                             : static_cast<size_t>(std::upper_bound(weights_.begin(), weights_.end(), at) - weights_.begin());
         this_call = calls_[i].name, this_step = number;
         here.call = calls_[i].name;
         here.step = number;

@@ -50,15 +50,10 @@ void render(Step& step) {
         }
     ++calls_made;
     const int32_t code = clarity_render(tracer ? tracer->handle : nullptr, argument, watch.get());
-    const bool stops = watch.kind == Watch::Kind::cancelled || watch.kind == Watch::Kind::cancels_soon;
     if (wrong || !tracer)
         step.ended(code, CLARITY_USAGE, tracer ? words : "");
-    else if (watch.kind == Watch::Kind::wrong)
-        step.ended(code, CLARITY_USAGE, "clarity_watch::struct_bytes");
-    else if (stops && traces)
-        step.ended(code, CLARITY_CANCELLED, "", watch.kind == Watch::Kind::cancels_soon);
     else
-        step.ended(code);
+        watch.ended(step, code, !traces);
     if (code != CLARITY_OK) {
         step.must(pixels.is_untouched(), "a failed call has written pixels");
         return step.must(given.get()->width == 0 && given.get()->channels == 0, "a failed call has written a size");

@@ -64,24 +64,21 @@ class Query {
         argument_ = short_.size() ? short_.as<clarity_rays>() : given_.get();
         if (!tracer) expect(CLARITY_USAGE, "");
         if (wrong_) spoil(draw);
-        if (code_ == CLARITY_OK && watch_.kind == Watch::Kind::wrong) expect(CLARITY_USAGE, "clarity_watch::struct_bytes");
     }
     const clarity_rays* rays() const { return argument_; }
     const clarity_watch* watch() const { return watch_.get(); }
     const std::vector<Ray>& traced() const { return packed_ ? packed_->rays : arrays_->rays; }
     size_t count() const { return traced().size(); }
     void expect(int32_t code, const char* words) { code_ = code, words_ = words; }
-    bool expects_work() const { return code_ == CLARITY_OK; }
+    bool expects_work() const { return code_ == CLARITY_OK && watch_.kind != Watch::Kind::wrong; }
     // A failed call has left these bytes alone. Calls with many rays may be cancelled when the first ones are done.
     void must_leave(const Step& step, const Bytes& bytes, int32_t code) const {
         step.must(bytes.is_untouched() || (code == CLARITY_CANCELLED && count() > 1024), "a failed call has written results");
     }
     // The call has ended.
     void ended(const Step& step, int32_t code) const {
-        const bool stops = watch_.kind == Watch::Kind::cancelled || watch_.kind == Watch::Kind::cancels_soon;
-        if (code_ == CLARITY_OK && stops)  // no rays are done at once
-            return step.ended(code, CLARITY_CANCELLED, "", count() == 0 || watch_.kind == Watch::Kind::cancels_soon);
-        step.ended(code, code_, words_);
+        if (code_ != CLARITY_OK) return step.ended(code, code_, words_);
+        watch_.ended(step, code, count() == 0);
     }
 
  private:
