@@ -34,6 +34,8 @@ class GlWindow {
 
     bool closing() const;
     void close();
+    // For tests: how many seconds may be between the clicks of a double click; 0: as usual.
+    void set_double_click_s(float seconds) { double_click_s_ = seconds; }
     void hide();
     void set_title(const std::string& title);
     // Waits for events, at most `seconds`. Returns whether a callback of the window was called or a thread called wake().
