@@ -59,7 +59,7 @@ typedef struct clarity_watch {
 
 /* Triangles. The scene reads the arrays until it and all tracers of it are freed: they must not change or go before. Positions of
  * type CLARITY_FLOAT64 are copied during the call: they lie far from 0 where they need it, without a loss of digits. Coordinates
- * beyond 1e15 (float64: of the place that is subtracted) and a mesh smaller than 1e-13 are refused. */
+ * beyond 1e15 (float64: of the place that is subtracted) and a mesh smaller than 1e-17 are refused. */
 typedef struct clarity_mesh {
     uint32_t struct_bytes;
     int32_t type; /* of positions */

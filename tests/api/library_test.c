@@ -51,8 +51,8 @@ static void test_scenes(void) {
     bad = mesh_of(CLARITY_FLOAT32, not_finite);
     FAILS(clarity_scene_from_mesh(&bad, NULL, &scene), CLARITY_USAGE, "mesh of arrays");
     FAILS(clarity_scene_from_mesh(&bad, NULL, &scene), CLARITY_USAGE, "not finite: of vertex 1");
-    const double lengths[] = {2e15, 2e-16};
-    const char* const words[] = {"beyond 1e15", "less than 1e-13"};
+    const double lengths[] = {2e15, 2e-18};
+    const char* const words[] = {"beyond 1e15", "less than 1e-17"};
     for (int i = 0; i < 2; ++i) {
         double positions[12];
         float floats[12];

@@ -435,7 +435,7 @@ class Scenes(Case):
             (usage, "out: expected", lambda: rt.render(4, 4, out=np.zeros((4, 4), np.float32))),
             (usage, "a number is beyond 1e15: 1e.30 of vertex 0", lambda: clarity.Scene(np.eye(3) * 1e30, [[0, 1, 2]])),
             (usage, "a number is beyond 1e15: 1e.30 of vertex 0", lambda: clarity.Scene(np.eye(3, dtype="f") * np.float32(1e30), [[0, 1, 2]])),
-            (usage, "within 1e-30, less than 1e-13", lambda: clarity.Scene(np.eye(3) * 1e-30, [[0, 1, 2]])),
+            (usage, "within 1e-30, less than 1e-17", lambda: clarity.Scene(np.eye(3) * 1e-30, [[0, 1, 2]])),
         ):
             with self.subTest(words=words), self.assertRaisesRegex(kind, words):
                 wrong()

@@ -141,7 +141,9 @@ TEST_F(BenchCommand, BaselinesAreMeasuredIfTheSceneIsOnlyTriangles) {
         version = record["driver"];
         EXPECT_TRUE(std::regex_match(version, std::regex("Embree [34]\\.[0-9]+\\.[0-9]+"))) << version;
     }
-    if (expected) EXPECT_NE(result.out.find("peers: " + version + "\n"), std::string::npos) << result.out;
+    if (expected) {
+        EXPECT_NE(result.out.find("peers: " + version + "\n"), std::string::npos) << result.out;
+    }
     const ProgramResult alone = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--json", file("b.json")});
     ASSERT_EQ(alone.exit_code, 0) << alone.err;
     for (const Json& record : records("b.json")) EXPECT_TRUE(record["peer"].is_null());
