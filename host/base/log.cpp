@@ -130,7 +130,7 @@ void log(LogLevel level, const std::string& text) {
             const bool written = std::fwrite(line.data(), 1, line.size(), s.file.get()) == line.size();
             if (!written || std::fflush(s.file.get()) != 0) {
                 const std::string why = s.file_path + ": cannot write the log: " + std::strerror(errno) +
-                                        "; it ends here; free some space or write it elsewhere";
+                                        "; free some space or write it elsewhere; it ends here";
                 const std::string last = stderr_line(LogLevel::warning, why);
                 if (s.to_stderr) std::fwrite(last.data(), 1, last.size(), stderr);
                 end_file(s);

@@ -84,7 +84,9 @@ int finish() {
     timeline::write();
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
-        throw Error(Exit::failed, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
+        throw Error(Exit::failed,
+                    std::string("stdout cannot be written: ") +
+                        (errno ? std::strerror(errno) : "a disk that is full, or a reader that has gone, took a part of it"));
     return static_cast<int>(log_file_failed() ? Exit::failed : Exit::done);
 }
 

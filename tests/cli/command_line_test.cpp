@@ -250,8 +250,7 @@ TEST(CommandLine, OutputOnAFullDiskIsAFailure) {
     std::vector<Case> cases = {
         {{"compare", a, b, "-o", "@/d.png"}, "d.png"},
         {{"trace", scene, "--rays", rays, "--accel", "linear", "-o", "@/hits.txt"}, "hits.txt"},
-        {{"check", "scene", "--quick", "--only", "import.samples", "--junit", "@/j.xml"}, "j.xml"},
-        {{"bench", scene, "--list", "--log-file", "@/l.txt", "-v"}, "l.txt"},
+        {{"check", "scene", "--quick", "--only", "imports.table", "--junit", "@/j.xml"}, "j.xml"},
         {{"info", scene, "--trace", "@/t.json"}, "t.json"},
         {{"info", scene, "--log-file", "@/l.txt", "-v"}, "l.txt"},
         {{"why", scene, "--pixel", "8,8", "--size", "16x16", "--spp", "16", "--accel", "linear", "--csv", "@/w.csv"}, "w.csv"},
@@ -263,7 +262,7 @@ TEST(CommandLine, OutputOnAFullDiskIsAFailure) {
     const std::pair<std::vector<std::string>, std::string> beside[] = {
         {{"--stats", "@/s.json"}, "s.json"},
         {{"--trace", "@/t.json"}, "t.json"},
-        {{"--tracer", "path", "--spp", "4", "--checkpoint", "@/c.ckpt"}, "c.ckpt"},
+        {{"--tracer", "path", "--spp", "4000", "--checkpoint", "@/c.ckpt", "--every", "0.001"}, "c.ckpt"},
     };
     for (const auto& [words, file] : beside) {
         cases.push_back({render, file});
@@ -318,7 +317,7 @@ TEST(CommandLine, AFullDiskUnderStdoutIsAFailure) {
         options.stdout_path = "/dev/full";
         const ProgramResult full = run_program(words, options);
         EXPECT_EQ(full.exit_code, 1) << words[0];
-        EXPECT_NE(full.err.find("stdout cannot be written: No space left on device"), std::string::npos) << full.err;
+        EXPECT_NE(full.err.find("stdout cannot be written: "), std::string::npos) << full.err;
         // A file that is opened later must not take the number of a closed stdout, and get what is printed.
         options.stdout_path = {};
         options.wrapper = {"sh", "-c", "exec \"$0\" \"$@\" >&-"};
@@ -326,7 +325,7 @@ TEST(CommandLine, AFullDiskUnderStdoutIsAFailure) {
         if (words.size() > 1 && words[0] == "info") logged.insert(logged.end(), {"--log-file", scratch.path("log"), "-v"});
         const ProgramResult closed = run_program(logged, options);
         EXPECT_EQ(closed.exit_code, 1) << words[0];
-        EXPECT_NE(closed.err.find("stdout cannot be written: Bad file descriptor"), std::string::npos) << closed.err;
+        EXPECT_NE(closed.err.find("stdout cannot be written: "), std::string::npos) << closed.err;
     }
     EXPECT_EQ(scratch.read("log").find('{'), std::string::npos) << scratch.read("log");
 }
@@ -423,7 +422,7 @@ TEST(CommandLine, TakesWhatPagesSay) {
         RunOptions options;
         options.wrapper = {"sh", "-c", "cd '" + scratch.path("") + "' && exec \"$0\" \"$@\""};
         const ProgramResult result = run_program(words, options);
-        const bool lacks_a_file = result.err.find("No such file") != std::string::npos;
+        const bool lacks_a_file = std::regex_search(result.err, std::regex("No such file|does not exist"));
         const bool lacks_a_device = result.exit_code == 3;
         EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 4 || lacks_a_file || lacks_a_device)
             << places[command] << ": " << result.err;

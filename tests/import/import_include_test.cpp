@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "import_case.hpp"
+#include "support/clock.hpp"
 
 namespace clarity {
 namespace {
@@ -94,7 +95,9 @@ TEST_P(Include, files_that_double_their_parts_end_in_an_error) {
         file("e" + std::to_string(i) + ".cltest", text);
     }
     const std::string message = failure({path("e14.cltest")});
-    EXPECT_TRUE(contains(message, kThreadSanitizer ? ": " : "objects of loaded files are placed")) << message;
+    // A worker on a busy machine may be stopped by its limit of time first. In this process there is none.
+    const bool is_late = !test::clocks_count() && contains(message, "made no progress");
+    EXPECT_TRUE(is_late || contains(message, kThreadSanitizer ? ": " : "objects of loaded files are placed")) << message;
 }
 
 TEST_P(Include, nothing_outside_the_scene_folder_is_read) {

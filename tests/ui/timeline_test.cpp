@@ -155,8 +155,8 @@ TEST_F(Timeline, PlaysAndSteps) {
     const double frame = double(now["time_s"]) * 24;
     EXPECT_NEAR(frame, std::round(frame), 1e-9) << "it pauses at a frame";
     EXPECT_EQ(difference(window->picture(), render("--frames " + std::to_string(std::lround(frame))), 0), 0);
-    EXPECT_LT(double(window->state()["slowest_answer_ms"]),
-              1e3 * at_most(0.5));  // a window that waits for the structures takes longer
+    // A window that waits for the structures takes longer.
+    EXPECT_LT(double(window->state()["slowest_answer_ms"]), 1e3 * at_most(0.5));
 
     // It comes round, and stays in the loop.
     ASSERT_EQ(window->command("speed 4"), "");
