@@ -31,7 +31,7 @@ class Rows(Case):
         for words, wrong in (
             ("no_such: no plugin of this id", lambda: clarity.check("no_such")),
             ("no such suite", lambda: clarity.bench("no_suite")),
-            ("plugin is required", lambda: clarity.check()),
+            ("plugins is required", lambda: clarity.check()),
             ("--frobnicate", lambda: clarity.check("bvh2", frobnicate=True)),
             ("--quiet", lambda: clarity.check("--quiet")),  # is no option here
         ):
