@@ -223,7 +223,7 @@ typedef struct rt_map {
     rt_u32 pad;
 } rt_map;
 
-/* The surfaces that a ray may pass one after the other (shading/cutouts.h). The next one stops it; Whitted's tracers count the ray as
+/* The surfaces that a ray may pass one after the other (shading/cutouts.h). The next one stops it, and the ray counts as
  * dropped. */
 #define RT_MOST_PASSED 1024u
 

@@ -48,6 +48,10 @@ set(CPACK_CLARITY_LIBRARY_FOLDER ${CLARITY_LIBRARY_FOLDER})
 set(CPACK_CLARITY_SCRIPT ${PROJECT_SOURCE_DIR}/cmake/package_libraries.cmake)
 
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+# A .deb is for the release it is made on, whose libraries it asks for; its version and so its name say for which: 0.1.0-debian13.
+cmake_host_system_information(RESULT release QUERY DISTRIB_ID DISTRIB_VERSION_ID)
+string(REGEX REPLACE "[^a-z0-9.+~]" "" CPACK_DEBIAN_PACKAGE_RELEASE "${release}")
+string(REGEX REPLACE "-$" "" deb_version "${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Four packages of Debian. The library depends on the program, whose importers and workers it starts, and not the other way round. All
 # are of one version, because what the library and a worker say to each other may change with each.
@@ -62,11 +66,11 @@ macro(debian_package component name section depends description)
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${description}")
 endmacro()
 debian_package(clarity clarity graphics util-linux "${CPACK_PACKAGE_DESCRIPTION}")
-debian_package(library libclarity${soversion} libs "clarity (= ${PROJECT_VERSION})" "This package has the library for programs in C and other
+debian_package(library libclarity${soversion} libs "clarity (= ${deb_version})" "This package has the library for programs in C and other
 languages: scenes from files or arrays, ray queries and pictures.")
-debian_package(dev libclarity-dev libdevel "libclarity${soversion} (= ${PROJECT_VERSION})" "This package has the header of the C library, and
+debian_package(dev libclarity-dev libdevel "libclarity${soversion} (= ${deb_version})" "This package has the header of the C library, and
 what pkg-config and CMake need to find it.")
-debian_package(python python3-clarity python "libclarity${soversion} (= ${PROJECT_VERSION}), python3, python3-numpy" "This package is for Python:
+debian_package(python python3-clarity python "libclarity${soversion} (= ${deb_version}), python3, python3-numpy" "This package is for Python:
 scenes from files or arrays of numpy, ray queries and pictures.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 # The window draws with OpenGL, which GLFW and epoxy load while they run.

@@ -7,6 +7,8 @@ lambert, conductor (Fresnel 1) and dielectric, and files that are loaded. Anythi
 Blender reads them: its means differ a little, so each program is compared with its own. For each SPP it writes OUT.SPP.pfm
 and a line "CPU spp seconds" (processor time of rendering). Everything of Cycles that makes pictures biased is off.
 
+Blender 3.4 (Debian 12) and 4.3 (Debian 13) name some things otherwise: see first_of().
+
 Lamps become meshes that emit: Cycles 3.4 draws its own round lamps as discs that face what they light.
 """
 import gzip
@@ -32,6 +34,20 @@ LAMP_SEGMENTS = (48, 24)  # of lamps: Cycles 3.4 sums the areas of all triangles
 def die(text):
     print("cycles_scene: " + text, flush=True)
     os._exit(1)
+
+
+def first_of(owner, name, *values):
+    """Sets a property to the first of these values that this version of Blender knows."""
+    for value in values:
+        try:
+            return setattr(owner, name, value)
+        except TypeError:
+            pass
+    die("this Blender knows none of %s for %s" % (", ".join(values), name))
+
+
+LINEAR = ("Linear", "Linear Rec.709")  # colour spaces
+SHARP = ("SHARP", "GGX")  # of mirrors and clear glass: by their roughness of 0 alone since Blender 4.0
 
 
 def words_of(line):
@@ -200,7 +216,8 @@ class Scene:
             mesh.loops.foreach_set("vertex_index", faces.astype(np.int32).ravel())
             mesh.polygons.add(len(faces))
             mesh.polygons.foreach_set("loop_start", np.arange(0, faces.size, 3, dtype=np.int32))
-            mesh.polygons.foreach_set("loop_total", np.full(len(faces), 3, np.int32))
+            if bpy.app.version < (3, 6):  # later ones know it by where the next one starts
+                mesh.polygons.foreach_set("loop_total", np.full(len(faces), 3, np.int32))
             mesh.update(calc_edges=True)
         else:
             mesh.from_pydata([tuple(p) for p in turned], [], faces)
@@ -257,13 +274,13 @@ class Scene:
             if min(color) != 1:
                 die(where + ": a conductor is compared with `color 1` alone, because Cycles has no Fresnel term here")
             node = tree.nodes.new("ShaderNodeBsdfGlossy")
-            node.distribution = "MULTI_GGX" if rough else "SHARP"
+            first_of(node, "distribution", *(("MULTI_GGX",) if rough else SHARP))
             node.inputs["Roughness"].default_value = rough
         else:
             node = tree.nodes.new("ShaderNodeBsdfGlass")
             if rough:
                 die(where + ": rough glass is not compared")
-            node.distribution = "SHARP"
+            first_of(node, "distribution", *SHARP)
             node.inputs["Roughness"].default_value = 0
             node.inputs["IOR"].default_value = keys.get("ior", 1.5)
         node.inputs["Color"].default_value = color
@@ -328,7 +345,7 @@ class Scene:
             return self.gradient(tree, keys, ground.inputs[0])
         node = tree.nodes.new("ShaderNodeTexEnvironment")
         node.image = bpy.data.images.load(os.path.join(folder, kind))
-        node.image.colorspace_settings.name = "Linear"
+        first_of(node.image.colorspace_settings, "name", *LINEAR)
         node.interpolation = "Linear"
         tree.links.new(node.outputs[0], ground.inputs[0])
 
@@ -413,7 +430,7 @@ def unbiased(scene, width, height, bounces):
     cycles.blur_glossy = cycles.light_sampling_threshold = 0
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.pixel_filter_type = "BOX"
-    cycles.sampling_pattern = "SOBOL"
+    first_of(cycles, "sampling_pattern", "SOBOL", "TABULATED_SOBOL")
     cycles.min_light_bounces = cycles.min_transparent_bounces = 0
     cycles.transparent_max_bounces = 64
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
@@ -432,7 +449,7 @@ def unbiased(scene, width, height, bounces):
 
 def exr_as_pfm(picture, out):
     image = bpy.data.images.load(picture)
-    image.colorspace_settings.name = "Linear"
+    first_of(image.colorspace_settings, "name", *LINEAR)
     values = np.empty(image.size[0] * image.size[1] * 4, np.float32)
     image.pixels.foreach_get(values)
     with open(out, "wb") as file:

@@ -68,26 +68,43 @@ apt() {
     return $code
 }
 
-# install_packages PACKAGE...: installs those that are missing with apt-get.
+# packaged PACKAGE...: prints a line for each one that apt's lists offer. Not by what `apt-get install` says: it takes a name that it does
+# not know, such as g++, for a pattern.
+packaged() {
+    LC_ALL=C apt-cache policy "$@" | awk '/^[^ ]/ { sub(/:$/, ""); name = $0 } $1 == "Candidate:" && $2 != "(none)" { print name }'
+}
+
+# without LIST WORD...: prints the words that the list, one a line, does not have.
+without() { printf '%s\n' "${@:2}" | grep -vxF -e "$1"; }
+
+fetch_lists() {
+    say "Fetching the lists of packages first (apt-get update)"
+    apt update || die "apt-get update failed, see above: is there a network, and a Debian mirror in /etc/apt?"
+}
+
+# install_packages PACKAGE...: installs those that are missing with apt-get. What this system does not package is left out: the
+# configuration and the tests then say which part needs it.
 install_packages() {
-    local have missing="" package
+    local missing lacking
     if ! is_debian; then
         say "This is not a Debian system. The build needs what these Debian packages hold; install your system's own:"
         say "    $(echo $*)"
         return 0
     fi
-    have=" $(installed "$@" | cut -d ' ' -f 1 | tr '\n' ' ')"
-    for package in "$@"; do
-        case "$have" in *" $package "*) ;; *) missing="$missing $package" ;; esac
-    done
+    missing="$(without "$(installed "$@" | cut -d ' ' -f 1)" "$@")"
     [ -n "$missing" ] || return 0
-    say "Installing with apt-get:$missing"
-    # Fetch the lists of packages only if that is necessary: if they are missing, or so old that the files they name are gone.
-    if ! apt-get -s -q install --no-install-recommends $missing </dev/null >/dev/null 2>&1 ||
-        ! apt install --no-install-recommends $missing; then
-        say "Fetching the lists of packages first (apt-get update)"
-        apt update || die "apt-get update failed, see above: is there a network, and a Debian mirror in /etc/apt?"
-        apt install --no-install-recommends $missing || die "apt-get could not install$missing: see above"
+    LC_ALL=C apt-cache policy | grep -q ' Packages$' || fetch_lists # a new system has no lists
+    lacking="$(without "$(packaged $missing)" $missing)"
+    if [ -n "$lacking" ]; then
+        say "Left out, because this system does not package it:" $lacking
+        missing="$(without "$lacking" $missing)"
+        [ -n "$missing" ] || return 0
+    fi
+    say "Installing with apt-get:" $missing
+    # The lists may be so old that the files they name are gone.
+    if ! apt install --no-install-recommends $missing; then
+        fetch_lists
+        apt install --no-install-recommends $missing || die "apt-get could not install" $missing": see above"
     fi
 }
 

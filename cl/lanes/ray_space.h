@@ -28,13 +28,15 @@
 
 #define RT_DOT(ax, ay, az, bx, by, bz) fma(ax, bx, fma(ay, by, (az) * (bz)))
 
-/* The normal of a triangle, (b - a) x (c - a), not of unit length. */
+/* The normal of a triangle, (b - a) x (c - a), not of unit length. Times a coordinate it is a volume, which is no float in scenes of 1e13 and
+ * keeps few digits in those of 1e-14: there the edges count as multiplied by RT_NORMAL_SCALE. */
+#define RT_NORMAL_SCALE (1.0f / RT_SCENE_SCALE)
 RT_INLINE void rt_triangle_normal(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz, float *nx,
                                   float *ny, float *nz)
 {
 #pragma OPENCL FP_CONTRACT OFF
-    const float e1x = bx - ax, e1y = by - ay, e1z = bz - az;
-    const float e2x = cx - ax, e2y = cy - ay, e2z = cz - az;
+    const float e1x = (bx - ax) * RT_NORMAL_SCALE, e1y = (by - ay) * RT_NORMAL_SCALE, e1z = (bz - az) * RT_NORMAL_SCALE;
+    const float e2x = (cx - ax) * RT_NORMAL_SCALE, e2y = (cy - ay) * RT_NORMAL_SCALE, e2z = (cz - az) * RT_NORMAL_SCALE;
     *nx = e1y * e2z - e1z * e2y;
     *ny = e1z * e2x - e1x * e2z;
     *nz = e1x * e2y - e1y * e2x;
@@ -58,19 +60,31 @@ RT_INLINE vfloat rt_pick(float4 quad, vint axis)
 #endif
 }
 
-/* A corner in the ray space of each lane. quad: the three numbers at `corner`, and any fourth. */
-RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, float4 quad, vfloat *x, vfloat *y, vfloat *z)
+/* A corner in the ray space of each lane, where all lanes have one dominant axis. */
+RT_INLINE void rt_to_ray_space_of_one_axis(const rt_rays *r, const global float *corner, vfloat *x, vfloat *y, vfloat *z)
 {
 #pragma OPENCL FP_CONTRACT OFF
-    if (r->same_axis) {
-        *z = r->pz - rt_vfloat(corner[r->kz]);
-        *x = RT_SHEARED(r->sx, *z, r->px, rt_vfloat(corner[r->kx]));
-        *y = RT_SHEARED(r->sy, *z, r->py, rt_vfloat(corner[r->ky]));
-    } else {
-        *z = r->pz - rt_pick(quad, r->axis_z);
-        *x = RT_SHEARED(r->sx, *z, r->px, rt_pick(quad, r->axis_x));
-        *y = RT_SHEARED(r->sy, *z, r->py, rt_pick(quad, r->axis_y));
-    }
+    *z = r->pz - rt_vfloat(corner[r->kz]);
+    *x = RT_SHEARED(r->sx, *z, r->px, rt_vfloat(corner[r->kx]));
+    *y = RT_SHEARED(r->sy, *z, r->py, rt_vfloat(corner[r->ky]));
+}
+
+/* The same where they have several. quad: the three numbers of the corner, and any fourth. */
+RT_INLINE void rt_to_ray_space_of_axes(const rt_rays *r, float4 quad, vfloat *x, vfloat *y, vfloat *z)
+{
+#pragma OPENCL FP_CONTRACT OFF
+    *z = r->pz - rt_pick(quad, r->axis_z);
+    *x = RT_SHEARED(r->sx, *z, r->px, rt_pick(quad, r->axis_x));
+    *y = RT_SHEARED(r->sy, *z, r->py, rt_pick(quad, r->axis_y));
+}
+
+/* The same of all rays. quad: the three numbers at `corner`, and any fourth. */
+RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, float4 quad, vfloat *x, vfloat *y, vfloat *z)
+{
+    if (r->same_axis)
+        rt_to_ray_space_of_one_axis(r, corner, x, y, z);
+    else
+        rt_to_ray_space_of_axes(r, quad, x, y, z);
 }
 
 #else

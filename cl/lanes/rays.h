@@ -151,14 +151,22 @@ RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
     return rt_vfloat(1.0f) / copysign(magnitude, d);
 }
 
-/* How far the far planes of boxes count as moved outwards: an absolute length in the space of the ray, 9.1e-13. */
-#define RT_FAR_SLACK 9.0949470e-13f /* 2^-40 */
+/* For scenes whose coordinates are beyond 2^36, or all below 2^-30, the host defines RT_SCENE_SCALE, a power of two (scene_features.cpp). */
+#ifndef RT_SCENE_SCALE
+#define RT_SCENE_SCALE 1.0f
+#endif
+#define RT_LARGE_SCALE (RT_SCENE_SCALE > 1.0f ? RT_SCENE_SCALE : 1.0f)
+/* How much a component of a direction counts as at least, so that its reciprocal times a coordinate of the scene is a float. */
+#define RT_LEAST_SLOPE (8.2718061e-25f * RT_LARGE_SCALE) /* 2^-80 */
+/* How far the far planes of boxes count as moved outwards: an absolute length in the space of the ray, 9.1e-13. A large scene has its scale
+ * twice: both the slope above and the ways that rays go along it grow. */
+#define RT_FAR_SLACK (9.0949470e-13f * RT_SCENE_SCALE * RT_LARGE_SCALE) /* 2^-40 */
 
-/* 1 / direction, one component. A component counts as at least 2^-80, so that its reciprocal is finite; its sign stays: -0 is negative.
- * The ray seems to move by less than RT_FAR_SLACK by that, over 2^40 units of its way. */
+/* 1 / direction, one component, finite; its sign stays: -0 is negative. The ray seems to move by less than RT_FAR_SLACK by that, over 2^40
+ * lengths of its direction. */
 RT_INLINE vfloat rt_slab_reciprocal(vfloat d)
 {
-    return rt_vfloat(1.0f) / copysign(rt_max(fabs(d), rt_vfloat(8.2718061e-25f)), d);
+    return rt_vfloat(1.0f) / copysign(rt_max(fabs(d), rt_vfloat(RT_LEAST_SLOPE)), d);
 }
 
 /* Fills in what boxes need of origin and direction. */

@@ -13,8 +13,13 @@
 #else
 #define RT_TEAM_SIZE ((uint)RT_LOCAL_SIZE)
 #endif
-/* The uints of local memory that the functions below need for a work-group. */
-#define RT_TEAM_SCRATCH (RT_LOCAL_SIZE + 1)
+/* Declares what the functions below need of a work-group's local memory. They need none where a team is smaller than a work-group:
+ * PoCL 6.0 aborts on a local variable that no instruction of its kernel uses. */
+#if RT_CPU || defined(RT_HAS_SUBGROUPS)
+#define RT_TEAM_SCRATCH(name) local uint *const name = 0;
+#else
+#define RT_TEAM_SCRATCH(name) local uint name[RT_LOCAL_SIZE + 1];
+#endif
 
 #if RT_CPU
 

@@ -7,13 +7,23 @@
 #if RT_CPU
 #define RT_CORNER(corner, k) leaf->corner[k]
 #define RT_PRIM leaf->prim
-#define RT_PROJECT(corner, x, y, z) rt_to_ray_space(r, leaf->corner, *(const global float4 *)leaf->corner, x, y, z);
 #else
 #define RT_CORNER(corner, k) leaf->corner.s##k
 #define RT_PRIM as_uint(leaf->c.s3)
-#define RT_PROJECT(corner, x, y, z) rt_to_ray_space(r, 0, leaf->corner, x, y, z);
 #endif
-#ifdef RT_RAYS_PER_ITEM
+#if RT_CPU
+/* One branch for three corners: of one branch for each LLVM 18 keeps all three. */
+#define RT_PROJECT_ALL                                                                                                         \
+    if (r->same_axis) {                                                                                                        \
+        rt_to_ray_space_of_one_axis(r, leaf->a, &ax, &ay, &az);                                                                \
+        rt_to_ray_space_of_one_axis(r, leaf->b, &bx, &by, &bz);                                                                \
+        rt_to_ray_space_of_one_axis(r, leaf->c, &cx, &cy, &cz);                                                                \
+    } else {                                                                                                                   \
+        rt_to_ray_space_of_axes(r, *(const global float4 *)leaf->a, &ax, &ay, &az);                                            \
+        rt_to_ray_space_of_axes(r, *(const global float4 *)leaf->b, &bx, &by, &bz);                                            \
+        rt_to_ray_space_of_axes(r, *(const global float4 *)leaf->c, &cx, &cy, &cz);                                            \
+    }
+#elif defined(RT_RAYS_PER_ITEM)
 #define RT_PROJECT_AXIS(i, j, k)                                                                                               \
     RT_TO_RAY_SPACE_AXIS(a, i, j, k, ax, ay, az)                                                                               \
     RT_TO_RAY_SPACE_AXIS(b, i, j, k, bx, by, bz)                                                                               \
@@ -28,9 +38,9 @@
     }
 #else
 #define RT_PROJECT_ALL                                                                                                         \
-    RT_PROJECT(a, &ax, &ay, &az)                                                                                               \
-    RT_PROJECT(b, &bx, &by, &bz)                                                                                               \
-    RT_PROJECT(c, &cx, &cy, &cz)
+    rt_to_ray_space(r, 0, leaf->a, &ax, &ay, &az);                                                                             \
+    rt_to_ray_space(r, 0, leaf->b, &bx, &by, &bz);                                                                             \
+    rt_to_ray_space(r, 0, leaf->c, &cx, &cy, &cz);
 #endif
 /* Declares the corners in ray space, the edge functions u, v, w, and the lanes `between` that pass all edges on one side. */
 #define RT_TRIANGLE_EDGES                                                                                                      \
@@ -85,7 +95,6 @@ RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_prim *leaf, uint at
 }
 #undef RT_CORNER
 #undef RT_PRIM
-#undef RT_PROJECT
 #undef RT_PROJECT_AXIS
 #undef RT_PROJECT_ALL
 #undef RT_TRIANGLE_EDGES

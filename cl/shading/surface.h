@@ -229,7 +229,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 
 #ifdef RT_SPLITS_INCOHERENT
-    s.area = sqrt(rt_dot(s.geometric, s.geometric)) * rt_as_vfloat(exponent);
+    s.area = sqrt(rt_dot(s.geometric, s.geometric)) * rt_as_vfloat(exponent) * (RT_SCENE_SCALE * RT_SCENE_SCALE);
 #endif
 
     int at;

@@ -9,7 +9,9 @@
 #include "api/clarity.h"
 #include "api/handles.hpp"
 #include "api/library.hpp"
+#include "api/positions.hpp"
 #include "api/rows.hpp"
+#include "base/digest.hpp"
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
@@ -27,7 +29,7 @@ namespace {
 
 class Watched : public Progress {
  public:
-    explicit Watched(const clarity_watch& watch) : watch_(watch) {}
+    explicit Watched(const clarity_watch& watch) : watch_(watch), goes_on_(goes_on_after_end()) {}
     void stage(const std::string& text) override {
         const std::lock_guard<std::mutex> lock(mutex_);
         stage_ = text;
@@ -38,15 +40,20 @@ class Watched : public Progress {
         if (const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock); lock && now_s() - told_s_ > 0.05) tell(fraction);
         return !cancelled();
     }
-    bool cancelled() const override { return Progress::cancelled() || (watch_.cancel && *watch_.cancel != 0); }
+    bool cancelled() const override {
+        return Progress::cancelled() || (watch_.cancel && *watch_.cancel != 0) || (has_ended() && !goes_on_);
+    }
 
  private:
     void tell(float fraction) {
         told_s_ = now_s();
-        if (watch_.progress && watch_.progress(watch_.user, stage_.c_str(), fraction) == 0) cancel();
+        if (!watch_.progress) return;
+        const InCallersFunction calling;
+        if (watch_.progress(watch_.user, stage_.c_str(), fraction) == 0) cancel();
     }
     const clarity_watch watch_;
-    std::mutex mutex_;  // one call at a time
+    const bool goes_on_;  // when the library has ended
+    std::mutex mutex_;    // one call at a time
     std::string stage_;
     double told_s_ = 0;
 };
@@ -83,6 +90,8 @@ Scene scene_of_mesh(const PluginRegistry& plugins, const clarity_mesh& mesh) {
         scene.positions = rounded(static_cast<const double*>(mesh.positions), numbers, scene.origin);
     else
         scene.positions = SharedArray<float>::borrow(nullptr, static_cast<const float*>(mesh.positions), numbers);
+    if (const Problem why = problem_of_positions(scene.positions.data(), numbers))
+        refuse("has vertices that it cannot have: " + why.text());
     scene.triangles = SharedArray<rt_u32>::borrow(nullptr, mesh.triangles, 3 * mesh.triangle_count);
     scene.triangle_materials.assign(mesh.triangle_count, 0);
     Mesh whole;
@@ -137,11 +146,24 @@ CLARITY_EXPORT const char* clarity_error_details(void) {
 }
 
 CLARITY_EXPORT int32_t clarity_set_program(const char* path) {
-    return run_call([&] { set_program(&not_null(path, "path")); });
+    return run_light_call([&] { set_program(&not_null(path, "path")); });
 }
 
 CLARITY_EXPORT int32_t clarity_set_log(void (*log)(void*, int32_t, const char*), void* user) {
-    return run_call([&] { set_log(log, user); });
+    return run_light_call([&] { set_log(log, user); });
+}
+
+CLARITY_EXPORT int32_t clarity_digest(const void* bytes, uint64_t count, char digest[33]) {
+    return run_call([&] {
+        char& to = not_null(digest, "digest");
+        if (count > 0) not_null(static_cast<const char*>(bytes), "bytes");
+        digest_of_bytes(bytes, count).copy(&to, 32);
+        digest[32] = '\0';
+    });
+}
+
+CLARITY_EXPORT int32_t clarity_end(void) {
+    return run_light_call([] { end_library(); });
 }
 
 CLARITY_EXPORT int32_t clarity_scene_load(const char* const* files, uint64_t count, const clarity_watch* watch,
@@ -168,7 +190,7 @@ CLARITY_EXPORT int32_t clarity_scene_from_mesh(const clarity_mesh* mesh, const c
 }
 
 CLARITY_EXPORT void clarity_scene_free(clarity_scene* scene) {
-    if (!is_forked()) delete scene;
+    run_free([&] { delete scene; });
 }
 
 CLARITY_EXPORT int32_t clarity_scene_info(const clarity_scene* scene, const char** json) {
@@ -199,7 +221,7 @@ CLARITY_EXPORT int32_t clarity_tracer_new(const clarity_scene* scene, const clar
 }
 
 CLARITY_EXPORT void clarity_tracer_free(clarity_tracer* tracer) {
-    if (!is_forked()) delete tracer;
+    run_free([&] { delete tracer; });
 }
 
 CLARITY_EXPORT int32_t clarity_tracer_info(clarity_tracer* tracer, const char** json) {
@@ -224,7 +246,7 @@ CLARITY_EXPORT int32_t clarity_pack(clarity_tracer* tracer, const clarity_rays* 
 }
 
 CLARITY_EXPORT void clarity_packed_free(clarity_packed* packed) {
-    if (!is_forked()) delete packed;
+    run_free([&] { delete packed; });
 }
 
 CLARITY_EXPORT int32_t clarity_kept_new(const clarity_tracer* tracer, int32_t brief, clarity_kept** kept) {
@@ -249,7 +271,7 @@ CLARITY_EXPORT int32_t clarity_kept_array(clarity_kept* kept, int32_t which, voi
 }
 
 CLARITY_EXPORT void clarity_kept_free(clarity_kept* kept) {
-    if (!is_forked()) delete kept;
+    run_free([&] { delete kept; });
 }
 
 CLARITY_EXPORT int32_t clarity_any(clarity_tracer* tracer, const clarity_rays* rays, uint8_t* occluded,
@@ -278,7 +300,7 @@ CLARITY_EXPORT int32_t clarity_all(clarity_tracer* tracer, const clarity_rays* r
 }
 
 CLARITY_EXPORT void clarity_all_hits_free(clarity_all_hits* hits) {
-    if (hits && !is_forked()) take_back_hits(*hits);
+    if (hits) run_free([&] { take_back_hits(*hits); });
 }
 
 CLARITY_EXPORT int32_t clarity_move(clarity_tracer* tracer, const clarity_places* places, const clarity_watch* watch) {
@@ -297,6 +319,7 @@ CLARITY_EXPORT int32_t clarity_rows(const char* const* words, void (*row)(void*,
         give_rows(
             std::move(texts),
             [&](const std::string& json) {
+                const InCallersFunction calling;
                 if (row) row(user, json.c_str());
             },
             progress);

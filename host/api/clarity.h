@@ -1,7 +1,8 @@
 /* clarity.h -- Clarity as a library: scenes, ray queries and pictures from C, and through it from other languages. C99.
  *
  * - A function returns CLARITY_OK or another code below. After another code clarity_error_text() tells what was tried, why it failed
- *   and what to do, and results are as they were before the call. Nothing is printed and nothing ends the process.
+ *   and what to do, and results are as they were before the call; arrays of more than 1,024 rays may have the first hits of a call that
+ *   was cancelled or failed on the way. Nothing is printed and nothing ends the process.
  * - Texts are UTF-8. Devices, structures and settings are the texts of the command line: "gpu", "bvh4,max_leaf=4", "spp=16".
  * - A struct begins with its size in bytes, which the caller sets: sizeof of the caller's header. Later versions append fields, and 0 in
  *   a field means what it meant before the field was there. So set the other fields to 0 first.
@@ -10,7 +11,10 @@
  *   in ../../bin; clarity_set_program() or the variable CLARITY_WORKER name another one. Before drivers of OpenCL are loaded, it sets the
  *   variable POCL_CACHE_DIR of this process.
  * - After fork() the child gets CLARITY_FORKED from each call if the parent has used the library: drivers do not survive a fork. Start
- *   another program instead (in Python: multiprocessing with "spawn"). */
+ *   another program instead (in Python: multiprocessing with "spawn"). Calls of clarity_set_program() and
+ *   clarity_set_log() are no such use.
+ * - Functions of the caller, which hear of progress, rows and the log, get CLARITY_USAGE from each call: the library waits for them.
+ * - A process that ends while other threads trace calls clarity_end() first. */
 #ifndef CLARITY_H
 #define CLARITY_H
 #include <stdint.h>
@@ -28,6 +32,7 @@ enum {
     CLARITY_IMPORT_FAILED = 4,
     CLARITY_KERNEL_BUILD_FAILED = 5,
     CLARITY_FORKED = 6,
+    CLARITY_ENDED = 7, /* another thread has called clarity_end() */
     CLARITY_CANCELLED = 130
 };
 enum { CLARITY_FLOAT32 = 0, CLARITY_FLOAT64 = 1 };                                             /* types of numbers in arrays */
@@ -53,7 +58,8 @@ typedef struct clarity_watch {
 } clarity_watch;
 
 /* Triangles. The scene reads the arrays until it and all tracers of it are freed: they must not change or go before. Positions of
- * type CLARITY_FLOAT64 are copied during the call: they lie far from 0 where they need it, without a loss of digits. */
+ * type CLARITY_FLOAT64 are copied during the call: they lie far from 0 where they need it, without a loss of digits. Coordinates
+ * beyond 1e15 (float64: of the place that is subtracted) and a mesh smaller than 1e-17 are refused. */
 typedef struct clarity_mesh {
     uint32_t struct_bytes;
     int32_t type; /* of positions */
@@ -77,6 +83,8 @@ typedef struct clarity_rays {
     int32_t type; /* of all four arrays */
     uint64_t count;
     const void *origins; /* in the coordinates of the files, also far from 0 */
+    /* A ray hits nothing if its direction is zero, or not finite in single precision, or has no component of at least 2^-60. Any other
+     * length is right, and t counts in it. */
     const void *directions;
     const void *t_min; /* NULL: 0 */
     const void *t_max; /* NULL: infinity */
@@ -148,8 +156,14 @@ const char *clarity_error_details(void);
 
 /* The program `clarity`; before all other calls but the above. */
 int32_t clarity_set_program(const char *path);
+/* A digest of bytes as text: 32 digits in hexadecimal and a 0. Equal bytes have equal digests. It is found about as fast as memory is
+ * read: so a caller who was lent an array can tell later whether it is as it was. */
+int32_t clarity_digest(const void *bytes, uint64_t count, char digest[33]);
 /* Gets the lines of the log, from any thread, those of CLARITY_LOG_DEBUG too. NULL: nobody does. */
 int32_t clarity_set_log(void (*log)(void *user, int32_t level, const char *text), void *user);
+/* Before a process ends whose other threads may be in a call: cancels these calls and waits for them, 10 s at most. Further calls of
+ * other threads return CLARITY_ENDED, and what they free stays. This thread may go on. */
+int32_t clarity_end(void);
 
 int32_t clarity_scene_load(const char *const *files, uint64_t count, const clarity_watch *watch, clarity_scene **scene);
 int32_t clarity_scene_from_mesh(const clarity_mesh *mesh, const clarity_watch *watch, clarity_scene **scene);
@@ -162,7 +176,7 @@ int32_t clarity_scene_bounds(const clarity_scene *scene, double lo[3], double hi
 int32_t clarity_tracer_new(const clarity_scene *scene, const clarity_options *options, const clarity_watch *watch, clarity_tracer **tracer);
 void clarity_tracer_free(clarity_tracer *tracer);
 /* As JSON: its device and structure, as the keys of `clarity render --stats` say, and of its ray queries so far `rays`, `device_ms`, and
- * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until the next call for this tracer or its end. */
+ * `bytes_to_device` and `bytes_from_device`, which were copied for them. Valid until this thread asks for it again, or the tracer's end. */
 int32_t clarity_tracer_info(clarity_tracer *tracer, const char **json);
 int32_t clarity_closest(clarity_tracer *tracer, const clarity_rays *rays, const clarity_hits *hits, const clarity_watch *watch);
 /* Rays that are traced often: they are read from the arrays once, and stay on the tracer's device, 32 bytes each. They serve

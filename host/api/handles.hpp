@@ -1,9 +1,11 @@
 // handles.hpp -- what the handles of the library hold.
 #pragma once
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "api/clarity.h"
@@ -75,6 +77,8 @@ struct clarity_tracer {
     // With the lock. all: where all answers go; null: to `take`.
     void trace(const clarity_rays& rays, const clarity::RayQuery& query, const TakeAnswers& take, const clarity::Answers* all);
     void check(const clarity_rays& rays) const;
+    // The caller may have written to arrays that were lent: builders and kernels trust their numbers. Throws Error(usage).
+    void check_arrays() const;
     clarity::RayQuery query_of(const clarity_rays& rays, Wanted wanted, clarity::Progress& progress) const;
     // Of the rays from `begin` on.
     clarity::ReadRays reader(const clarity_rays& rays, size_t begin) const;
@@ -96,11 +100,11 @@ struct clarity_tracer {
     bool of_arrays_;  // the scene is one mesh of the caller's
     clarity::PoseFollower follower_;
     bool vertices_moved_ = false;
-    std::string info_;
-    uint64_t rays_ = 0;                     // that were traced
-    double device_ms_ = 0;                  // for them
-    double traced_ms_ = 0;                  // since the last move
-    uint64_t id_ = clarity::new_packing();  // of this tracer, and of rays that it packs for one call
-    size_t batch_;                          // rays that are traced in one go
+    std::map<std::thread::id, std::string> infos_;  // the last one that each thread was told
+    uint64_t rays_ = 0;                             // that were traced
+    double device_ms_ = 0;                          // for them
+    double traced_ms_ = 0;                          // since the last move
+    uint64_t id_ = clarity::new_packing();          // of this tracer, and of rays that it packs for one call
+    size_t batch_;                                  // rays that are traced in one go
     std::optional<clarity::FrameRenderer> frames_;
 };

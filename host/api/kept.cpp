@@ -48,32 +48,35 @@ clarity_kept::~clarity_kept() {
 
 const Answers& clarity_kept::begin(size_t count, cl_uint fields) {
     const bool asked = std::find(std::begin(asked_), std::end(asked_), true) != std::end(asked_);
-    if (asked && (count != answers_.count || fields != answers_.fields))
-        throw Error(Exit::usage, "the kept hits are " + std::to_string(answers_.count) + " with " +
-                                     std::to_string(answers_.fields) + " numbers each, of which arrays are in use, and these " +
-                                     std::to_string(count) + " have " + std::to_string(fields) + ": keep them apart");
+    if (asked && count != answers_.count)
+        throw Error(Exit::usage, "the kept hits are " + std::to_string(answers_.count) +
+                                     ", of which arrays are in use, and these are " + std::to_string(count) +
+                                     ": keep them apart");
     found_ = false;
     const Device& device = *device_->copies->device();
     wrap_cl_errors(device, "making room for hits", [&] {
         unmap();
-        if (count != answers_.count || fields != answers_.fields || !answers_.buffer()) make_room(count, fields);
+        if (count != answers_.count || !answers_.buffer()) make_room(count);
         return 0;
     });
+    answers_.fields = fields;
     return answers_;
 }
 
-void clarity_kept::make_room(size_t count, cl_uint fields) {
+void clarity_kept::make_room(size_t count) {
     if (count != answers_.count)
         for (AlignedBytes& of_array : memory_) of_array = {};
     release();
-    answers_ = {{}, count, answer_stride(count), 0, fields};
-    const uint64_t bytes = answers_.bytes();
+    answers_ = {{}, count, answer_stride(count), 0, brief ? RT_ANSWER_NEAREST : RT_ANSWER_PLACED};
+    const uint64_t bytes = room_ = answers_.bytes();
     Device& device = *device_->copies->device();
     if (bytes == 0 || bytes > device.info().max_allocation_bytes) return;
     if (!is_cpu()) {
         if (device_->kept_bytes + bytes > device.info().global_bytes / kShare) return;
         answers_.buffer = device_->take_spare(bytes);
     }
+    for (size_t k = 0; k < kAnswerArrays; ++k)
+        if (!asked_[k]) memory_[k] = {};  // of hits that were not on the device
     if (!answers_.buffer()) answers_.buffer = GrowingBuffer(CL_MEM_READ_WRITE).fit(device.context(), bytes);
     if (!is_cpu()) device_->kept_bytes += bytes;
 }
@@ -87,18 +90,17 @@ AnswersTo clarity_kept::host() {
 
 void clarity_kept::end() {
     wrap_cl_errors(*device_->copies->device(), "reading hits", [&] {
-        if (answers_.buffer() && is_cpu()) {
-            mapped_ = device_->copies->device()->queue().enqueueMapBuffer(answers_.buffer, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE,
-                                                                          0, answers_.bytes());
-            if (mapped_before_ && mapped_ != mapped_before_)
-                throw Error(Exit::failed, "the device's driver has moved arrays of hits that are in use; take new ones");
-            mapped_before_ = mapped_;
-        }
         if (!answers_.buffer()) return 0;
         AnswersTo again;
         for (size_t k = 0; k < kAnswerArrays; ++k)
-            if (asked_[k] && first_field(AnswerArray(k)) < answers_.fields) again.arrays[k] = memory_[k].data();
+            if (first_field(AnswerArray(k)) < answers_.fields) again.arrays[k] = memory_[k].data();
         read_answers(*device_->copies, answers_, again);
+        if (!is_cpu()) return 0;
+        mapped_ =
+            device_->copies->device()->queue().enqueueMapBuffer(answers_.buffer, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, room_);
+        if (mapped_before_ && mapped_ != mapped_before_)
+            throw Error(Exit::failed, "the device's driver has moved arrays of hits that are in use; take new ones");
+        mapped_before_ = mapped_;
         return 0;
     });
     found_ = true;
@@ -112,8 +114,8 @@ void* clarity_kept::array(AnswerArray which) {
                     "there are no hits: the call that had to find them failed or was cancelled; trace the rays again");
     asked_[k] = true;
     const bool on_device = answers_.buffer() && first_field(which) < answers_.fields;
+    if (memory_[k].data()) return memory_[k].data();  // it was given out, and end() has filled it
     if (mapped_ && on_device) return static_cast<float*>(mapped_) + first_field(which) * answers_.stride;
-    if (memory_[k].data()) return memory_[k].data();
     AnswersTo to;
     to.arrays[k] = make(which);
     Answers from = answers_;
@@ -146,7 +148,7 @@ void clarity_kept::unmap() {
 void clarity_kept::release() {
     const bool stuck = device_->copies->device()->loss()->stuck();
     if (answers_.buffer() && !is_cpu()) {
-        device_->kept_bytes -= answers_.bytes();
+        device_->kept_bytes -= room_;
         if (stuck)
             never_release(std::make_shared<cl::Buffer>(answers_.buffer));
         else

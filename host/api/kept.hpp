@@ -48,13 +48,15 @@ struct clarity_kept {
 
  private:
     bool is_cpu() const { return device_->copies->device()->info().cpu; }
-    void make_room(size_t count, cl_uint fields);
+    // For the numbers of any answer of this kind: a move of instances adds one to each, and arrays that were given out stay.
+    void make_room(size_t count);
     void* make(clarity::AnswerArray which);
     void unmap();
     void release();
 
     const std::shared_ptr<clarity::api::KeepingDevice> device_;
     clarity::Answers answers_;
+    size_t room_ = 0;  // bytes of its buffer
     bool found_ = false;
     void *mapped_ = nullptr, *mapped_before_ = nullptr;     // the buffer, on a CPU
     clarity::AlignedBytes memory_[clarity::kAnswerArrays];  // of arrays that are copied

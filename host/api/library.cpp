@@ -3,11 +3,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <thread>
+#include <utility>
 
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
@@ -20,6 +23,21 @@ namespace fs = std::filesystem;
 
 // Of the process in which the library was used first; 0: not yet.
 std::atomic<pid_t> first_process{0};
+
+// Calls and frees that are under way.
+std::atomic<int64_t> under_way{0};
+std::atomic<bool> ended{false};
+thread_local bool has_ended_it = false, in_callers_function = false;
+
+// Counts one of them. No thread is between this count and the question whether the library has ended, so clarity_end() sees
+// each that goes on.
+class UnderWay {
+ public:
+    UnderWay() { ++under_way; }
+    ~UnderWay() { --under_way; }
+    UnderWay(const UnderWay&) = delete;
+    UnderWay& operator=(const UnderWay&) = delete;
+};
 
 struct Failure {
     std::string text, details;
@@ -58,15 +76,25 @@ fs::path find_program(const std::string& named) {
                                   "call clarity_set_program(), or set CLARITY_WORKER to its path");
 }
 
-// The first call keeps the log off stderr: a library prints nothing.
-bool begin() {
+// Returns false in a process that was forked from one that had used the library.
+bool begin_use() {
     pid_t none = 0;
     const pid_t self = getpid();
-    if (first_process.compare_exchange_strong(none, self)) {
-        set_log_to_stderr(false);
-        return true;
-    }
-    return none == self;
+    return first_process.compare_exchange_strong(none, self) || none == self;
+}
+
+bool is_forked() {
+    const pid_t first = first_process;
+    return first != 0 && first != getpid();
+}
+
+bool is_refused() {
+    return ended && !has_ended_it;
+}
+
+// A library prints nothing: its first call keeps the log off stderr.
+void keep_quiet() {
+    [[maybe_unused]] static const bool once = (set_log_to_stderr(false), true);
 }
 
 int32_t failed(int32_t code, const std::string& text, const std::string& details = {}) noexcept {
@@ -77,22 +105,28 @@ int32_t failed(int32_t code, const std::string& text, const std::string& details
     return code;
 }
 
-}  // namespace
-
-bool is_forked() {
-    const pid_t first = first_process;
-    return first != 0 && first != getpid();
-}
-
-int32_t run_call(const std::function<void()>& call) noexcept {
+int32_t run(bool is_light, const std::function<void()>& call) noexcept {
+    const UnderWay counted;
+    const auto refused_at_end = [] {
+        return failed(CLARITY_ENDED, "the process ends: another thread has called clarity_end()");
+    };
     try {
         failure() = {};
-        if (!begin())
+        if (in_callers_function)
+            return failed(CLARITY_USAGE,
+                          "the library was called by a function that it calls itself, for progress, rows or the log, and "
+                          "waits for: note there what is to be done, and do it after the call");
+        if (is_refused()) return refused_at_end();
+        keep_quiet();
+        if (is_light ? is_forked() : !begin_use())
             return failed(CLARITY_FORKED,
                           "this process was forked from one that had used the library, and OpenCL drivers do not "
                           "survive that: start another program instead, or fork before the first call");
         call();
+        if (!failure().text.empty()) failure() = {};  // of a refused call of the caller's function
         return CLARITY_OK;
+    } catch (const Cancelled& e) {
+        return is_refused() ? refused_at_end() : failed(CLARITY_CANCELLED, e.what());
     } catch (const Error& e) {
         return failed(static_cast<int32_t>(e.code()), e.what(), e.details());
     } catch (const std::bad_alloc&) {
@@ -102,6 +136,40 @@ int32_t run_call(const std::function<void()>& call) noexcept {
     } catch (...) {
         return failed(CLARITY_FAILED, "unexpected failure");
     }
+}
+
+}  // namespace
+
+int32_t run_call(const std::function<void()>& call) noexcept {
+    return run(false, call);
+}
+int32_t run_light_call(const std::function<void()>& call) noexcept {
+    return run(true, call);
+}
+
+void run_free(const std::function<void()>& free) {
+    const UnderWay counted;
+    if (!is_forked() && !is_refused()) free();
+}
+
+bool has_ended() {
+    return ended;
+}
+bool goes_on_after_end() {
+    return has_ended_it;
+}
+
+void end_library() {
+    constexpr int kMost_ms = 10000;
+    has_ended_it = true;
+    ended = true;
+    // This call is one of them.
+    for (int ms = 0; under_way > 1 && ms < kMost_ms; ++ms) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+InCallersFunction::InCallersFunction() : outer_(std::exchange(in_callers_function, true)) {}
+InCallersFunction::~InCallersFunction() {
+    in_callers_function = outer_;
 }
 
 const std::string& error_text() {
@@ -132,8 +200,10 @@ void set_program(const std::string& path) {
 
 void set_log(void (*log)(void*, int32_t, const char*), void* user) {
     if (!log) return set_log_listener({});
-    set_log_listener(
-        [log, user](LogLevel level, const std::string& text) { log(user, static_cast<int32_t>(level), text.c_str()); });
+    set_log_listener([log, user](LogLevel level, const std::string& text) {
+        const InCallersFunction calling;
+        log(user, static_cast<int32_t>(level), text.c_str());
+    });
 }
 
 }  // namespace clarity::api

@@ -14,8 +14,29 @@ namespace clarity::api {
 
 // Runs a call. Exceptions become its code, and their text is kept for clarity_error_text() on this thread.
 int32_t run_call(const std::function<void()>& call) noexcept;
-// Whether the process was forked after the first call, so that nothing may be touched.
-bool is_forked();
+// The same for a call that leaves plugins and drivers alone: a process may be forked after it.
+int32_t run_light_call(const std::function<void()>& call) noexcept;
+// Deletes what a handle holds. Not after a fork from a process that had used the library, nor after its end by another
+// thread: nothing may be touched then.
+void run_free(const std::function<void()>& free);
+// Cancels the calls of other threads and waits for them.
+void end_library();
+bool has_ended();
+// Whether this thread has ended the library, and may go on.
+bool goes_on_after_end();
+
+// The time in which a function of the caller runs on this thread. Calls of the library are refused in it: they would wait for
+// the call that waits for this function.
+class InCallersFunction {
+ public:
+    InCallersFunction();
+    ~InCallersFunction();
+    InCallersFunction(const InCallersFunction&) = delete;
+    InCallersFunction& operator=(const InCallersFunction&) = delete;
+
+ private:
+    const bool outer_;
+};
 const std::string& error_text();
 const std::string& error_details();
 

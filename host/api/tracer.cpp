@@ -71,6 +71,22 @@ std::shared_ptr<Device> open_device(const std::string& choice) {
     return std::make_shared<Device>(choose_device(choice));
 }
 
+// A setting that does nothing for the picture is a mistake of the caller, which nothing else would tell; but `off` is what
+// there is. texts: of the call; the tracer's own settings serve other pictures, too.
+void check_used(const char* const* texts, const Settings& settings) {
+    for (; texts && *texts; ++texts) {
+        const std::string pair = *texts, key = pair.substr(0, pair.find('='));
+        const Setting* const setting = find_setting(key);
+        if (!setting || setting->get(settings) == "off") continue;
+        if (!setting->used(settings))
+            throw Error(Exit::usage, "setting `" + key + "`: it is for the tracer `" + setting->picture +
+                                         "` alone, and this picture is by `" + settings.tracer +
+                                         "`: add tracer=" + setting->picture + ", or leave it out");
+        if (key == "denoise" && settings.denoise == "on" && !denoises(settings))
+            throw Error(Exit::usage, "setting `denoise`: it filters colours, and this picture shows `" + settings.aov + "`");
+    }
+}
+
 rt_u32 mask_of(const clarity_rays& rays) {
     return rays.mask ? rays.mask : RT_SEEN_BY_ALL;
 }
@@ -91,9 +107,16 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
       keeping_(std::make_shared<KeepingDevice>(queries_.copies())),
       of_arrays_(scene.of_arrays),
       batch_(kFirstBatch) {
+    check_arrays();
     const auto accel = preparer_.build(placed_, settings_, progress);
     prepared_ = prepare_queries(*device_, placed_, accel, settings_, progress);
     prepared_id_ = new_packing();
+}
+
+void clarity_tracer::check_arrays() const {
+    if (!of_arrays_) return;
+    if (const Problem why = validate(*placed_))
+        throw Error(Exit::usage, "the arrays of the scene were changed after it was made, and are no mesh now: " + why.text());
 }
 
 void clarity_tracer::check(const clarity_rays& rays) const {
@@ -214,8 +237,10 @@ const char* clarity_tracer::info() {
                                    {"bytes_to_device", copies.bytes_written()},
                                    {"bytes_from_device", copies.bytes_read()}};
     for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = value;
-    info_ = json.dump(2);
-    return info_.c_str();
+    // Another thread may ask while this one still reads.
+    std::string& info = infos_[std::this_thread::get_id()];
+    info = json.dump(2);
+    return info.c_str();
 }
 
 void clarity_tracer::closest(const clarity_rays& rays, const clarity_hits& hits, Progress& progress) {
@@ -279,23 +304,29 @@ void clarity_tracer::trace_samples(const Prepared& prepared, const Settings& set
     constexpr double kSamplesMs = 100;
     const auto all = static_cast<unsigned>(settings.spp);
     double wall_ms = 0;
-    uint64_t not_finite = 0;
+    uint64_t not_finite = 0, dropped = 0;
     for (unsigned done = 0, next = std::min(all, 2u); done < all;) {
         if (!progress.report(float(done) / float(all))) throw Cancelled();
         const FrameStats stats = frames_->trace(prepared, settings, view, Samples(done, next), true, progress);
         wall_ms += stats.wall_ms;
         not_finite += stats.not_finite;
+        dropped += stats.dropped;
         done += next;
         next =
             std::min(static_cast<unsigned>(std::clamp(kSamplesMs / std::max(wall_ms / done, 1e-3), 1.0, 1024.0)), all - done);
     }
     if (not_finite > 0) log(LogLevel::error, not_finite_text(not_finite));
+    if (dropped > 0) log(LogLevel::warning, dropped_text(dropped, settings.tracer == "path" ? 0 : settings.ray_slots));
 }
 
 void clarity_tracer::render(const clarity_picture& asked, clarity_picture& picture, Progress& progress) {
     Words words{settings_, {}};
     read_words(asked.settings, words);
     Settings& settings = words.settings;
+    check_used(asked.settings, settings);
+    const char* const of_tracer[] = {"denoise=on", nullptr};
+    if (settings_.denoise == "on" && settings.tracer == settings_.tracer && settings.aov == settings_.aov)
+        check_used(of_tracer, settings);
     const unsigned channels = find_aov(settings.aov).value_channels();
     const uint64_t floats = uint64_t(settings.width) * uint64_t(settings.height) * channels;
     const std::lock_guard<std::mutex> lock(keeping_->calls);

@@ -2,25 +2,27 @@
 #include <algorithm>
 
 #include "api/handles.hpp"
+#include "api/positions.hpp"
 #include "base/log.hpp"
 #include "render/moving/on_host/host_mover.hpp"
 #include "render/tracers/rays/query_scene.hpp"
-#include "scene/usable.hpp"
 
 namespace clarity::api {
 namespace {
 
 // Numbers of the caller in single precision. from: subtracted in double precision, number by number in turn.
-std::vector<float> rounded_numbers(const void* numbers, int32_t type, size_t count, const std::array<double, 3>& from,
-                                   const std::string& what) {
+std::vector<float> rounded_numbers(const void* numbers, int32_t type, size_t count, const std::array<double, 3>& from) {
     std::vector<float> floats(count);
     for (size_t i = 0; i < count; ++i) {
         const double number =
             type == CLARITY_FLOAT64 ? static_cast<const double*>(numbers)[i] : static_cast<const float*>(numbers)[i];
         floats[i] = static_cast<float>(number - from[i % 3]);
     }
-    if (!are_usable(floats)) throw Error(Exit::usage, what + ": a number is not finite, or beyond 1e15; nothing was moved");
     return floats;
+}
+
+void check_numbers(const std::string& what, const Problem& why) {
+    if (why) throw Error(Exit::usage, what + ": " + why.text() + "; nothing was moved");
 }
 
 void check_count(const std::string& what, uint64_t found, size_t expected) {
@@ -43,8 +45,9 @@ Pose clarity_tracer::pose_of(const clarity_places& places) const {
         if (!of_arrays_)
             throw Error(Exit::usage, "vertices of scenes that files describe stay in their meshes: move the instances");
         check_count("vertices", places.vertex_count, placed_->vertex_count());
-        pose.meshes.push_back(
-            {0, rounded_numbers(places.positions, places.type, placed_->positions.size(), placed_->origin, "vertices"), {}});
+        auto floats = rounded_numbers(places.positions, places.type, placed_->positions.size(), placed_->origin);
+        check_numbers("vertices", problem_of_positions(floats.data(), floats.size()));
+        pose.meshes.push_back({0, std::move(floats), {}});
     } else if (vertices_moved_) {  // movers know those of the last build
         pose.meshes.push_back({0, {placed_->positions.begin(), placed_->positions.end()}, {}});
     }
@@ -52,8 +55,8 @@ Pose clarity_tracer::pose_of(const clarity_places& places) const {
         if (placed_->origin != std::array<double, 3>{})
             throw Error(Exit::usage, "the scene lies far from 0, and has been moved there: its instances stay where they are");
         check_count("instances", places.instance_count, placed_->instances.size());
-        const auto floats =
-            rounded_numbers(places.transforms, places.type, 12 * placed_->instances.size(), {}, "transforms of instances");
+        const auto floats = rounded_numbers(places.transforms, places.type, 12 * placed_->instances.size(), {});
+        check_numbers("transforms of instances", problem_of_numbers(floats.data(), floats.size(), 12, "instance"));
         for (size_t i = 0; i < pose.instances.size(); ++i) {
             Affine &to = pose.instances[i].world_from_object, inverse;
             std::copy_n(&floats[12 * i], 12, to.begin());
@@ -67,6 +70,7 @@ Pose clarity_tracer::pose_of(const clarity_places& places) const {
 
 void clarity_tracer::move(const clarity_places& places, Progress& progress) {
     const std::lock_guard<std::mutex> lock(keeping_->calls);
+    check_arrays();
     const Pose pose = pose_of(places);
     progress.stage("moving the scene");
     Scene moved = posed(*placed_, pose);

@@ -2,10 +2,13 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <new>
 #include <vector>
+
+#include "base/parallel_for.hpp"
 
 namespace clarity {
 
@@ -40,6 +43,22 @@ std::string digest_of(const std::string& content) {
     Digest digest;
     digest.add_bytes(content.data(), content.size());
     return digest.hex();
+}
+
+std::string digest_of_bytes(const void* data, uint64_t bytes) {
+    constexpr uint64_t kPiece = uint64_t{1} << 20;
+    std::vector<XXH128_hash_t> pieces((bytes + kPiece - 1) / kPiece);
+    parallel_for(static_cast<uint32_t>(pieces.size()), [&](uint32_t i) {
+        const uint64_t first = i * kPiece;
+        pieces[i] = XXH3_128bits(static_cast<const char*>(data) + first, std::min(kPiece, bytes - first));
+    });
+    Digest whole;
+    whole.add_value(bytes);
+    for (const XXH128_hash_t& piece : pieces) {
+        whole.add_value(piece.high64);
+        whole.add_value(piece.low64);
+    }
+    return whole.hex();
 }
 
 std::string digest_of_file(const std::string& path) {

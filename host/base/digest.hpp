@@ -39,6 +39,8 @@ class Digest {
 
 // The digest of a whole content.
 std::string digest_of(const std::string& content);
+// Another digest of it, by all cores: large contents are read as fast as memory is.
+std::string digest_of_bytes(const void* data, uint64_t bytes);
 // The same of a file, which is read piece by piece; empty if it cannot be read.
 std::string digest_of_file(const std::string& path);
 

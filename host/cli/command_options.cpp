@@ -118,7 +118,7 @@ void add_why(CLI::App& app, WhyCommand& why) {
 }
 
 void add_check(CLI::App& app, CheckCommand& command) {
-    app.add_option("plugin", command.what,
+    app.add_option("plugins", command.what,  // not "plugin": CLI11 2.4 takes that for the name of --plugin, too
                    "Ids as `clarity plugins` lists them, libraries, or folders of source, which are built first")
         ->type_name("PLUGIN")
         ->required();

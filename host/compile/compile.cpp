@@ -1,6 +1,7 @@
 #include "compile/compile.hpp"
 
 #include <chrono>
+#include <mutex>
 #include <optional>
 
 #include "base/elapsed.hpp"
@@ -9,13 +10,15 @@
 #include "base/timeline.hpp"
 #include "compile/compile_in_worker.hpp"
 #include "compile/program_store.hpp"
-#include "device/kernel_files.hpp"
 
 namespace clarity {
 namespace {
 
 // Returns nothing if the driver refuses its own binary.
 std::optional<cl::Program> program_of(Device& device, const std::vector<char>& binary, const std::string& options) {
+    // PoCL 3.1 and 5.0 unpack a binary into their folder, and remove a file there that another thread has just written.
+    static std::mutex unpacking;
+    const std::lock_guard<std::mutex> lock(unpacking);
     try {
         cl::Program program(device.context(), {device.info().cl_device},
                             {std::vector<unsigned char>(binary.begin(), binary.end())});
@@ -28,54 +31,87 @@ std::optional<cl::Program> program_of(Device& device, const std::vector<char>& b
     }
 }
 
-// A request for one device. PoCL compiles kernels when they are first launched, so the worker launches them if it may.
+// A program for one device. options: of the request, and what else the compiler is told.
 struct DeviceRequest {
-    DeviceRequest(const DeviceInfo& of, const CompileRequest& request)
-        : info(of),
-          // A kernel that was edited may end on zeros or not.
-          launches(of.pocl && request.ends_on_zeros && edited_kernels().empty()),
-          options(request.options + (launches ? " -cl-kernel-arg-info" : "")),
-          key(program_key(of, request.source, options)) {}
+    DeviceRequest(const DeviceInfo& of, const CompileRequest& what, const char* more_options = "")
+        : info(of), request(what), options(what.options + more_options), key(program_key(of, what.source, options)) {}
     const DeviceInfo& info;
-    const bool launches;
+    const CompileRequest& request;
     const std::string options, key;
 };
 
+BuildResult build_here(Device& device, const DeviceRequest& wanted) {
+    return build_program(device, wanted.request.source, wanted.options, wanted.request.what);
+}
+
 // Compiles a program that is not on disk, and keeps it there.
-CompileOutcome compile_first(const DeviceRequest& wanted, const CompileRequest& request, Progress& progress) {
-    const DeviceInfo& info = wanted.info;
-    // For the binary of a program that was not launched PoCL generates code, which the first launch does anyhow. Its entry in
-    // PoCL's cache serves as well then.
-    const bool wants_binary = !info.pocl || wanted.launches;
-    const std::string folder = info.pocl ? folder_for_worker() : std::string();
-    const CompileJob job{request.source, wanted.options,  info.id(),    info.name,
-                         info.driver,    wanted.launches, wants_binary, folder};
-    CompileOutcome outcome;
-    try {
-        outcome = compile_in_worker(info, job, request.what, progress);
-    } catch (...) {
-        drop_folder(folder);
-        throw;
-    }
-    if (outcome.state == CompileOutcome::compiled && outcome.binary.empty() && !folder.empty()) {
-        take_entry(wanted.key, folder);
-        return outcome;
-    }
+CompileOutcome compile_first(const DeviceRequest& wanted, Progress& progress) {
+    CompileOutcome outcome =
+        compile_in_worker(wanted.info, wanted.request.source, wanted.options, wanted.request.what, progress);
     if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
-    drop_folder(folder);
     return outcome;
 }
 
-// Whether PoCL's cache has the program already, or has it now from the store.
-bool finds_entry(const DeviceRequest& wanted, const std::optional<std::vector<char>>& stored) {
-    return has_entry(wanted.key) || (stored && wanted.info.pocl && unpack_entry(wanted.key, *stored));
+// The program from its binary, or compiled here if that is empty or refused.
+BuildResult take(Device& device, const DeviceRequest& wanted, const std::vector<char>& binary) {
+    if (!binary.empty()) {
+        BuildResult result;
+        if (auto program = program_of(device, binary, wanted.options)) {
+            result.program = *program;
+            return result;
+        }
+        forget_program(wanted.key);
+    }
+    set_aside(wanted.key);
+    BuildResult built = build_here(device, wanted);
+    put_back(wanted.key);
+    return built;
 }
 
-// What the store has of a program. A note that it compiles is of no use if PoCL has lost its cache since.
-std::optional<std::vector<char>> stored_program(const DeviceRequest& wanted) {
-    auto stored = find_program(wanted.key);
-    if (stored && stored->empty() && wanted.info.pocl && has_own_pocl_cache()) stored.reset();
-    return stored;
+// A program that was compiled before.
+std::optional<BuildResult> load(Device& device, const DeviceRequest& wanted) {
+    const auto stored = find_program(wanted.key);
+    if (!stored) return std::nullopt;
+    return take(device, wanted, *stored);
+}
+
+BuildResult compile(Device& device, const DeviceRequest& wanted, Progress& progress) {
+    const CompileOutcome outcome = compile_first(wanted, progress);
+    if (outcome.state == CompileOutcome::failed)
+        throw build_error(wanted.info, wanted.request.what, outcome.error, outcome.log);
+    if (outcome.state == CompileOutcome::no_device)
+        log(LogLevel::debug, "compiling in this process: the worker cannot open the device: " + outcome.log);
+    BuildResult result = take(device, wanted, outcome.binary);
+    result.log = outcome.log;
+    return result;
+}
+
+// LLVM 18, which PoCL 6.0 uses, ends the process where one of its passes has more to do when it is run again ("Instruction
+// Combining did not reach a fixpoint"). No text of ours can rule that out. So where a compiler crashes, the program is compiled
+// without the compiler's optimiser. Its pictures are the same, and take longer.
+constexpr const char* kNoOptimiser = " -cl-opt-disable";
+
+// Returns load(program), or, where that gives nothing, compile(program). If the compiler crashes at it, or has done so before,
+// the program is the one without the optimiser: it alone is kept then, which tells later starts. Throws the first
+// CompilerCrashed if there are two.
+template <class Load, class Compile>
+auto compile_in_spite_of_crashes(const DeviceInfo& info, const CompileRequest& request, const Load& load,
+                                 const Compile& compile) {
+    const DeviceRequest wanted(info, request);
+    if (auto loaded = load(wanted)) return *loaded;
+    const DeviceRequest plain(info, request, kNoOptimiser);
+    if (auto loaded = load(plain)) return *loaded;
+    try {
+        return compile(wanted);
+    } catch (const CompilerCrashed& crash) {
+        log(LogLevel::warning,
+            std::string(crash.what()) + "; compiling again without the compiler's optimiser, so pictures will take longer");
+        try {
+            return compile(plain);
+        } catch (const CompilerCrashed&) {
+            throw crash;
+        }
+    }
 }
 
 }  // namespace
@@ -83,45 +119,25 @@ std::optional<std::vector<char>> stored_program(const DeviceRequest& wanted) {
 BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const timeline::Scope span("compile", [&] { return "compile " + request.what; });
-    const DeviceInfo& info = device.info();
-    const auto here = [&](const std::string& options) {
-        BuildResult built = build_program(device, request.source, options, request.what);
-        built.ms = ms_since(start);
-        return built;
-    };
-    if (!compiles_in_worker()) return here(request.options);
-    const DeviceRequest wanted(info, request);
-    BuildResult result;
-    std::optional<std::vector<char>> binary = stored_program(wanted);
-    if (finds_entry(wanted, binary)) return here(wanted.options);
-    if (!binary) {
-        CompileOutcome outcome = compile_first(wanted, request, progress);
-        if (outcome.state == CompileOutcome::failed) throw build_error(info, request.what, outcome.error, outcome.log);
-        if (outcome.state == CompileOutcome::no_device)
-            log(LogLevel::debug, "compiling in this process: the worker cannot open the device: " + outcome.log);
-        result.log = outcome.log;
-        binary = std::move(outcome.binary);
-    }
-    if (!binary->empty()) {
-        auto program = program_of(device, *binary, wanted.options);
-        if (program) {
-            result.program = *program;
-            result.ms = ms_since(start);
-            return result;
-        }
-        forget_program(wanted.key);
-    }
-    set_aside(wanted.key);
-    BuildResult built = here(wanted.options);
-    put_back(wanted.key);
+    if (!compiles_in_worker()) return build_program(device, request.source, request.options, request.what);
+    BuildResult built = compile_in_spite_of_crashes(
+        device.info(), request, [&](const DeviceRequest& wanted) { return load(device, wanted); },
+        [&](const DeviceRequest& wanted) { return compile(device, wanted, progress); });
+    built.ms = ms_since(start);
     return built;
 }
 
 void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress) {
     if (!compiles_in_worker() || !keeps_programs()) return;
-    const DeviceRequest wanted(info, request);
+    struct Kept {};
     try {
-        if (!has_entry(wanted.key) && !stored_program(wanted)) compile_first(wanted, request, progress);
+        compile_in_spite_of_crashes(
+            info, request,
+            [](const DeviceRequest& wanted) { return find_program(wanted.key) ? std::optional<Kept>(Kept()) : std::nullopt; },
+            [&](const DeviceRequest& wanted) {
+                compile_first(wanted, progress);
+                return Kept();
+            });
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& e) {

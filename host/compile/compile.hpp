@@ -1,8 +1,10 @@
 // compile.hpp -- compiles kernels so that a compiler that hangs, crashes or takes all memory never harms this process.
 //
-// A program is compiled in a worker process first (host/worker), if compiles_in_worker(). Then the host gets it: as a binary
-// from the worker, or, where PoCL is slow to give one, as what PoCL has written into its cache (program_store.hpp). Programs
-// that were compiled once are known on disk (program_store.hpp), and need no worker.
+// A program is compiled in a worker process (host/worker), if compiles_in_worker(), and the host loads the binary that the
+// worker gives. Programs that were compiled once are known on disk (program_store.hpp), and need no worker. A driver that gives
+// no binary compiles a second time in this process, where it did no harm in the worker.
+//
+// Where the compiler crashes, a warning says so, and the program is compiled without the compiler's optimiser.
 #pragma once
 #include <string>
 
@@ -16,9 +18,6 @@ namespace clarity {
 struct CompileRequest {
     std::string source, options;
     std::string what;  // for messages, such as "tracer iterative with accel bvh2"
-    // Every kernel of the program ends at once if all its buffers are zero. The worker then launches each, because PoCL
-    // compiles a kernel when it is first launched with a work-group size.
-    bool ends_on_zeros = false;
 };
 
 // Compiles a program for `device`. progress: cancels the compilation within 0.1 s.

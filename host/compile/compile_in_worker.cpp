@@ -1,7 +1,9 @@
 #include "compile/compile_in_worker.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
@@ -39,7 +41,10 @@ class Compilation : public worker::Job {
             run(job, outcome, progress);
             return outcome;
         } catch (const worker::JobDied& died) {
-            throw Error(died.code(), std::string(died.what()) + " (" + doing() + "); " + kSimplerForms, log_);
+            const std::string message = std::string(died.what()) + " (" + doing() + "); " + kSimplerForms;
+            if (died.cause == worker::Cause::crashed || died.cause == worker::Cause::exited)
+                throw CompilerCrashed(died.code(), message, log_);
+            throw Error(died.code(), message, log_);
         }
     }
 
@@ -64,6 +69,26 @@ class Compilation : public worker::Job {
     std::string log_;
 };
 
+// An empty folder for PoCL in one worker: what it compiles there comes back as a binary. Gone at the end, however the worker
+// ends.
+class WorkerFolder {
+ public:
+    explicit WorkerFolder(const DeviceInfo& info) {
+        static std::atomic<unsigned> count{0};
+        if (info.pocl && has_own_pocl_cache()) path_ = pocl_cache() + "/worker-" + std::to_string(count++);
+    }
+    ~WorkerFolder() {
+        std::error_code ignored;
+        if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+    }
+    WorkerFolder(const WorkerFolder&) = delete;
+    WorkerFolder& operator=(const WorkerFolder&) = delete;
+    const std::string& path() const { return path_; }
+
+ private:
+    std::string path_;  // empty: PoCL has no folder of this process's own, and uses its usual one
+};
+
 constexpr const char* kKilled = "the OpenCL compiler was killed from outside, maybe for want of memory";
 
 }  // namespace
@@ -84,9 +109,11 @@ double compile_patience_s() {
     return seconds > 0 && std::isfinite(seconds) ? seconds : 60;
 }
 
-CompileOutcome compile_in_worker(const DeviceInfo& info, const CompileJob& job, const std::string& what, Progress& progress) {
+CompileOutcome compile_in_worker(const DeviceInfo& info, const std::string& source, const std::string& options,
+                                 const std::string& what, Progress& progress) {
     if (progress.cancelled()) throw Cancelled();
-    return Compilation(info, what).outcome(job, progress);
+    const WorkerFolder folder(info);
+    return Compilation(info, what).outcome({source, options, info.id(), info.name, info.driver, folder.path()}, progress);
 }
 
 }  // namespace clarity

@@ -12,8 +12,15 @@ double compile_patience_s();
 
 extern const worker::JobKind kCompileJob;
 
-// Runs the job. what: for messages. Throws Error(kernel_build_failed) if the worker does not end as it should, with what the
-// compiler printed in details(), and Cancelled. Compiler errors are no failure: they are in the result.
-CompileOutcome compile_in_worker(const DeviceInfo& info, const CompileJob& job, const std::string& what, Progress& progress);
+// The compiler ended its own process.
+struct CompilerCrashed : Error {
+    using Error::Error;
+};
+
+// Runs the job. what: for messages. Throws CompilerCrashed, Error(kernel_build_failed) if the worker does not end as it should
+// for another reason, both with what the compiler printed in details(), and Cancelled. Compiler errors are no failure: they are
+// in the result.
+CompileOutcome compile_in_worker(const DeviceInfo& info, const std::string& source, const std::string& options,
+                                 const std::string& what, Progress& progress);
 
 }  // namespace clarity

@@ -12,13 +12,10 @@ namespace clarity {
 struct CompileJob {
     std::string source, options;
     std::string device, name, driver;  // id as `--device` takes it; the worker refuses a device of another name or driver
-    bool ends_on_zeros = false;
-    bool wants_binary = false;
-    std::string pocl_cache;  // the folder that PoCL compiles into; empty: its own
+    std::string pocl_cache;            // an empty folder that PoCL compiles into; empty: its usual one
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.source, self.options, self.device, self.name, self.driver, self.ends_on_zeros, self.wants_binary,
-               self.pocl_cache);
+        parcel(self.source, self.options, self.device, self.name, self.driver, self.pocl_cache);
     }
 };
 
@@ -28,7 +25,7 @@ struct CompileOutcome {
     uint32_t state = compiled;
     int32_t error = 0;         // OpenCL's, if failed
     std::string log;           // the compiler's; why, if there is no device
-    std::vector<char> binary;  // empty: not asked for, or the driver gives none
+    std::vector<char> binary;  // empty: the driver gives none
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
         parcel(self.state, self.error, self.log, self.binary);

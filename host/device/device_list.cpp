@@ -130,9 +130,10 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
 }  // namespace
 
 std::vector<DeviceInfo> list_devices(std::vector<DeviceWarning>* warnings) {
-    static std::once_flag once;
-    static std::string cache_warning;  // once, and only if PoCL is there
-    std::call_once(once, [] { cache_warning = prepare_pocl_cache(); });
+    // PoCL 3.1 crashes, or tells of no device, if two threads of a process ask it first.
+    static std::mutex one_at_a_time;
+    const std::lock_guard<std::mutex> lock(one_at_a_time);
+    static std::string cache_warning = prepare_pocl_cache();  // told once, and only if PoCL is there
     const auto warn = [&](const std::string& text, bool is_minor = false) {
         if (warnings) warnings->push_back({text, is_minor});
     };

@@ -57,10 +57,18 @@ void limit(int resource, uint64_t soft, uint64_t hard, const char* what) {
 
 void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders, const std::vector<std::string>& files,
                    const WorkerLimits& limits) {
-    // Small thread stacks and few malloc arenas: on a machine with many cores they would otherwise use up the address space.
+    // Small thread stacks and few malloc arenas: on a machine with many cores they would otherwise use up the address space,
+    // which a driver may have. Kernels are tried there on 7/8 of the stack that a thread has in the program, so that one that
+    // passes has room in the program too, where it is compiled without checks. A frame too large for its stack would lie in
+    // that of the next thread: so a gap is between them that no frame spans.
+    constexpr size_t kSmall = size_t{2} << 20, kGap = size_t{1} << 30;
     pthread_attr_t attributes;
-    pthread_attr_init(&attributes);
-    pthread_attr_setstacksize(&attributes, 2u << 20);
+    pthread_getattr_default_np(&attributes);
+    size_t stack_bytes = 0;
+    pthread_attr_getstacksize(&attributes, &stack_bytes);
+    const bool driver = kind == WorkerKind::driver && kLimitAddressSpace;
+    pthread_attr_setstacksize(&attributes, driver ? stack_bytes / 8 * 7 : kSmall);
+    if (driver) pthread_attr_setguardsize(&attributes, kGap);
     pthread_setattr_default_np(&attributes);
     pthread_attr_destroy(&attributes);
     mallopt(M_ARENA_MAX, 2);

@@ -121,5 +121,5 @@ def layout(name):
 
 
 def texts(values):
-    """An array of texts with NULL behind the last."""
+    """An array of texts with NULL behind the last; _arguments.py has checked them."""
     return (ctypes.c_char_p * (len(values) + 1))(*(os.fsencode(value) for value in values), None)

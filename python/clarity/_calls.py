@@ -1,9 +1,14 @@
-"""Calls of the library that Ctrl-C ends, with progress."""
+"""Calls of the library that Ctrl-C ends, with progress; and the end of all calls."""
+import atexit
 import ctypes
 import logging
 import sys
 import threading
+import weakref
 
+import numpy as np
+
+from . import _arguments
 from ._binding import constants, header, library, struct
 from ._errors import error_of
 
@@ -20,6 +25,14 @@ _LEVELS = {
 def check(code):
     if code:
         raise error_of(code)
+
+
+def free_with(owner, function, handle):
+    """Frees a handle with its owner. At the end of the interpreter handles stay: threads may still read arrays that lie in them."""
+    weakref.finalize(owner, function, handle).atexit = False
+
+
+_BOOLEANS = bool, np.bool_
 
 
 class _Bar:
@@ -51,7 +64,8 @@ class _Watch:
     def __init__(self, progress):
         self.failure = None
         self._cancel = ctypes.c_int32(0)
-        self._function = _Bar() if progress is True else progress or None
+        progress = _arguments.progress(progress)
+        self._function = _Bar() if progress is True else progress
         told = dict(header.structs["clarity_watch"]._fields_)["progress"]
         self._told = told(self._tell) if self._function else told()
         self.struct = struct("clarity_watch", progress=self._told, cancel=ctypes.addressof(self._cancel))
@@ -66,7 +80,7 @@ class _Watch:
     def _tell(self, _user, stage, fraction):
         try:
             going = self._function(stage.decode(errors="replace"), fraction if fraction >= 0 else None)
-            return 0 if going is False else 1
+            return 0 if type(going) in _BOOLEANS and not going else 1
         except BaseException as failure:  # passed on by the call
             self.failure = failure
             return 0
@@ -76,7 +90,7 @@ def call(function, *arguments, progress=None):
     """Calls a function whose last argument is a watch. Python handles signals on its main thread alone, between its own
     instructions: so there the library works on another thread, and a KeyboardInterrupt cancels it."""
     watch = _Watch(progress)
-    if threading.current_thread() is not threading.main_thread():
+    if threading.current_thread() is not threading.main_thread() or _ended:
         code = function(*arguments, ctypes.byref(watch.struct))
         error = error_of(code) if code else None
     else:
@@ -127,9 +141,17 @@ def _on_log(_user, level, text):
 _listener = library.clarity_set_log.argtypes[0](_on_log)
 
 
-def start_log():
-    check(library.clarity_set_log(_listener, None))
+_ended = False
 
 
-def end_log():
+def _end():
+    """At the interpreter's end, when daemon threads may still trace: their calls end, further ones end the threads, and nothing calls
+    Python any more."""
+    global _ended
+    _ended = True
+    library.clarity_end()
     library.clarity_set_log(library.clarity_set_log.argtypes[0](), None)
+
+
+check(library.clarity_set_log(_listener, None))
+atexit.register(_end)

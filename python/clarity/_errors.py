@@ -1,4 +1,6 @@
 """Exceptions, one for each code of the library."""
+import threading
+
 from ._binding import constants, library
 
 
@@ -45,6 +47,8 @@ _KINDS = {
 
 def error_of(code):
     """The exception of the last call on this thread, which returned `code`."""
+    if code == constants["CLARITY_ENDED"] and threading.current_thread() is not threading.main_thread():
+        return SystemExit()  # ends a thread without a word
     error = _KINDS.get(code, Error)(library.clarity_error_text().decode(errors="replace"))
     error.details = library.clarity_error_details().decode(errors="replace")
     return error

@@ -1,14 +1,12 @@
 """Rays as arrays of numpy, and hits."""
-import copy
 import ctypes
 import math
-import operator
-import weakref
 
 import numpy as np
 
+from . import _arguments
 from ._binding import constants, layout, library
-from ._calls import check
+from ._calls import check, free_with
 from ._errors import UsageError
 
 _RAYS, _HITS = layout("clarity_rays"), layout("clarity_hits")
@@ -17,6 +15,8 @@ _TYPES = {np.dtype(np.float32): constants["CLARITY_FLOAT32"], np.dtype(np.float6
 
 def array_of(values, name):
     """Of anything that numpy can read without a copy, and of lists. What has no protocol of numpy's is asked for DLPack."""
+    if isinstance(values, np.ma.MaskedArray) and values.mask.any():
+        raise UsageError(f"{name}: numpy would take the masked numbers for valid ones: leave these rows out")
     try:
         if hasattr(values, "__dlpack__") and not hasattr(values, "__array__") and not hasattr(values, "__array_interface__"):
             return np.from_dlpack(values)
@@ -35,10 +35,76 @@ def as_array(values, name):
     return np.asarray(array, dtype=np.float64)
 
 
-class Rays:
-    """Arrays of rays in one shape. Nothing is copied unless types are mixed, or an array of several axes has to be repeated."""
+# An array of so many bytes is copied in 5 us, within which at least 100 rays are traced.
+_SMALL = 1 << 16
 
-    def __init__(self, origins, directions, t_min=None, t_max=None, mask=None):
+
+def held(array, given, name):
+    """An array that is asked again later, when the caller, who gave `given`, may have written to it. A copy if it is small or has gaps;
+    of a larger one a Lent, which takes no memory and tells."""
+    if array.nbytes <= _SMALL:
+        return array.copy()
+    if array is not given and array.base is None:
+        return array  # nobody else knows it
+    if 0 in array.strides[:-1]:
+        repeated = [slice(1 if step == 0 else None) for step in array.strides[:-1]]
+        return held(array[tuple(repeated)], given, name)
+    for one in (array, array.T):
+        if one.flags.c_contiguous:
+            return Lent(array, one, name)
+    return array.copy()
+
+
+class Lent:
+    """A large array of the caller's, and a digest of what it held."""
+
+    __slots__ = "_array", "_bytes", "_name", "_digest"
+
+    def __init__(self, array, in_order, name):
+        self._array, self._bytes, self._name, self._digest = array, in_order, name, digest_of(in_order)
+
+    def get(self):
+        if digest_of(self._bytes) != self._digest:
+            raise UsageError(f"{self._name}: the array was changed after the call that it was given to; ask before, or give that call a copy")
+        return self._array
+
+
+def asked(array):
+    """The array as it was: of one that is held."""
+    return array.get() if type(array) is Lent else array
+
+
+def digest_of(array):
+    """Of an array without gaps."""
+    text = ctypes.create_string_buffer(33)
+    check(library.clarity_digest(address_of(array), array.nbytes, text))
+    return text.value
+
+
+class Lines:
+    """Where rays are: what a Hit knows of those that it is of."""
+
+    def __init__(self, origins, directions, shape):
+        self.origins, self.directions, self.shape, self.count = origins, directions, shape, math.prod(shape)
+
+    def points(self, t, ray=Ellipsis):
+        """Where rays are at t, in float64. ray: numbers of rays; otherwise t is in their shape with one axis more."""
+        def doubles(array):
+            array = asked(array)
+            return (array if ray is Ellipsis else np.broadcast_to(array, self.shape + (3,)).reshape(-1, 3)[ray]).astype(np.float64)
+
+        return doubles(self.origins) + t * doubles(self.directions)
+
+    def __reduce__(self):
+        return Lines, (asked(self.origins), asked(self.directions), self.shape)
+
+
+class Rays(Lines):
+    """Arrays of rays in one shape. Nothing is copied unless types are mixed, or an array of several axes has to be repeated. is_held:
+    points() are those of these rays, whatever the caller does to the arrays."""
+
+    def __init__(self, origins, directions, t_min=None, t_max=None, mask=None, is_held=False):
+        given_origins, given_directions = origins, directions
         origins, directions = as_array(origins, "origins"), as_array(directions, "directions")
         limits = [None, None]
         shape, dtype = origins.shape[:-1], origins.dtype
@@ -56,7 +122,13 @@ class Rays:
         direction, direction_steps = self._flattened(directions, 1)
         (begin, begin_step), (end, end_step) = [(0, (0,)) if limit is None else self._flattened(limit, 0) for limit in limits]
         steps = origin_steps + direction_steps + begin_step + end_step
-        self.struct = _RAYS.pack(_RAYS.size, _TYPES[dtype], self.count, origin, direction, begin, end, *steps, mask_of(mask), 0, 0)
+        bits = 0 if mask is None else _arguments.mask(mask)
+        self.struct = _RAYS.pack(_RAYS.size, _TYPES[dtype], self.count, origin, direction, begin, end, *steps, bits, 0, 0)
+        if is_held and self.count <= _SMALL // 24:  # the same as held(), in half of the time
+            self.origins, self.directions = origins.copy(), directions.copy()
+        elif is_held:
+            self.origins = held(origins, given_origins, "origins")
+            self.directions = held(directions, given_directions, "directions")
 
     @staticmethod
     def _common_shape(arrays):
@@ -68,13 +140,6 @@ class Rays:
             return np.broadcast_shapes(*shapes)
         except ValueError:
             raise UsageError(f"rays of the shapes {', '.join(map(str, shapes))} do not fit each other") from None
-
-    def points(self, t, ray=Ellipsis):
-        """Where rays are at t, in float64. ray: numbers of rays; otherwise t is in their shape with one axis more."""
-        def doubles(array):
-            return (array if ray is Ellipsis else np.broadcast_to(array, self.shape + (3,)).reshape(-1, 3)[ray]).astype(np.float64)
-
-        return doubles(self.origins) + t * doubles(self.directions)
 
     def _flattened(self, array, axes):
         """Where the array with one axis of rays lies, and its steps in bytes; `axes` axes behind it belong to a ray."""
@@ -92,45 +157,67 @@ class Rays:
 class Packed:
     """Rays that lie on the device of a tracer: made by Tracer.pack(). Their arrays are needed no more, but for Hit.points()."""
 
-    def __init__(self, rays, handle):
-        self.shape, self.count, self.origins, self.directions = rays.shape, rays.count, rays.origins, rays.directions
-        self.points = rays.points
-        self._handle = handle
-        weakref.finalize(self, library.clarity_packed_free, handle)
-        self.struct = self._struct(None)
+    def __init__(self, *_, **__):
+        raise TypeError("clarity.Packed: made by Tracer.pack(origins, directions)")
 
-    def _struct(self, mask):
-        return _RAYS.pack(_RAYS.size, 0, self.count, *(0,) * 10, mask_of(mask), 0, self._handle)
+    @classmethod
+    def _of(cls, rays, handle):
+        packed = cls.__new__(cls)
+        packed._lines, packed._handle, packed._first = Lines(rays.origins, rays.directions, rays.shape), handle, None
+        free_with(packed, library.clarity_packed_free, handle)
+        packed._tell(None)
+        return packed
+
+    def _tell(self, mask):
+        """What the library is told of them."""
+        bits = 0 if mask is None else _arguments.mask(mask)
+        self.struct = _RAYS.pack(_RAYS.size, 0, self._lines.count, *(0,) * 10, bits, 0, self._handle)
 
     def masked(self, mask):
         if mask is None:
             return self
-        other = copy.copy(self)  # the first one frees the rays
-        other._first = self
-        other.struct = self._struct(mask)
+        other = type(self).__new__(type(self))
+        other._lines, other._handle, other._first = self._lines, self._handle, self  # the first one frees the rays
+        other._tell(mask)
         return other
 
+    @property
+    def shape(self):
+        return self._lines.shape
+
+    @property
+    def count(self):
+        return self._lines.count
+
+    def __reduce_ex__(self, _protocol):
+        raise TypeError("a clarity.Packed cannot be pickled or copied: it lies on a device; send its arrays, and pack() them there")
+
     def __len__(self):
-        return self.shape[0]
+        return length_of(self)
 
     def __repr__(self):
         return f"<clarity.Packed: {self.count} rays>"
 
 
-def rays_of(origins, directions, t_min, t_max, mask):
+def length_of(of_rays):
+    if not of_rays.shape:
+        raise TypeError(f"len() of a clarity.{type(of_rays).__name__} of one ray: it has no axis")
+    return of_rays.shape[0]
+
+
+def rays_of(origins, directions, t_min, t_max, mask, is_held=False):
     if not isinstance(origins, Packed):
-        return Rays(origins, directions, t_min, t_max, mask)
+        return Rays(origins, directions, t_min, t_max, mask, is_held)
     if directions is not None or t_min is not None or t_max is not None:
         raise UsageError("packed rays have their directions and limits: give nothing beside them but a mask")
     return origins.masked(mask)
 
 
-def mask_of(mask):
-    if mask is None:
-        return 0
-    if not 1 <= operator.index(mask) <= 255:
-        raise UsageError(f"mask: expected a whole number from 1 to 255, found {mask}")
-    return mask
+def arrays_of_rays(call, origins, directions, t_min, t_max, mask, is_held=False):
+    """Of a call that packed rays do not serve."""
+    if isinstance(origins, Packed):
+        raise UsageError(f"{call}: packed rays serve closest() and any(): give the arrays")
+    return Rays(origins, directions, t_min, t_max, mask, is_held)
 
 
 def address_of(array):
@@ -153,19 +240,45 @@ class Hit:
     Hits of many rays stay on the device that found them. An array is copied when it is first read; on a CPU it is the memory that
     the device wrote to. `out=` fills the arrays again that were read."""
 
-    def __init__(self, shape, brief=False, *, _tracer=None):
-        self.shape, self.brief = tuple(shape), brief
+    def __init__(self, shape, brief=False):
+        shape, brief = _arguments.size(shape, "shape"), _arguments.flag(brief, "brief")
+        self._begin(shape, brief, _Memory(math.prod(shape), brief))
+
+    def _begin(self, shape, brief, memory):
+        self._shape, self._brief = shape, brief
         self._arrays = [None] * len(_ARRAYS)
         # Where the hits are. Arrays are None that nobody has read. Without a memory they are the caller's.
-        self._memory = _Memory(math.prod(shape), brief) if _tracer is None else Kept(brief, _tracer)
+        self._memory = memory
         self._rays = None
         self._made = None
 
+    @classmethod
+    def _on(cls, shape, brief, tracer):
+        """Hits that stay on the tracer's device. None: in memory of numpy's."""
+        hit = cls.__new__(cls)
+        hit._begin(shape, brief, _Memory(math.prod(shape), brief) if tracer is None else Kept(brief, tracer))
+        return hit
+
+    @property
+    def shape(self):
+        """Of the rays."""
+        return self._shape
+
+    @property
+    def brief(self):
+        """Whether only t and prim are known."""
+        return self._brief
+
+    def __reduce__(self):
+        """As arrays; what is on a device is read."""
+        arrays = [self._array(number) for number in range(len(_ARRAYS))]
+        return _hit_again, (type(self), self._shape, self._brief, arrays, self._rays), of_users(self, _OURS)
+
     def _array(self, number):
         array = self._arrays[number]
-        if array is None and self._memory is not None and (number < _BRIEF or not self.brief):
+        if array is None and self._memory is not None and (number < _BRIEF or not self._brief):
             _, dtype, more = _ARRAYS[number]
-            array = self._arrays[number] = self._memory.array(number, self.shape + more, dtype)
+            array = self._arrays[number] = self._memory.array(number, self._shape + more, dtype)
         return array
 
     def _leave_memory(self):
@@ -184,11 +297,14 @@ class Hit:
         return self.prim >= 0
 
     def points(self):
-        """Where rays hit, in float64; nan where they hit nothing."""
+        """Where rays hit, in float64; nan where they hit nothing. Of the rays as they were: an array of more than 64 KiB that has been
+        changed since is a UsageError."""
+        if self._rays is None:
+            raise UsageError("points() of a Hit that no rays were traced into, or whose call failed: trace into it by out=")
         return self._rays.points(np.where(self.mask, self.t, np.nan).astype(np.float64)[..., None])
 
     def __len__(self):
-        return self.shape[0]
+        return length_of(self)
 
     def __repr__(self):
         return f"<clarity.Hit: {np.count_nonzero(self.mask)} of {self.mask.size} rays>"
@@ -196,7 +312,7 @@ class Hit:
     def _check(self, shape, tracer):
         """Whether hits of rays of this shape can be written here."""
         if self._memory is not None:
-            if self._memory.tracer in (None, tracer) and self.shape == shape:
+            if self._memory.tracer in (None, tracer) and self._shape == shape:
                 return
             self._leave_memory()
         for number, (name, dtype, more) in enumerate(_ARRAYS):
@@ -214,6 +330,15 @@ class Hit:
         return made[4]
 
 
+_OURS = {"_shape", "_brief", "_arrays", "_memory", "_rays", "_made"}
+_OURS_OF_ALL = {"_rays", "first", "ray", "t", "prim", "instance", "uv"}
+
+
+def of_users(thing, ours):
+    """What a copy gets besides its own: attributes that users have set. None: there are none."""
+    return {name: value for name, value in vars(thing).items() if name not in ours} or None
+
+
 # In the order of the library's numbers; the first _BRIEF are those of brief hits.
 _ARRAYS = (("t", np.float32, ()), ("prim", np.int32, ()), ("uv", np.float32, (2,)), ("instance", np.int32, ()))
 _BRIEF = 2
@@ -228,6 +353,14 @@ for _number, (_name, _, _) in enumerate(_ARRAYS):
             lambda self, array, number=_number: self._set(number, array),
         ),
     )
+
+
+def _hit_again(cls, shape, brief, arrays, rays):
+    """From what is pickled."""
+    hit = cls.__new__(cls)
+    hit._begin(shape, brief, None)
+    hit._arrays, hit._rays = list(arrays), rays
+    return hit
 
 
 def _struct_of_hits(t, prim, uv, instance):
@@ -254,11 +387,11 @@ class Kept:
     """Hits on the device of a tracer. Their arrays lie in memory of the library."""
 
     def __init__(self, brief, tracer):
-        self.tracer = tracer
+        self.tracer = tracer.key
         handle = ctypes.c_void_p()
-        check(library.clarity_kept_new(tracer, int(brief), ctypes.byref(handle)))
+        check(library.clarity_kept_new(tracer._handle, int(brief), ctypes.byref(handle)))
         self.handle = handle.value
-        weakref.finalize(self, library.clarity_kept_free, self.handle)
+        free_with(self, library.clarity_kept_free, self.handle)
 
     def array(self, number, shape, dtype):
         address = ctypes.c_void_p()
@@ -274,23 +407,34 @@ class AllHits:
     first     int64, the hits of ray i are first[i] to first[i + 1] - 1
     """
 
-    def __init__(self, rays, found):
-        self._rays = rays
+    def __init__(self, *_, **__):
+        raise TypeError("clarity.AllHits: made by Tracer.all(origins, directions)")
+
+    @classmethod
+    def _of(cls, rays, found):
         owner = _Owner(found)
 
         def array(name, dtype, count):
             return owner.array(getattr(found, name), dtype, count)
 
         count = found.count
-        self.first = array("first", np.int64, rays.count + 1)
-        self.ray = array("ray", np.int64, count)
-        self.t = array("t", np.float32, count)
-        self.prim = array("prim", np.int32, count)
-        self.instance = array("instance", np.int32, count)
-        self.uv = array("uv", np.float32, 2 * count).reshape(-1, 2)
+        return _all_hits_again(
+            cls,
+            Lines(rays.origins, rays.directions, rays.shape),
+            first=array("first", np.int64, rays.count + 1),
+            ray=array("ray", np.int64, count),
+            t=array("t", np.float32, count),
+            prim=array("prim", np.int32, count),
+            instance=array("instance", np.int32, count),
+            uv=array("uv", np.float32, 2 * count).reshape(-1, 2),
+        )
+
+    def __reduce__(self):
+        arrays = self.first, self.ray, self.t, self.prim, self.instance, self.uv
+        return _all_hits_again, (type(self), self._rays, *arrays), of_users(self, _OURS_OF_ALL)
 
     def points(self):
-        """Where the hits are, in float64."""
+        """Where the hits are, in float64; of the rays as they were, as Hit.points()."""
         return self._rays.points(self.t.astype(np.float64)[:, None], self.ray)
 
     def __iter__(self):
@@ -303,11 +447,20 @@ class AllHits:
         return f"<clarity.AllHits: {len(self)} of {self._rays.count} rays>"
 
 
+def _all_hits_again(cls, rays, first, ray, t, prim, instance, uv):
+    """From what is pickled."""
+    hits = cls.__new__(cls)
+    hits._rays, hits.first, hits.ray, hits.t, hits.prim, hits.instance, hits.uv = rays, first, ray, t, prim, instance, uv
+    for array in (first, ray, t, prim, instance, uv):
+        array.flags.writeable = False
+    return hits
+
+
 class _Owner:
     """Memory of the library that arrays lie in: freed when the last of them goes."""
 
     def __init__(self, found):
-        weakref.finalize(self, library.clarity_all_hits_free, ctypes.byref(found))
+        free_with(self, library.clarity_all_hits_free, ctypes.byref(found))
 
     def array(self, address, dtype, count):
         return array_at(address, dtype, (count,), self, frozen=True)
@@ -327,8 +480,15 @@ class _View:
     pass
 
 
+def check_hit(out, brief):
+    if not isinstance(out, Hit):
+        _arguments.refuse("out", "a Hit of the same shape, as of an earlier call or clarity.Hit(shape)", out)
+    if brief and not out._brief:
+        raise UsageError("brief: the Hit of out= says itself whether it is brief: give clarity.Hit(shape, brief=True)")
+
+
 def check_out(array, shape, dtype, name):
     good = isinstance(array, np.ndarray) and array.shape == shape and array.dtype == dtype
     if not good or not array.flags.c_contiguous or not array.flags.writeable:
-        raise UsageError(f"{name}: expected a writeable array of {np.dtype(dtype)} in the shape {shape} without gaps")
+        _arguments.refuse(name, f"a writeable array of {np.dtype(dtype)} in the shape {shape} without gaps", array)
     return array

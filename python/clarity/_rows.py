@@ -3,6 +3,9 @@ import ctypes
 import json
 import os
 
+import numpy as np
+
+from . import _arguments
 from ._binding import library, texts
 from ._calls import call
 
@@ -27,9 +30,11 @@ def _rows(command, what, options, progress):
         for one in value if isinstance(value, (list, tuple)) else [value]:
             if one is True:
                 words.append(name)
+            elif isinstance(one, (str, bytes, int, float, np.number, os.PathLike)) and one is not False:
+                words += [name, _arguments.file(one if isinstance(one, (bytes, os.PathLike)) else str(one), key)]
             elif one is not None and one is not False:
-                words += [name, os.fspath(one) if isinstance(one, os.PathLike) else str(one)]
-    words += ["--"] + [os.fspath(one) for one in what]
+                _arguments.refuse(key, "a text, a number, True, or a list of them", one)
+    words += ["--"] + [_arguments.file(one, command) for one in what]
     rows = []
 
     def on_row(_user, text):

@@ -1,40 +1,32 @@
 """Scenes, and tracers: scenes in a structure on a device."""
-import atexit
 import ctypes
 import json
 import os
 import time
-import weakref
 
 import numpy as np
 
+from . import _arguments
 from ._binding import constants, library, struct, texts
-from ._calls import call, check, end_log, start_log
+from ._calls import call, check, free_with
 from ._errors import UsageError
-from ._rays import AllHits, Hit, Kept, Packed, Rays, address_of, array_of, as_array, check_out, rays_of
+from ._rays import AllHits, Hit, Kept, Packed, Rays, address_of, array_of, arrays_of_rays, as_array, asked, check_hit, check_out, held, of_users, rays_of
+
+_MOST_PIXELS = 16384  # of a side, as the setting `size`
 
 # Rays that are traced before a person waits: no thread is started for them. A start takes up to 0.1 ms, in which a GPU traces a
 # million rays; so a tracer learns how fast it is.
 _FEW, _SHORT_S = 4096, 0.005
 
 
-def _settings(settings):
-    """Texts as of `clarity --set`, from keyword arguments."""
-    return [f"{key}={str(value).lower() if isinstance(value, bool) else value}" for key, value in settings.items()]
-
-
-def _numbers(value):
-    """A text, or numbers with commas between them; None stays."""
-    if value is None or isinstance(value, str):
-        return value and value.encode()
-    return ",".join(repr(float(number)) for number in np.ravel(value)).encode()
-
-
 class Scene:
     """What files or arrays describe. Scene(vertices, faces): triangles of arrays of the shapes (n, 3). float32 vertices and uint32
     faces without gaps are lent, not copied: they must not change while the scene or a tracer of it lives."""
 
+    _handle = None
+
     def __init__(self, vertices, faces, *, progress=None):
+        given = vertices, faces
         vertices = np.ascontiguousarray(as_array(vertices, "vertices"))
         faces = array_of(faces, "faces")
         for name, array in (("vertices", vertices), ("faces", faces)):
@@ -46,6 +38,8 @@ class Scene:
             raise UsageError(f"faces: the numbers {faces.min()} to {faces.max()} do not fit {len(vertices)} vertices")
         faces = np.ascontiguousarray(faces, np.uint32)
         self._lent = vertices, faces
+        arrays = tuple(held(array, one, name) for array, one, name in zip(self._lent, given, ("vertices", "faces")))
+        self._again = lambda: (_scene_of_arrays, *map(asked, arrays))
         double = vertices.dtype == np.float64
         mesh = struct(
             "clarity_mesh",
@@ -67,8 +61,7 @@ class Scene:
             call(made, *arguments, progress=progress)
         finally:
             if handle:
-                # At the program's end too, before Python's own.
-                weakref.finalize(self, library.clarity_scene_free, handle.value)
+                free_with(self, library.clarity_scene_free, handle.value)
         self._handle = handle.value
         text = ctypes.c_char_p()
         check(library.clarity_scene_info(self._handle, ctypes.byref(text)))
@@ -85,27 +78,70 @@ class Scene:
     def on(self, device="", accel="", *, progress=None, **settings):
         """A tracer of this scene. device and accel: texts as of --device and --accel; "": the best. progress: True for a line on
         stderr, or a function of the stage and the fraction that is done (None: not known), which returns False to cancel."""
-        return Tracer(self, device, accel, settings, progress)
+        return Tracer._of(self, device, accel, settings, progress)
 
     def __repr__(self):
-        return f"<clarity.Scene: {self.info['triangles']} triangles>"
+        if self._handle is None:
+            return "<clarity.Scene that was not made>"
+        kinds = {kind: self.info[kind] for kind in ("triangles", "polygons", "spheres", "planes")}
+        kinds.update((f"{kind} shapes", count) for kind, count in self.info["shapes"].items())
+        parts = [f"{count} {kind[:-1] if count == 1 else kind}" for kind, count in kinds.items() if count]
+        return f"<clarity.Scene: {', '.join(parts) or 'nothing to hit'}>"
+
+    def __copy__(self):
+        return self  # what it describes does not change
+
+    def __reduce__(self):
+        """For another process: arrays by value, files by their absolute paths, from which they are imported again."""
+        if self._handle is None:
+            raise UsageError("a clarity.Scene that was not made cannot be pickled or copied")
+        make, *arguments = self._again()
+        return make, (type(self), *arguments), of_users(self, _OURS)
+
+
+_OURS = {"_handle", "_lent", "_again", "info", "warnings"}
+
+
+def _scene_of_arrays(cls, vertices, faces):
+    """From what is pickled."""
+    scene = cls.__new__(cls)
+    Scene.__init__(scene, vertices, faces)
+    return scene
+
+
+def _scene_of_files(cls, *files, progress=None):
+    scene = cls.__new__(cls)
+    names = [_arguments.file(file, "load(*files)") for file in files]
+    paths = tuple(map(os.path.abspath, names))
+    scene._lent = None
+    scene._again = lambda: (_scene_of_files, *paths)
+    scene._take(library.clarity_scene_load, texts(names), len(names), progress=progress)
+    return scene
 
 
 def load(*files, progress=None):
     """A scene from files."""
-    scene = Scene.__new__(Scene)
-    names = [os.fspath(file) for file in files]
-    scene._take(library.clarity_scene_load, texts(names), len(names), progress=progress)
-    return scene
+    return _scene_of_files(Scene, *files, progress=progress)
 
 
 class Tracer:
     """A scene in a structure on a device; made by Scene.on()."""
 
-    def __init__(self, scene, device, accel, settings, progress):
+    def __init__(self, *_, **__):
+        raise TypeError("clarity.Tracer: made by Scene.on(device, accel, **settings)")
+
+    @classmethod
+    def _of(cls, scene, device, accel, settings, progress):
+        self = cls.__new__(cls)
         self.scene = scene
+        self.key = object()  # of this tracer, unlike its handle, for ever
+        self._lent = scene._lent
         self._few = {}  # of each function whose kernels are compiled: how many rays take less than _SHORT_S
-        options = struct("clarity_options", device=device.encode(), accel=accel.encode(), settings=texts(_settings(settings)))
+        words = texts(_arguments.settings(settings))
+        names = {"device": _arguments.choice(device, "device"), "accel": _arguments.choice(accel, "accel")}
+        given = {**{name: value for name, value in (("device", device), ("accel", accel)) if value}, **settings}
+        self._call = f"scene.on({', '.join(f'{name}={value!r}' for name, value in given.items())})"
+        options = struct("clarity_options", settings=words, **names)
         handle = ctypes.c_void_p()
 
         def made(watch):
@@ -115,8 +151,17 @@ class Tracer:
             call(made, progress=progress)
         finally:
             if handle:
-                weakref.finalize(self, library.clarity_tracer_free, handle.value)
+                free_with(self, library.clarity_tracer_free, handle.value)
         self._handle = handle.value
+        info = self.info
+        self._label = f"{info['accel']} on {info['device']}"
+        return self
+
+    def __reduce_ex__(self, _protocol):
+        raise TypeError(f"a clarity.Tracer cannot be pickled or copied: it lies on a device; send its scene, and call {self._call} there")
+
+    def __repr__(self):
+        return f"<clarity.Tracer: {self._label}, of {self.scene!r}>"
 
     def _trace(self, function, rays, to, progress):
         name = function.__name__
@@ -147,17 +192,23 @@ class Tracer:
         """The nearest hits of rays as a Hit. Rays of pack(), or arrays of float32 or float64 in any strides, broadcast against each other. mask: the
         rays hit only instances that share a bit of it with their mask. brief: only t and prim, faster. out: a Hit of the same
         shape, which is filled and returned. Hits of many rays stay on the device until they are read."""
-        rays = rays_of(origins, directions, t_min, t_max, mask)
+        if brief is not False:
+            brief = _arguments.flag(brief, "brief")
+        rays = rays_of(origins, directions, t_min, t_max, mask, True)
         if out is None:
-            hit = Hit(rays.shape, brief, _tracer=None if rays.count < _FEW else self._handle)
+            hit = Hit._on(rays.shape, brief, None if rays.count < _FEW else self)
         else:
             hit = out
-            hit._check(rays.shape, self._handle)
-        hit._rays = rays
-        if type(hit._memory) is Kept:
-            self._trace(library.clarity_keep, rays, hit._memory.handle, progress)
+            if brief or type(hit) is not Hit:
+                check_hit(hit, brief)
+            hit._check(rays.shape, self.key)
+            hit._rays = None  # of a call that fails
+        memory = hit._memory  # stays, whatever another thread does to the hit
+        if type(memory) is Kept:
+            self._trace(library.clarity_keep, rays, memory.handle, progress)
         else:
             self._trace(library.clarity_closest, rays, hit._struct(), progress)
+        hit._rays = rays if type(rays) is Rays else rays._lines
         return hit
 
     def move(self, vertices=None, *, instances=None, progress=None):
@@ -185,10 +236,12 @@ class Tracer:
         places = struct("clarity_places", type=constants["CLARITY_FLOAT64" if dtype == np.float64 else "CLARITY_FLOAT32"], **values)
         call(library.clarity_move, self._handle, ctypes.byref(places), progress=progress)
 
-    def pack(self, origins, directions, t_min=None, t_max=None, *, progress=None):
+    def pack(self, origins, directions=None, t_min=None, t_max=None, *, progress=None):
         """Rays that are traced often: they are read from the arrays once, and stay on the device, 32 bytes each. closest() and
         any() of this tracer take them instead of origins and directions."""
-        rays = Rays(origins, directions, t_min, t_max)
+        if isinstance(origins, Packed):
+            raise UsageError("pack: the rays are packed already")
+        rays = Rays(origins, directions, t_min, t_max, None, True)
         handle = ctypes.c_void_p()
 
         def made(watch):
@@ -199,7 +252,7 @@ class Tracer:
         except BaseException:
             library.clarity_packed_free(handle)
             raise
-        return Packed(rays, handle.value)
+        return Packed._of(rays, handle.value)
 
     def any(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
         """An array of bool: whether rays hit anything between t_min and t_max."""
@@ -208,33 +261,32 @@ class Tracer:
         self._trace(library.clarity_any, rays, address_of(occluded), progress)
         return occluded
 
-    def count(self, origins, directions, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
+    def count(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, out=None, progress=None):
         """An array of int64: how many hits each ray has with t_min <= t < t_max."""
-        rays = rays_of(origins, directions, t_min, t_max, mask)
+        rays = arrays_of_rays("count", origins, directions, t_min, t_max, mask)
         counts = np.empty(rays.shape, np.int64) if out is None else check_out(out, rays.shape, np.int64, "out")
         call(library.clarity_count, self._handle, rays.struct, address_of(counts), progress=progress)
         return counts
 
-    def all(self, origins, directions, t_min=None, t_max=None, *, mask=None, progress=None):
+    def all(self, origins, directions=None, t_min=None, t_max=None, *, mask=None, progress=None):
         """All hits of each ray, not only the nearest, as an AllHits: ray, t, prim = rt.all(origins, directions)."""
-        rays = rays_of(origins, directions, t_min, t_max, mask)
+        rays = arrays_of_rays("all", origins, directions, t_min, t_max, mask, True)
         found = struct("clarity_all_hits")
         call(library.clarity_all, self._handle, rays.struct, ctypes.byref(found), progress=progress)
-        return AllHits(rays, found)
+        return AllHits._of(rays, found)
 
     def render(self, width, height, *, camera=None, light=None, out=None, progress=None, **settings):
         """A picture as an array of float32, the top row first: (height, width, 3) for colours and vectors, else (height, width).
         settings: spp=16, tracer="path", depth=8, aov="t", and all others of --set. camera, light: texts as of --camera and
         --light, or their numbers."""
-        words = texts(_settings({"size": f"{width}x{height}", **settings}))
-        picture = struct("clarity_picture", settings=words, camera=_numbers(camera), light=_numbers(light))
+        size = f"{_arguments.whole(width, 'width of the size', 1, _MOST_PIXELS)}x{_arguments.whole(height, 'height of the size', 1, _MOST_PIXELS)}"
+        if "size" in settings:
+            raise UsageError("setting `size`: the picture has its size from width and height: leave it out")
+        words = texts(_arguments.settings({"size": size, **settings}))
+        picture = struct("clarity_picture", settings=words, camera=_arguments.numbers(camera, "camera"), light=_arguments.numbers(light, "light"))
         check(library.clarity_render(self._handle, ctypes.byref(picture), None))
         shape = (picture.height, picture.width) + ((picture.channels,) if picture.channels > 1 else ())
         pixels = np.empty(shape, np.float32) if out is None else check_out(out, shape, np.float32, "out")
         picture.room, picture.pixels = pixels.size, address_of(pixels)
         call(library.clarity_render, self._handle, ctypes.byref(picture), progress=progress)
         return pixels
-
-
-start_log()
-atexit.register(end_log)

@@ -2,7 +2,9 @@
 a mesh is anything with `vertices` and `faces`."""
 import numpy as np
 
+from . import _arguments
 from ._errors import UsageError
+from ._rays import as_array, digest_of
 from ._scene import Scene
 
 # Of contains_points: no plane or edge of a usual mesh lies along them.
@@ -12,22 +14,28 @@ _DIRECTIONS = np.array([[0.4395064455, 0.617598629942, 0.652231566745], [-0.7310
 class RayMeshIntersector:
     """The methods of trimesh's class of this name. device, accel, settings: as of Scene.on().
 
-    Rays have arrays of the shape (n, 3). The mesh is read when it is first asked, and again after its arrays have been replaced."""
+    Rays have arrays of the shape (n, 3). The mesh is read when it is first asked, and again after its arrays have changed. trimesh's
+    arrays tell so themselves; others are read for it in each call, which takes 1 ms of a million vertices."""
 
     def __init__(self, mesh, device="", accel="", **settings):
+        for name in ("vertices", "faces"):
+            if not hasattr(mesh, name):
+                _arguments.refuse("mesh", f"an object with vertices and faces; it has no {name}", mesh)
         self.mesh = mesh
         self._on = device, accel, settings
         self._read = None
 
+    def __getstate__(self):
+        return {**vars(self), "_read": None}  # a copy reads the mesh for itself
+
     @property
     def tracer(self):
         vertices, faces = self.mesh.vertices, self.mesh.faces
-        # trimesh's arrays tell whether they have changed.
-        state = tuple(hash(array) if type(array).__hash__ else id(array) for array in (vertices, faces))
+        state = tuple(map(_state, (vertices, faces)))
         if self._read is None or self._read[0] != state:
             device, accel, settings = self._on
-            tracer = Scene(np.array(vertices, np.float64), np.array(faces)).on(device, accel, **settings)
-            self._read = state, tracer, (vertices, faces)
+            tracer = Scene(np.array(as_array(vertices, "vertices"), np.float64), np.array(faces)).on(device, accel, **settings)
+            self._read = state, tracer
         return self._read[1]
 
     def intersects_any(self, ray_origins, ray_directions):
@@ -68,14 +76,23 @@ class RayMeshIntersector:
             return hit.points()[rays], rays, hit.prim[rays].astype(np.int64)
         hits = self.tracer.all(origins, directions)
         locations, rays, triangles = hits.points(), hits.ray, hits.prim.astype(np.int64)
-        if max_hits is None:
+        most = None if max_hits is None else _arguments.whole(max_hits, "max_hits", 0)
+        if most is None:
             return locations, rays.copy(), triangles
-        kept = np.arange(len(hits)) - hits.first[rays] < max_hits
+        kept = np.arange(len(hits)) - hits.first[rays] < most
         return locations[kept], rays[kept], triangles[kept]
 
 
+def _state(array):
+    """Another one when the array has other numbers. trimesh keeps the hash of its arrays until they are written to."""
+    if isinstance(array, np.ndarray) and type(array).__hash__:
+        return hash(array)
+    array = np.ascontiguousarray(array)
+    return array.shape, array.dtype.str, digest_of(array)
+
+
 def _three(values, name):
-    array = np.asarray(values, np.float64)
+    array = np.asarray(as_array(values, name), np.float64)
     if array.ndim != 2 or array.shape[1] != 3:
         raise UsageError(f"{name}: expected an array of shape (n, 3), found {array.shape}")
     return array

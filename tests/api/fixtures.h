@@ -52,6 +52,8 @@ void test_move(const clarity_scene* scene);
 void test_rows(void);
 void test_packed(const clarity_scene* scene);
 void test_kept(const clarity_scene* scene, const char* lanes);
+void test_kept_moved(const clarity_scene* scene);
 void test_all_hits(const clarity_scene* scene);
+void test_turns(const clarity_scene* scene);
 
 #endif

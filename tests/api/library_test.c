@@ -3,6 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -49,6 +50,18 @@ static void test_scenes(void) {
     not_finite[4] = NAN;
     bad = mesh_of(CLARITY_FLOAT32, not_finite);
     FAILS(clarity_scene_from_mesh(&bad, NULL, &scene), CLARITY_USAGE, "mesh of arrays");
+    FAILS(clarity_scene_from_mesh(&bad, NULL, &scene), CLARITY_USAGE, "not finite: of vertex 1");
+    const double lengths[] = {2e15, 2e-18};
+    const char* const words[] = {"beyond 1e15", "less than 1e-17"};
+    for (int i = 0; i < 2; ++i) {
+        double positions[12];
+        float floats[12];
+        for (int k = 0; k < 12; ++k) floats[k] = (float)(positions[k] = square[k] * lengths[i]);
+        bad = mesh_of(CLARITY_FLOAT64, positions);
+        FAILS(clarity_scene_from_mesh(&bad, NULL, &scene), CLARITY_USAGE, words[i]);
+        bad = mesh_of(CLARITY_FLOAT32, floats);
+        FAILS(clarity_scene_from_mesh(&bad, NULL, &scene), CLARITY_USAGE, words[i]);
+    }
     const char* const missing[] = {"/no/such/file.obj"};
     FAILS(clarity_scene_load(missing, 1, NULL, &scene), CLARITY_IMPORT_FAILED, missing[0]);
     FAILS(clarity_scene_load(missing, 0, NULL, &scene), CLARITY_USAGE, "no scene file");
@@ -130,6 +143,35 @@ static void test_pictures(const clarity_scene* scene) {
     clarity_tracer_free(tracer);
 }
 
+static clarity_tracer* asked_in_callback;
+static int32_t asks_library(void* user, const char* stage, float fraction) {
+    (void)user, (void)stage, (void)fraction;
+    const char* json = NULL;
+    FAILS(clarity_tracer_info(asked_in_callback, &json), CLARITY_USAGE, "called by a function that it calls itself");
+    return 1;
+}
+
+static void test_digest(void) {
+    static unsigned char bytes[3000000];
+    char first[33], second[33];
+    for (size_t i = 0; i < sizeof bytes; ++i) bytes[i] = (unsigned char)(i * 7 / 3);
+    WORKS(clarity_digest(bytes, sizeof bytes, first));
+    WORKS(clarity_digest(bytes, sizeof bytes, second));
+    CHECK(strlen(first) == 32 && strcmp(first, second) == 0);
+    const size_t places[] = {0, 1048576, sizeof bytes - 1};
+    for (int i = 0; i < 3; ++i) {
+        bytes[places[i]] ^= 1;
+        WORKS(clarity_digest(bytes, sizeof bytes, second));
+        CHECK(strcmp(first, second) != 0);
+        bytes[places[i]] ^= 1;
+    }
+    WORKS(clarity_digest(bytes, sizeof bytes - 1, second));
+    CHECK(strcmp(first, second) != 0);
+    WORKS(clarity_digest(NULL, 0, second));
+    FAILS(clarity_digest(NULL, 1, second), CLARITY_USAGE, "`bytes` is null");
+    FAILS(clarity_digest(bytes, 1, NULL), CLARITY_USAGE, "`digest` is null");
+}
+
 struct told {
     int calls, go_on;
     char stages[4096];
@@ -170,6 +212,9 @@ static void test_watch(const clarity_scene* scene) {
     cancel = 0;
     WORKS(clarity_closest(tracer, &query, &hits, &watch));
     CHECK(t == 1);
+    asked_in_callback = tracer;
+    watch.progress = asks_library;
+    WORKS(clarity_closest(tracer, &query, &hits, &watch));
     watch.struct_bytes = 3;
     FAILS(clarity_closest(tracer, &query, &hits, &watch), CLARITY_USAGE, "clarity_watch::struct_bytes");
     clarity_tracer_free(tracer);
@@ -225,6 +270,29 @@ static void test_threads(void) {
     CHECK(code == CLARITY_USAGE && strstr(clarity_error_text(), "`scene` is null"));
 }
 
+static void* ask_info(void* of) {
+    const float origin[] = {0.75f, 0.25f, 1}, direction[] = {0, 0, -1};
+    float t = 0;
+    const char* json = NULL;
+    const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
+    const clarity_rays query = one_ray(origin, direction);
+    WORKS(clarity_closest(of, &query, &hits, NULL)); /* so its text is another one */
+    for (int i = 0; i < 100; ++i) WORKS(clarity_tracer_info(of, &json));
+    return NULL;
+}
+
+/* What a thread was told about a tracer stays while another thread asks, too. */
+static void test_info(clarity_tracer* tracer) {
+    const char* json = NULL;
+    char copy[4096];
+    pthread_t other;
+    WORKS(clarity_tracer_info(tracer, &json));
+    CHECK(strlen(json) < sizeof copy);
+    snprintf(copy, sizeof copy, "%s", json);
+    CHECK(pthread_create(&other, NULL, ask_info, tracer) == 0 && pthread_join(other, NULL) == 0);
+    CHECK(strcmp(json, copy) == 0);
+}
+
 static void test_fork(clarity_scene* scene, clarity_tracer* tracer) {
     const pid_t child = fork();
     if (child == 0) {
@@ -234,6 +302,55 @@ static void test_fork(clarity_scene* scene, clarity_tracer* tracer) {
         clarity_tracer_free(tracer);
         clarity_scene_free(scene);
         _exit(bad);
+    }
+    int status = -1;
+    CHECK(waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+/* Traces for ever, until the library ends. Returns how it ended. */
+static void* trace_on(void* user) {
+    int32_t* const rounds = user;
+    const clarity_mesh mesh = mesh_of(CLARITY_FLOAT32, square);
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_scene* scene = NULL;
+    clarity_tracer* tracer = NULL;
+    const float origin[] = {0.5f, 0.25f, 1}, direction[] = {0, 0, -1};
+    const clarity_rays query = one_ray(origin, direction);
+    float t = 0;
+    const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
+    intptr_t code = clarity_scene_from_mesh(&mesh, NULL, &scene);
+    if (!code) code = clarity_tracer_new(scene, &options, NULL, &tracer);
+    while (!code) {
+        code = clarity_closest(tracer, &query, &hits, NULL);
+        __atomic_add_fetch(rounds, 1, __ATOMIC_RELAXED);
+    }
+    clarity_tracer_free(tracer); /* stays */
+    return (void*)code;
+}
+
+static void test_end(clarity_tracer* tracer) {
+    pthread_t thread;
+    int32_t rounds = 0;
+    CHECK(pthread_create(&thread, NULL, trace_on, &rounds) == 0);
+    while (__atomic_load_n(&rounds, __ATOMIC_RELAXED) < 3) sched_yield();
+    WORKS(clarity_end());
+    void* code = NULL;
+    CHECK(pthread_join(thread, &code) == 0 && (intptr_t)code == CLARITY_ENDED);
+    const float origin[] = {0.5f, 0.25f, 1}, direction[] = {0, 0, -1};
+    const clarity_rays query = one_ray(origin, direction);
+    float t = 0;
+    const clarity_hits hits = hits_into(&t, NULL, NULL, NULL);
+    WORKS(clarity_closest(tracer, &query, &hits, NULL)); /* this thread goes on */
+    CHECK(t == 1);
+}
+
+/* Calls that are no use of the library leave a child free to use it. */
+static void test_fork_before_use(void) {
+    const pid_t child = fork();
+    if (child == 0) {
+        const clarity_mesh mesh = mesh_of(CLARITY_FLOAT32, square);
+        clarity_scene* scene = NULL;
+        _exit(clarity_scene_from_mesh(&mesh, NULL, &scene));
     }
     int status = -1;
     CHECK(waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0);
@@ -252,6 +369,8 @@ int main(int argc, char** argv) {
     setenv("CLARITY_PLUGIN_PATH", "/no_such_folder", 1); /* of which a warning tells */
     WORKS(clarity_set_log(on_log, NULL));
     FAILS(clarity_set_program("/no/such/program"), CLARITY_USAGE, "/no/such/program");
+    test_fork_before_use();
+    test_digest();
     test_scenes();
     CHECK(refused_folder == 1);
     FAILS(clarity_set_program("/bin/true"), CLARITY_USAGE, "call it first");
@@ -270,8 +389,10 @@ int main(int argc, char** argv) {
     test_rays(scene, "bvh2", "lanes=1");
     test_rays(scene, "grid", "lanes=8");
     test_all_hits(scene);
+    test_turns(scene);
     test_kept(scene, "lanes=1");
     test_kept(scene, "lanes=16");
+    test_kept_moved(scene);
     test_packed(scene);
     test_move(scene);
     test_rows();
@@ -279,7 +400,9 @@ int main(int argc, char** argv) {
     test_pictures(scene);
     test_watch(scene);
     test_threads();
+    test_info(tracer);
     test_fork(scene, tracer);
+    test_end(tracer);
     clarity_tracer_free(tracer);
     clarity_scene_free(scene);
     WORKS(clarity_set_log(NULL, NULL));

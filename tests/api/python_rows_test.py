@@ -31,7 +31,7 @@ class Rows(Case):
         for words, wrong in (
             ("no_such: no plugin of this id", lambda: clarity.check("no_such")),
             ("no such suite", lambda: clarity.bench("no_suite")),
-            ("plugin is required", lambda: clarity.check()),
+            ("plugins is required", lambda: clarity.check()),
             ("--frobnicate", lambda: clarity.check("bvh2", frobnicate=True)),
             ("--quiet", lambda: clarity.check("--quiet")),  # is no option here
         ):
@@ -59,15 +59,34 @@ for defect in ("crashes", "none", "crashes", "throws"):
         print(error)
 print(scene.on(accel="bvh2").any([0, 0, 0], [1, 1, 1]))
 """
-        folder = os.path.join(self.folder, "plugins")
-        os.mkdir(folder)
-        os.symlink(os.environ["CLARITY_BAD_BUILDER"], os.path.join(folder, "bad_builder.so"))
-        environment = {**os.environ, "CLARITY_PLUGIN_PATH": folder}
+        environment = self.with_bad_builder("plugins")
         for _ in range(2):
             result = subprocess.run([sys.executable, "-c", lines], capture_output=True, text=True, timeout=300, env=environment)
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             crash = "accel bad_builder: the builder crashed .segmentation fault.*\n"
             self.assertRegex(result.stdout, f"^{crash}built\n{crash}accel bad_builder: .*thrown by the builder.*\nTrue\n$")
+
+    def test_of_a_kernel_that_overruns_its_stack_are_an_exception(self):
+        # Its stack grows with the scene: the small one on which kernels are tried needs little of it.
+        lines = """
+import clarity, numpy
+for count in (20, 6000):
+    scene = clarity.Scene(numpy.eye(3), [[0, 1, 2]] * count)
+    try:
+        print(scene.on(accel="bad_builder,defect=deep_stack", lanes=1).closest([0, 0, 0], [1, 1, 1]).t.round(3))
+    except clarity.KernelError as error:
+        print(error)
+print(scene.on(accel="bvh2").any([0, 0, 0], [1, 1, 1]))
+"""
+        result = self.run_python(lines, env=self.with_bad_builder("deep"))
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        self.assertRegex(result.stdout, r"^0\.333\nkernels were tried in a worker first, and crashed \(segmentation fault(.|\n)*\nTrue\n$")
+
+    def with_bad_builder(self, name):
+        folder = os.path.join(self.folder, name)
+        os.mkdir(folder)
+        os.symlink(os.environ["CLARITY_BAD_BUILDER"], os.path.join(folder, "bad_builder.so"))
+        return {**os.environ, "CLARITY_PLUGIN_PATH": folder}
 
     def test_end_by_ctrl_c_with_their_process(self):
         lines = f"""

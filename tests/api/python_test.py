@@ -11,7 +11,7 @@ import unittest
 import numpy as np
 
 import clarity
-from python_case import QUICK, STRUCTURES, Case, some_rays, text_of
+from python_case import Case, QUICK, STRUCTURES, some_rays, soup, text_of
 
 
 class Hits(Case):
@@ -307,6 +307,88 @@ print(ten - before, peak() - before)
             with self.subTest(name=name):
                 self.assertTrue(8 < len(steps) < limit, steps)
 
+    def test_of_directions_that_are_none_are_none(self):
+        vertices, faces = soup(300, 3)
+        origins, directions = some_rays(400, 4)
+        nan, infinity = np.nan, np.inf
+        none = np.array([[0, 0, 0], [-0., 0, -0.], [nan, 0, -1], [1, nan, nan], [0, 0, -infinity], [infinity, 1, 0], [1e-40, 0, 0],
+                         [-8e-19, 8e-19, 0], [0, 1e300, 0]])
+        mixed, none = np.array(directions, np.float64), none[np.arange(200) % len(none)]
+        mixed[1::2] = none
+        rt = clarity.Scene(vertices, faces).on(accel="bvh2")
+        right, counts = rt.closest(origins, directions), rt.count(origins, directions)
+        self.assertGreater(right.mask[1::2].sum(), 50)
+        with np.errstate(over="ignore"):
+            narrow = mixed.astype(np.float32)
+        for given in (narrow, mixed):
+            with self.subTest(type=given.dtype):
+                hit = rt.closest(origins, given)
+                np.testing.assert_array_equal(hit.t[::2], right.t[::2])
+                self.assertTrue(np.all(np.isinf(hit.t[1::2])) and np.all(hit.prim[1::2] == -1))
+                self.assertFalse(rt.any(origins, given)[1::2].any() or rt.any(rt.pack(origins, given))[1::2].any())
+                np.testing.assert_array_equal(rt.count(origins, given), np.where(np.arange(400) % 2, 0, counts))
+                self.assertFalse(np.any(rt.all(origins, given).ray % 2))
+        for direction in none[:9]:
+            self.assertEqual(rt.closest(origins[0], direction).t, infinity)
+        for power in (-50, -20, 20, 60, 110):  # any other length is right
+            with self.subTest(power=power):
+                hit = rt.closest(origins, np.ldexp(directions, power))
+                np.testing.assert_array_equal(hit.prim, right.prim)
+                np.testing.assert_array_equal(np.ldexp(hit.t, power), right.t)
+                np.testing.assert_array_equal(rt.count(origins, np.ldexp(directions, power)), counts)
+                np.testing.assert_array_equal(rt.all(origins, np.ldexp(directions, power)).t,
+                                              np.ldexp(rt.all(origins, directions).t, -power))
+
+    def test_points_are_of_the_rays_that_were_traced(self):
+        rt = clarity.Scene(self.vertices, self.faces).on(accel="bvh2")
+        wide = np.zeros((20000, 7), np.float32)
+        changed = "{}: the array was changed after the call"
+        for count in (1, 100, 20000):  # 20000 in float32 are 240 kB
+            for kind in (np.float32, np.float64):
+                rays = [array.astype(kind) for array in some_rays(count, 31)]
+                fields = wide[:count, :3] if kind is np.float32 else np.asfortranarray(rays[0])
+                fields[:] = rays[0]
+                spread = np.broadcast_to(rays[0][:1].copy(), (count, 3))
+                for origins, refused in ((rays[0], count == 20000), (fields, count == 20000 and kind is np.float64), (spread, False)):
+                    for name, ask in (
+                        ("closest", lambda: rt.closest(origins, rays[1])),
+                        ("brief", lambda: rt.closest(origins, rays[1], brief=True)),
+                        ("out", lambda: rt.closest(origins, rays[1], out=clarity.Hit((count,)))),
+                        ("packed", lambda: rt.closest(rt.pack(origins, rays[1]))),
+                        ("all", lambda: rt.all(origins, rays[1])),
+                    ):
+                        with self.subTest(count=count, kind=kind, name=name):
+                            expected, later = ask().points(), ask()
+                            of = origins if origins.base is None or origins is fields else spread.base
+                            before = of.copy()
+                            of[-1, 0] += 1  # one number of all
+                            if refused:
+                                with self.assertRaisesRegex(clarity.UsageError, changed.format("origins")):
+                                    later.points()
+                            else:
+                                np.testing.assert_array_equal(later.points(), expected)
+                            of[:] = before
+                            np.testing.assert_array_equal(later.points(), expected)
+                            rays[1][:] = rays[1][::-1].copy()
+                            if count == 20000:
+                                with self.assertRaisesRegex(clarity.UsageError, changed.format("directions")):
+                                    later.points()
+                            else:
+                                np.testing.assert_array_equal(later.points(), expected)
+                            rays[1][:] = rays[1][::-1].copy()
+        # A position that moves on in place.
+        position, scans = np.array([0.5, 0.5, 3]), []
+        for _ in range(3):
+            scans.append(rt.closest(position, [0, 0, -1]))
+            position += [0.1, 0, 0]
+        np.testing.assert_allclose([scan._rays.points(1)[0] for scan in scans], [0.5, 0.6, 0.7])
+        failed = rt.closest(*rays)
+        with self.assertRaises(clarity.Cancelled):
+            rt.closest(*rays, out=failed, progress=lambda stage, fraction: False)
+        for hit in (failed, clarity.Hit((3,))):
+            with self.assertRaisesRegex(clarity.UsageError, "no rays were traced into"):
+                hit.points()
+
     def test_far_from_the_origin_keep_their_digits(self):
         far = np.array([5e6, -3e6, 7e6])
         scene = clarity.Scene(self.vertices.astype(float) + far, self.faces)
@@ -351,10 +433,159 @@ class Scenes(Case):
             (usage, "no such camera", lambda: rt.render(4, 4, camera="no such camera")),
             (usage, "size", lambda: rt.render(0, 4)),
             (usage, "out: expected", lambda: rt.render(4, 4, out=np.zeros((4, 4), np.float32))),
+            (usage, "a number is beyond 1e15: 1e.30 of vertex 0", lambda: clarity.Scene(np.eye(3) * 1e30, [[0, 1, 2]])),
+            (usage, "a number is beyond 1e15: 1e.30 of vertex 0", lambda: clarity.Scene(np.eye(3, dtype="f") * np.float32(1e30), [[0, 1, 2]])),
+            (usage, "within 1e-30, less than 1e-17", lambda: clarity.Scene(np.eye(3) * 1e-30, [[0, 1, 2]])),
         ):
             with self.subTest(words=words), self.assertRaisesRegex(kind, words):
                 wrong()
         self.assertTrue(issubclass(usage, ValueError) and issubclass(clarity.ImportFailed, clarity.Error))
+
+    def test_refuse_wrong_arguments_with_a_word_each(self):
+        # Each names the argument and what was found; none ends in another exception, a signal, or a kernel that is compiled.
+        scene = clarity.Scene(self.vertices, self.faces)
+        rt = scene.on(accel="bvh2")
+        ray = [0.5, 0.5, 9], [0, 0, -1]
+        rays = some_rays(5000, 32)
+        packed, one, many = rt.pack(*rays), rt.closest(*ray), rt.closest(*rays)
+        broken, ragged = "a\0b", [[0, 0, 0], [1]]
+
+        class Wrong:
+            """It raises what numpy does not expect."""
+
+            def __array__(self, *_, **__):
+                raise RuntimeError("no array")
+
+        masked = np.ma.array(self.vertices, mask=self.vertices > 1)
+        table = {
+            clarity.Scene: [
+                ("vertices", lambda x: clarity.Scene(x, self.faces), [None, 3, "abc", ragged, {}, set(), masked, Wrong(), b"abc", [[1j] * 3]]),
+                ("faces", lambda x: clarity.Scene(self.vertices, x), [None, 3, "abc", ragged, {}, [[0, 1, 2**40]], [[0, 1, 10**30]], [[-1, 0, 1]], Wrong()]),
+                ("progress", lambda x: clarity.Scene(self.vertices, self.faces, progress=x), [3, "yes", [print]]),
+                ("load", lambda x: clarity.load(x), [None, 3, [self.mesh_file], broken, {}]),
+            ],
+            scene.on: [
+                ("device", lambda x: scene.on(x), [3, ["gpu"], b"gpu", broken, "\ud800", 1.5]),
+                ("accel", lambda x: scene.on(accel=x), [3, ["bvh2"], {}, broken]),
+                ("setting `lanes`", lambda x: scene.on(accel="bvh2", lanes=x), [None, {}, object(), broken, [object()], []]),
+                ("lanes", lambda x: scene.on(accel="bvh2", lanes=x), ["many", 1.5, -1, float("nan"), 10**30, True]),
+                ("setting", lambda x: scene.on(accel="bvh2", **{x: 1}), ["", "a=b", broken, "no_setting"]),
+                ("progress", lambda x: scene.on(accel="bvh2", progress=x), [3, "yes"]),
+            ],
+            rt.closest: [
+                ("origins", lambda x: rt.closest(x, ray[1]), [None, 3, "abc", ragged, {}, [], [1, 2], Wrong(), one, rt]),
+                ("directions", lambda x: rt.closest(ray[0], x), [None, 3, "abc", ragged, {}, [1, 2], Wrong()]),
+                ("t_min", lambda x: rt.closest(*ray, t_min=x), ["near", ragged, {}, 1j]),
+                ("rays of the shapes", lambda x: rt.closest(*rays, t_max=x), [[1, 2], np.ones((3, 3))]),
+                ("mask", lambda x: rt.any(*ray, mask=x), [0, 256, -1, 1.5, "8", np.array([1, 2]), 10**30, [1], {}]),
+                ("brief", lambda x: rt.closest(*ray, brief=x), ["yes", None, 1, [True]]),
+                ("brief", lambda x: rt.closest(*ray, brief=True, out=x), [one]),
+                ("out", lambda x: rt.closest(*ray, out=x), [np.zeros(3), 3, "hit", rt, [one], many]),
+                ("out", lambda x: rt.any(*ray, out=x), [one, 3, [False], np.zeros(3, bool), np.zeros((), int)]),
+                ("out", lambda x: rt.count(*ray, out=x), [one, 3, np.zeros((), np.int32)]),
+                ("progress", lambda x: rt.closest(*ray, progress=x), [3, "yes"]),
+                ("packed rays", lambda x: rt.count(x), [packed]),
+                ("packed rays", lambda x: rt.all(x), [packed]),
+                ("packed", lambda x: rt.pack(x), [packed]),
+                ("nothing beside them", lambda x: rt.closest(packed, t_max=x), [1]),
+            ],
+            rt.move: [
+                ("vertices", lambda x: rt.move(x), [3, "abc", ragged, {}, self.vertices * 1e30, self.vertices * 1e-30, self.vertices[:7], Wrong()]),
+                ("instance", lambda x: rt.move(instances=x), [3, "abc", np.eye(4), np.zeros((1, 3, 4)), np.eye(4)[None] * np.nan, np.eye(4)[None] * 1e30]),
+                ("progress", lambda x: rt.move(self.vertices, progress=x), [3]),
+            ],
+            rt.render: [
+                ("width", lambda x: rt.render(x, 4), [None, 0, -1, 4.5, "4", 10**30, [4]]),
+                ("height", lambda x: rt.render(4, x), [None, 20000]),
+                ("size", lambda x: rt.render(4, 4, size=x), ["8x8"]),
+                ("camera", lambda x: rt.render(4, 4, camera=x), [3j, [], ["a"], {}, b"abc", [None], broken, [1, 2], [float("nan")] * 7]),
+                ("light", lambda x: rt.render(4, 4, light=x), [3j, [], {}, broken]),
+                ("out", lambda x: rt.render(4, 4, out=x), [3, one, np.zeros((4, 4, 3))]),
+                ("spp", lambda x: rt.render(4, 4, spp=x), [0, -1, "many", True, 10**30, float("inf")]),
+                ("setting `aov`", lambda x: rt.render(4, 4, aov=x), [None]),
+                ("denoise", lambda x: rt.render(4, 4, denoise=x), [True, "on", "no_such"]),
+                ("denoise", lambda x: rt.render(4, 4, tracer="path", denoise=x, aov="t"), [True]),
+                ("denoise", lambda x: scene.on(accel="bvh2", denoise=x).render(4, 4), [True]),
+                ("strategy", lambda x: rt.render(4, 4, strategy=x), ["nee"]),
+            ],
+            clarity.Hit: [
+                ("shape", lambda x: clarity.Hit(x), [None, "abc", (-1,), (1.5,), [None]]),
+                ("brief", lambda x: clarity.Hit(3, x), ["yes"]),
+            ],
+            clarity.check: [
+                ("check", lambda x: clarity.check(x), [3, None, broken, [1]]),
+                ("only", lambda x: clarity.check("bvh2", only=x), [{}, object(), broken]),
+                ("bench", lambda x: clarity.bench(x), [3, None]),
+            ],
+            clarity.trimesh: [
+                ("mesh", lambda x: clarity.trimesh.RayMeshIntersector(x), [None, 3, self.mesh_file]),
+                ("max_hits", lambda x: clarity.trimesh.RayMeshIntersector(scene_mesh).intersects_id([ray[0]], [ray[1]], max_hits=x), [-1, 1.5, "all"]),
+                ("ray_origins", lambda x: clarity.trimesh.RayMeshIntersector(scene_mesh).intersects_any(x, [ray[1]]), [None, "abc", ragged, 3]),
+            ],
+        }
+        scene_mesh = types.SimpleNamespace(vertices=self.vertices, faces=self.faces)
+        for rows in table.values():
+            for words, wrong, values in rows:
+                for value in values:
+                    with self.subTest(words=words, value=repr(value)[:60]), self.assertRaisesRegex(clarity.UsageError, words):
+                        wrong(value)
+        for words, wrong in (
+            ("one ray", lambda: len(one)),
+            ("one ray", lambda: len(rt.pack(*ray))),
+            ("made by Scene.on", lambda: clarity.Tracer(scene, "", "", {}, None)),
+            (r"made by Tracer.pack\(", lambda: clarity.Packed(one, 7)),
+            (r"made by Tracer.all\(", lambda: clarity.AllHits(one, 7)),
+        ):
+            with self.subTest(words=words), self.assertRaisesRegex(TypeError, words):
+                wrong()
+        for name in ("shape", "brief"):
+            with self.assertRaises(AttributeError):  # the memory of hits does not grow with it
+                setattr(many, name, (10**6,))
+        with self.assertRaises(AttributeError):
+            packed.shape = (10**6,)
+        self.assertEqual(repr(clarity.Scene.__new__(clarity.Scene)), "<clarity.Scene that was not made>")
+        with self.assertRaisesRegex(clarity.UsageError, "`scene` is null"):
+            clarity.Scene.__new__(clarity.Scene).bounds
+        self.equal(rt.closest(*rays), many)  # after all of them
+
+    def test_take_what_is_meant(self):
+        scene = clarity.Scene(self.vertices, self.faces)
+        rt = scene.on(None, "bvh2")
+        ray = [0.5, 0.5, 9], [0, 0, -1]
+        self.equal(rt.closest(*ray, mask=np.uint8(255), brief=np.False_), rt.closest(*ray))
+        self.assertEqual(clarity.Hit(3).shape, (3,))
+        picture = rt.render(np.int32(8), 8, camera=np.array([0.5, -1, 1, 0.5, 0.5, 0, 32]), denoise=False)
+        np.testing.assert_array_equal(rt.render(8, 8, camera="0.5,-1,1,0.5,0.5,0,32", denoise="off"), picture)
+        self.assertEqual(repr(rt), f"<clarity.Tracer: bvh2 on {rt.info['device']}, of <clarity.Scene: 300 triangles>>")
+        self.assertEqual(repr(clarity.load(self.scene_file)), "<clarity.Scene: 300 triangles, 1 sphere, 1 plane>")
+        self.assertEqual(repr(clarity.Scene(np.empty((0, 3)), np.empty((0, 3), int))), "<clarity.Scene: nothing to hit>")
+
+    def test_are_not_asked_by_the_functions_that_they_call(self):
+        scene = clarity.Scene(self.vertices, self.faces)
+        rt = scene.on(accel="bvh2")
+        for asked in (lambda: rt.any([0, 0, 0], [0, 0, 1]), lambda: rt.info, lambda: scene.bounds):
+            with self.assertRaisesRegex(clarity.UsageError, "called by a function that it calls itself"):
+                rt.closest(*some_rays(5000, 33), progress=lambda stage, fraction: asked())
+        with self.assertRaises(clarity.Cancelled):
+            rt.any(*some_rays(5000, 33), progress=lambda stage, fraction: np.False_)
+
+    def test_whose_arrays_were_changed_are_no_mesh(self):
+        faces = self.faces.astype(np.uint32)
+        scene = clarity.Scene(self.vertices, faces)
+        rt = scene.on(accel="bvh2")
+        faces += 10**6  # not allowed; builders would read anywhere
+        for wrong in (lambda: scene.on(accel="bvh2"), lambda: rt.move(self.vertices)):
+            with self.assertRaisesRegex(clarity.UsageError, "changed after it was made"):
+                wrong()
+
+    def test_of_tracers_keep_their_arrays(self):
+        vertices, faces = self.vertices.copy(), self.faces.astype(np.uint32)
+        rt = clarity.Scene(vertices, faces).on(accel="bvh2")
+        held = sys.getrefcount(vertices), sys.getrefcount(faces)
+        rt.scene = None  # anybody may write this
+        gc.collect()
+        self.assertGreaterEqual(sys.getrefcount(vertices), held[0] - 1)
+        self.assertIs(rt._lent[0], vertices)
 
     def test_tell_their_progress_and_may_be_cancelled(self):
         stages = []

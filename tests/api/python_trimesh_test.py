@@ -86,7 +86,7 @@ class Intersector(Case):
         self.assertTrue((query.tracer.count(behind, direction) != 1).any())
         self.assertTrue(query.contains_points(behind).all())
 
-    def test_follow_a_mesh_whose_arrays_are_replaced(self):
+    def test_follow_a_mesh_whose_arrays_change(self):
         mesh = ball()
         mesh.ray = clarity.trimesh.RayMeshIntersector(mesh, accel="bvh2")
         ray = [[3.1, 0.1, 5]], [[0, 0, -1]]
@@ -95,6 +95,13 @@ class Intersector(Case):
         self.assertIs(mesh.ray.tracer, tracer)
         mesh.vertices = mesh.vertices + [3, 0, 0]
         self.assertTrue(mesh.ray.intersects_any(*ray)[0])
+        mesh.vertices[:, 0] += 3  # in place
+        self.assertFalse(mesh.ray.intersects_any(*ray)[0])
+        self.assertTrue(mesh.ray.intersects_any([[6.1, 0.1, 5]], [[0, 0, -1]])[0])
+        mesh.faces[:] = mesh.faces[0]
+        self.assertFalse(mesh.ray.intersects_any([[6.1, 0.9, 0]], [[0, -1, 0]])[0])
+        mesh = ball()
+        mesh.ray = clarity.trimesh.RayMeshIntersector(mesh, accel="bvh2")
         for words, wrong in (
             (r"ray_origins: expected an array of shape \(n, 3\)", lambda: mesh.ray.intersects_any([0, 0, 0], [0, 0, 1])),
             ("there are 1 and 2", lambda: mesh.ray.intersects_any(ray[0], ray[1] * 2)),

@@ -242,6 +242,49 @@ void test_kept(const clarity_scene* scene, const char* lanes) {
     free(instance);
 }
 
+/* Arrays of kept hits stay, and have the new hits, when instances were moved meanwhile: each hit has an instance then. */
+void test_kept_moved(const clarity_scene* scene) {
+    enum { COUNT = 40 };
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer* tracer = NULL;
+    clarity_kept* kept = NULL;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    WORKS(clarity_kept_new(tracer, 0, &kept));
+    float origins[3 * COUNT], t[COUNT], uv[2 * COUNT];
+    const float direction[] = {0, 0, -1}, lifted[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5f};
+    int32_t prim[COUNT], instance[COUNT];
+    for (int i = 0; i < COUNT; ++i) {
+        origins[3 * i] = 1.5f * (float)i / COUNT;
+        origins[3 * i + 1] = 0.25f;
+        origins[3 * i + 2] = 4;
+    }
+    clarity_rays query = one_ray(origins, direction);
+    query.count = COUNT;
+    query.origin_steps[0] = 3 * sizeof(float);
+    const clarity_hits hits = hits_into(t, prim, instance, uv);
+    void *arrays[4] = {0}, *again = NULL;
+    WORKS(clarity_keep(tracer, &query, kept, NULL));
+    for (int32_t which = 0; which < 4; ++which) WORKS(clarity_kept_array(kept, which, &arrays[which]));
+    CHECK(((const float*)arrays[CLARITY_HIT_T])[0] == 4 && ((const int32_t*)arrays[CLARITY_HIT_INSTANCE])[0] == -1);
+    clarity_places places = {0};
+    places.struct_bytes = sizeof places;
+    places.transforms = lifted;
+    places.instance_count = 1;
+    WORKS(clarity_move(tracer, &places, NULL));
+    WORKS(clarity_keep(tracer, &query, kept, NULL));
+    WORKS(clarity_closest(tracer, &query, &hits, NULL));
+    CHECK(t[0] == 3.5f && instance[0] == 0 && instance[COUNT - 1] == -1);
+    CHECK(memcmp(arrays[CLARITY_HIT_T], t, sizeof t) == 0 && memcmp(arrays[CLARITY_HIT_PRIM], prim, sizeof prim) == 0);
+    CHECK(memcmp(arrays[CLARITY_HIT_UV], uv, sizeof uv) == 0);
+    CHECK(memcmp(arrays[CLARITY_HIT_INSTANCE], instance, sizeof instance) == 0);
+    for (int32_t which = 0; which < 4; ++which) {
+        WORKS(clarity_kept_array(kept, which, &again));
+        CHECK(again == arrays[which]);
+    }
+    clarity_kept_free(kept);
+    clarity_tracer_free(tracer);
+}
+
 /* Rays that lie on the device. */
 void test_packed(const clarity_scene* scene) {
     const clarity_options options = options_of("bvh2", NULL);
@@ -324,4 +367,36 @@ void test_all_hits(const clarity_scene* scene) {
     watch.cancel = &cancel;
     CHECK(clarity_all(tracer, &query, &hits, &watch) == CLARITY_CANCELLED && !hits.owner);
     clarity_tracer_free(tracer);
+}
+
+/* Three turns through these structures, whose programs stay in the process: more than 16 of them, which come back. */
+void test_turns(const clarity_scene* scene) {
+    const char* const accels[] = {"bvh2",    "grid", "linear", "brute", "bvh4",   "bvh8", "cwbvh",
+                                  "spheres", "bsp",  "kdtree", "grid2", "octree", "lbvh", "ploc"};
+    const size_t count = getenv("CLARITY_QUICK_TESTS") ? 1 : sizeof accels / sizeof accels[0];
+    const float origins[] = {0.75f, 0.25f, 4, 3, 3, 4}, direction[] = {0, 0, -2};
+    clarity_rays query = one_ray(origins, direction);
+    query.count = 2;
+    query.origin_steps[0] = 3 * sizeof(float);
+    for (size_t i = 0; i < 3 * count; ++i) {
+        const clarity_options options = options_of(accels[i % count], NULL);
+        clarity_tracer* tracer = NULL;
+        WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+        float t[2] = {0};
+        int64_t counts[2] = {9, 9};
+        uint8_t occluded[2] = {9, 9};
+        const clarity_hits closest = hits_into(t, NULL, NULL, NULL);
+        clarity_all_hits all = {0};
+        all.struct_bytes = sizeof all;
+        WORKS(clarity_closest(tracer, &query, &closest, NULL));
+        WORKS(clarity_any(tracer, &query, occluded, NULL));
+        WORKS(clarity_count(tracer, &query, counts, NULL));
+        WORKS(clarity_all(tracer, &query, &all, NULL));
+        const int right = t[0] == 2 && isinf(t[1]) && occluded[0] == 1 && occluded[1] == 0 && counts[0] == 1 &&
+                          counts[1] == 0 && all.count == 1 && all.t[0] == 2;
+        if (!right) fprintf(report, "%s, turn %d\n", accels[i % count], (int)(i / count));
+        CHECK(right);
+        clarity_all_hits_free(&all);
+        clarity_tracer_free(tracer);
+    }
 }

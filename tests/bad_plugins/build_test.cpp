@@ -219,6 +219,7 @@ TEST(Trust, IsEarnedAndCanBeRefused) {
 
 TEST(BadBuilders, AllAreTested) {
     std::set<std::string> declared, tested = {"none"};
+    tested.insert("deep_stack");  // a fault of its kernel: tests/api/python_rows_test.py
     for (const char* const* choice = builder().params[0].choices; *choice; ++choice) declared.insert(*choice);
     for (const Breach& breach : kBreaches) tested.insert(breach.defect);
     EXPECT_EQ(declared, tested);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/run_program.hpp"
 #include "support/clock.hpp"
@@ -134,6 +135,15 @@ TEST_F(BenchCommand, BaselinesAreMeasuredIfTheSceneIsOnlyTriangles) {
     EXPECT_GE(ours, 6u);
     const size_t expected = result.err.find("without Embree") == std::string::npos ? 3 + 4 * 9 : 0;
     EXPECT_EQ(baselines, expected) << result.out;
+    std::string version;
+    for (const Json& record : records("a.json")) {
+        if (record["peer"].is_null()) continue;
+        version = record["driver"];
+        EXPECT_TRUE(std::regex_match(version, std::regex("Embree [34]\\.[0-9]+\\.[0-9]+"))) << version;
+    }
+    if (expected) {
+        EXPECT_NE(result.out.find("peers: " + version + "\n"), std::string::npos) << result.out;
+    }
     const ProgramResult alone = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--json", file("b.json")});
     ASSERT_EQ(alone.exit_code, 0) << alone.err;
     for (const Json& record : records("b.json")) EXPECT_TRUE(record["peer"].is_null());

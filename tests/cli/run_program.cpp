@@ -10,6 +10,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <stdexcept>
 
@@ -24,7 +25,9 @@ struct OutputChannel {
 OutputChannel make_channel(bool terminal) {
     int ends[2];
     if (terminal) {
-        if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) throw std::runtime_error("openpty failed");
+        if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0)
+            throw std::runtime_error(std::string("no terminal (openpty): ") + std::strerror(errno) +
+                                     "; is a devpts mounted at /dev/pts?");
     } else if (pipe(ends) != 0) {
         throw std::runtime_error("pipe failed");
     }

@@ -170,6 +170,25 @@ TEST_F(Faults, ACompilerThatCrashesIsAMessageWithItsLog) {
     EXPECT_FALSE(has_picture());
 }
 
+// LLVM 18 ends the process at some programs. The second start knows.
+TEST_F(Faults, AnOptimiserThatCrashesIsLeftOut) {
+    const std::string again = "compiling again without the compiler's optimiser";
+    for (const char* driver : {"", "other,"}) {
+        fs::remove_all(scratch_.path("programs"));
+        const ProgramResult first = render(driver + std::string("optimiser-crashes"));
+        EXPECT_EQ(first.exit_code, 0) << first.err;
+        expect_says(first, "the OpenCL compiler crashed: aborted");
+        expect_says(first, again);
+        EXPECT_TRUE(has_picture());
+        fs::remove(scratch_.path("out/a.png"));
+        const ProgramResult second = render(driver + std::string("optimiser-crashes,no-source"));
+        EXPECT_EQ(second.exit_code, 0) << "both programs are loaded from their binaries: " << second.err;
+        EXPECT_EQ(second.err.find(again), std::string::npos) << second.err;
+        EXPECT_TRUE(has_picture());
+        fs::remove(scratch_.path("out/a.png"));
+    }
+}
+
 TEST_F(Faults, ACompilerThatEndsItsProcessIsAMessage) {
     const ProgramResult result = render("build-exits");
     EXPECT_EQ(result.exit_code, 5) << result.err;

@@ -47,9 +47,7 @@ Truth Oracle::closest_triangle(const Ray& ray) const {
     query.ray.tfar = static_cast<float>(ray.t_max);
     query.ray.mask = ~0u;
     query.hit.geomID = query.hit.primID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(embree_, &context, &query);
+    EmbreeQuery(false).closest(embree_, &query);
     Truth truth;
     if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
         truth.t = query.ray.tfar;

@@ -1,10 +1,9 @@
 // oracle.hpp -- independent answers to rays: Embree for triangles, simple code in double precision for everything else.
 #pragma once
-#include <embree3/rtcore.h>
 #include <memory>
-
 #include <vector>
 
+#include "bench/baselines/embree.hpp"
 #include "reference/primitives.hpp"
 
 namespace clarity::test {

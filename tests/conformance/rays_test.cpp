@@ -1,6 +1,8 @@
 // rays_test.cpp -- rays of the caller: nearest and any hit, the limits of rays, and directions that no camera makes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <random>
@@ -229,8 +231,105 @@ TEST(Rays, AtCornersAndAlongFaces) {
     }
 }
 
-// Directions that are zero, NaN or infinite: every answer must come in time and be valid. Rays in the same packet must get the
-// same answers as without them.
+// The rule of CONTRACT.md: a direction is finite, and a component is at least 2^-60.
+bool is_direction(const float* d) {
+    float most = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (!std::isfinite(d[k])) return false;
+        most = std::max(most, std::fabs(d[k]));
+    }
+    return most >= 0x1p-60f;
+}
+
+// Shapes, and a box with a corner at 0; rays at them, also along axes, within planes of two, and within the box's faces at 0.
+ScenePtr shapes_at_zero(double scale) {
+    TriangleMesh mesh = uv_sphere(1, 24, 16), cube = box(0.5);
+    mesh.transform(1, {2.5, 1, -3});
+    cube.transform(1, {0.5, 0.5, 0.5});
+    mesh.add(cube);
+    mesh.transform(scale, {0, 0, 0});
+    return shared_scene(scene_of(mesh));
+}
+
+std::vector<rt_ray> rays_at_zero() {
+    std::vector<rt_ray> rays = random_rays(*shapes_at_zero(1), 300, 21);
+    for (const float zero : {0.f, -0.f})
+        for (const float other : {0.f, -0.f})
+            for (const float sign : {1.f, -1.f})
+                for (int k = 0; k < 3; ++k)
+                    for (const Point& along : {Point{0, 0.25f, 0}, Point{0.25f, 0, 0}, Point{0, 0, 0}, Point{0.75f, 0.125f, 0}})
+                        for (const float slope : {0.f, 0.125f}) {
+                            Point from{}, d{};
+                            from[k] = -5 * sign, from[(k + 1) % 3] = along[0], from[(k + 2) % 3] = along[1];
+                            d[k] = sign, d[(k + 1) % 3] = zero, d[(k + 2) % 3] = slope != 0 ? slope : other;
+                            if (slope != 0) from[(k + 2) % 3] -= 5 * slope;
+                            rays.push_back(ray_of(from, d));
+                        }
+    return rays;
+}
+
+size_t count_hits(const std::vector<rt_hit>& hits) {
+    return static_cast<size_t>(std::count_if(hits.begin(), hits.end(), [](const rt_hit& hit) { return hit.prim >= 0; }));
+}
+
+// A ray hits the same by a direction of any length, and t is in that length. Powers of two are exact, so not a bit differs.
+TEST(Rays, DirectionsOfAnyLength) {
+    const ScenePtr scene = shapes_at_zero(1);
+    const std::vector<rt_ray> rays = rays_at_zero();
+    for (const std::string& accel : bench().accels())
+        for (const int lanes : lane_counts(accel)) {
+            const Settings settings = settings_of(accel, lanes);
+            const std::vector<rt_hit> unit = bench().rays(scene, settings, rays, false);
+            EXPECT_GT(count_hits(unit), rays.size() / 4);
+            for (const int power : {-60, -59, -40, -20, 9, 20, 60, 110}) {
+                std::vector<rt_ray> scaled = rays;
+                for (size_t i = 0; i < scaled.size(); ++i) {
+                    if (i % 7 == 3) continue;  // usual lengths beside others
+                    for (float& d : scaled[i].direction) d = std::ldexp(d, power);
+                    scaled[i].t_max = std::ldexp(100.f, -power);
+                }
+                const std::vector<rt_hit> closest = bench().rays(scene, settings, scaled, false),
+                                          any = bench().rays(scene, settings, scaled, true);
+                size_t wrong = 0;
+                for (size_t i = 0; i < rays.size(); ++i) {
+                    const float t = i % 7 == 3 ? closest[i].t : std::ldexp(closest[i].t, power);
+                    if (!is_direction(scaled[i].direction))
+                        wrong += closest[i].prim >= 0 || any[i].t == 0;
+                    else
+                        wrong += t != unit[i].t || closest[i].prim != unit[i].prim || (any[i].t == 0) != (unit[i].prim >= 0);
+                }
+                EXPECT_EQ(wrong, 0u) << accel << ", " << lanes << " lanes, directions of 2^" << power;
+            }
+        }
+}
+
+// What is hit does not depend on the unit of length, from 1e-14 to nearly 1e15. Rays within faces at 0 are the hard ones: at
+// 2^40 units from there boxes lost them, products of three lengths overflowed at 2^42 and lost their digits at 2^-44.
+TEST(Rays, ScenesOfAnySize) {
+    const std::vector<rt_ray> rays = rays_at_zero();
+    for (const std::string& accel : bench().accels())
+        for (const int lanes : {lane_counts(accel).front()}) {  // each scale and number of lanes is a program
+            const Settings settings = settings_of(accel, lanes);
+            const std::vector<rt_hit> unit = bench().rays(shapes_at_zero(1), settings, rays, false);
+            for (const int power : {-46, 20, 36, 46}) {
+                std::vector<rt_ray> scaled = rays;
+                for (rt_ray& ray : scaled)
+                    for (float& x : ray.origin) x = std::ldexp(x, power);
+                const ScenePtr scene = shapes_at_zero(std::ldexp(1.0, power));
+                const std::vector<rt_hit> closest = bench().rays(scene, settings, scaled, false),
+                                          any = bench().rays(scene, settings, scaled, true);
+                size_t wrong = 0;
+                for (size_t i = 0; i < rays.size(); ++i)
+                    wrong += (closest[i].prim >= 0) != (unit[i].prim >= 0) || (any[i].t == 0) != (unit[i].prim >= 0) ||
+                             (unit[i].prim >= 0 &&
+                              !(std::fabs(std::ldexp(closest[i].t, -power) - unit[i].t) <= 1e-6f * std::fabs(unit[i].t)));
+                EXPECT_EQ(wrong, 0u) << accel << ", " << lanes << " lanes, a scene of 2^" << power;
+            }
+        }
+}
+
+// Directions that are zero, NaN or infinite, or too short: every answer must come in time, and they hit nothing. Rays in the
+// same packet must get the same answers as without them.
 TEST(Rays, ZeroNanAndInfiniteDirectionsDoNotDisturbOtherRays) {
     const float denormal = 1e-40f;
     const std::vector<rt_ray> strange = {
@@ -244,6 +343,11 @@ TEST(Rays, ZeroNanAndInfiniteDirectionsDoNotDisturbOtherRays) {
         ray_of({0, 0, 5}, {1e30f, -1e30f, 1e30f}),
         ray_of({0, 0, 5}, {denormal, -denormal, -1}),
         ray_of({0, 0, 5}, {denormal, denormal, denormal}),
+        ray_of({0, 0, 5}, {-0.f, 0, -0.f}),
+        ray_of({0, 0, 5}, {0, 0, -kInf}),
+        ray_of({0, 0, 5}, {0, kNan, -1}),
+        ray_of({0, 0, 5}, {0, 0, -8e-19f}),
+        ray_of({0, 0, 5}, {8e-19f, -8e-19f, 1e-25f}),
         ray_of({1e30f, 1e30f, -1e30f}, {-1, -1, 1}),
         ray_of({0, 0, 5}, {0, 0, -1}, kNan, kInf),
         ray_of({0, 0, 5}, {0, 0, -1}, 0, kNan),
@@ -262,9 +366,13 @@ TEST(Rays, ZeroNanAndInfiniteDirectionsDoNotDisturbOtherRays) {
                                           together = bench().rays(shapes(), settings_of(accel, lanes), mixed, any);
                 for (size_t i = 0; i < sane.size(); ++i) {
                     if (i % 5 == 2) {
-                        EXPECT_FALSE(std::isnan(together[i].t)) << what << ", strange ray " << i / 5 % strange.size();
+                        const size_t number = i / 5 % strange.size();
+                        EXPECT_FALSE(std::isnan(together[i].t)) << what << ", strange ray " << number;
                         EXPECT_GE(together[i].prim, -1) << what;
                         EXPECT_LT(together[i].prim, triangles) << what;
+                        if (is_direction(strange[number].direction)) continue;
+                        EXPECT_EQ(together[i].t, kInf) << what << ", strange ray " << number;
+                        EXPECT_EQ(together[i].prim, -1) << what << ", strange ray " << number;
                     } else {
                         EXPECT_EQ(together[i].t, alone[i].t) << what << ", ray " << i << " beside strange ones";
                     }

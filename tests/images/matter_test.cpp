@@ -273,7 +273,13 @@ TEST(Cutouts, ARayPassesManySurfacesButNotAnyNumber) {
     expect_even(some, 1, "100");
     EXPECT_EQ(some.stats.dropped, 0u);
     EXPECT_EQ(trace_paths(layers(100, black(0, RT_ALPHA_MASK)), view, 1, {}).average(), 1);
-    EXPECT_GT(trace(layers(1100, black(0, RT_ALPHA_MASK)), view, 8, 8, 1).stats.dropped, 0u);
+    const Scene many = layers(1100, black(0, RT_ALPHA_MASK));
+    EXPECT_GT(trace(many, view, 8, 8, 1).stats.dropped, 0u);
+    const std::vector<std::pair<std::string, std::string>> by_path = {{"tracer", "path"}};
+    EXPECT_EQ(trace(layers(100, black(0, RT_ALPHA_MASK)), view, 8, 8, 1, by_path).stats.dropped, 0u);
+    const FrameStats stats = trace(many, view, 8, 8, 1, by_path).stats;
+    EXPECT_EQ(stats.dropped, 64u);
+    EXPECT_EQ(stats.not_finite, 0u);
 }
 
 // An edit makes a surface clear: the kernels are prepared for it.

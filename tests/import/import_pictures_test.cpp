@@ -5,6 +5,7 @@
 
 #include "base/files/read_file.hpp"
 #include "base/pictures/shared_exponent.hpp"
+#include "import/sink/texture.hpp"
 #include "render/film/image_io.hpp"
 #include "scene/bright_texture.hpp"
 #include "support/scenes.hpp"
@@ -44,6 +45,29 @@ TEST(ImportPictures, LargeOnesInSmallFiles) {
     EXPECT_EQ(texels, uint64_t(kPictures) << 24);
     EXPECT_LE(double(scene->texels.size()), 1.4 * double(texels)) << "that is what `texture_bytes` of --stats counts";
     EXPECT_EQ(scene->texels[scene->textures[5].first] & 0xff0000u, 0x050000u);
+}
+
+// Decoders of Debian 12 and 13 (stb_image 2.27 and 2.30) give the same bytes: a scene looks the same on both.
+TEST(ImportPictures, AreDecodedToTheSameBytesOnEverySystem) {
+    const std::pair<const char*, uint64_t> pictures[] = {
+        {"scenes/kaykit_dungeon/dungeon_texture.png", 0x2ffb038793a10ab5},  // four channels
+        {"scenes/textures/grid.png", 0xb0190918f459d625},
+        {"docs/images/light_materials.jpg", 0x7bf469f2cbbfb4f2},
+        {"docs/images/light_strategies.jpg", 0x0b443fc828045be2},  // grey
+    };
+    for (const auto& [name, digest] : pictures) {
+        const std::string bytes = read_file(source_file(name), 1 << 20, Exit::failed);
+        std::vector<uint32_t> texels;
+        rt_texture texture{};
+        std::string lost;
+        ASSERT_FALSE(
+            import::decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), texels, texture, lost))
+            << name;
+        uint64_t fnv = 0xcbf29ce484222325;  // FNV-1a of red, green, blue, alpha of each texel
+        for (size_t i = 0; i < size_t(texture.width) * texture.height; ++i)
+            for (int k = 0; k < 32; k += 8) fnv = (fnv ^ (texels[i] >> k & 255)) * 0x100000001b3;
+        EXPECT_EQ(fnv, digest) << name;
+    }
 }
 
 // ---- pictures of floats: a texel of 4 and three of 0.5

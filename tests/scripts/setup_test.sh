@@ -1,6 +1,6 @@
 #!/bin/bash
-# setup_test.sh SOURCE_FOLDER -- tests scripts/setup.sh: apt() waits while another process holds a lock of apt's, and build() says how
-# far it is. apt-get works on a folder of its own, so that this needs no root and changes nothing.
+# setup_test.sh SOURCE_FOLDER -- tests scripts/setup.sh: apt() waits while another process holds a lock of apt's, install_packages()
+# leaves out what a system does not package, and build() says how far it is. apt-get works on a folder of its own, so that this needs no root and changes nothing.
 set -u
 cd "$1" || exit 1
 command -v apt-get >/dev/null && command -v ninja >/dev/null && command -v perl >/dev/null || {
@@ -65,6 +65,35 @@ let_go
 run_apt install no-such-package && fail "a package that does not exist was installed"
 grep -q 'Unable to locate package no-such-package' "$folder/output" || fail "apt's message is not shown"
 grep -q Waiting "$folder/output" && fail "it waited although no lock was held"
+
+# ---- packages of a system that has one of them installed, packages two, and knows nothing of the others
+mkdir -p "$folder/archive"
+printf 'Package: %s\nVersion: 1\nArchitecture: all\nMaintainer: nobody\nDescription: none\nFilename: ./none.deb\nSize: 1\nMD5sum: 00000000000000000000000000000000\n\n' \
+    offered++ offered.js >"$folder/archive/Packages"
+echo "deb [trusted=yes] file:$folder/archive ./" >"$folder/sources.list"
+sed -i "s|sourcelist \"/dev/null\"|sourcelist \"$folder/sources.list\"|" "$folder/apt.conf"
+cat >"$folder/install" <<'END'
+. scripts/setup.sh
+as_root() { "$@"; }
+installed() { echo "present 1"; }
+apt() {  # fetches lists as ever, and says what it would install
+    if [ "$1" = update ]; then apt-get -q -o APT::Sandbox::User=root update >/dev/null; else echo "asked for: ${*:3}"; fi
+}
+install_packages "$@"
+END
+# expects LINES PACKAGE...: what install_packages says, and asks of apt.
+expects() {
+    bash "$folder/install" "${@:2}" >"$folder/output" 2>&1 || fail "install_packages ${*:2}: code $?"
+    [ "$(cat "$folder/output")" = "$1" ] || fail "install_packages ${*:2} said otherwise: $1"
+}
+expects "Fetching the lists of packages first (apt-get update)
+Left out, because this system does not package it: nowhere++ nowhere
+Installing with apt-get: offered++ offered.js
+asked for: offered++ offered.js" present nowhere++ offered++ nowhere offered.js
+expects "Left out, because this system does not package it: nowhere" present nowhere
+expects "Installing with apt-get: offered.js
+asked for: offered.js" offered.js
+expects "" present
 
 # ---- build
 build_in() { (. scripts/setup.sh && build_dir="$folder/$1" && build "${@:2}") >"$folder/output" 2>&1; }

@@ -12,6 +12,7 @@
 
 #include "ui/browser/file_listing.hpp"
 #include "ui/session/session_view.hpp"
+#include "ui/widgets/imgui_calls.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -173,8 +174,7 @@ void field_row(Session& session, UiState& state) {
         b.moved = true;
     }
     if (entered) accept(session, state);
-    if (was_empty && b.text.empty() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Backspace)))
-        go_to(state, parent_folder(state.browser_folder));
+    if (was_empty && b.text.empty() && key_pressed(ImGuiKey_Backspace)) go_to(state, parent_folder(state.browser_folder));
 }
 
 void update_rows(const Session& session, const UiState& state) {

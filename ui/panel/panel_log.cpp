@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ui/panel/panel.hpp"
+#include "ui/widgets/imgui_calls.hpp"
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -151,8 +152,7 @@ void draw_log_tab(Session& session, UiState& state) {
     head(session, state);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, colors::kGround);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(8 * ui_scale(), 8 * ui_scale()));
-    ImGui::BeginChild("lines", {0, 0}, false,
-                      ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_AlwaysVerticalScrollbar);
+    begin_padded_child("lines", {0, 0}, ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ImGui::PushFont(fonts().mono);
     // At the end of the log, the view follows new lines. Further up, it stays where it is.
     const bool at_end = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;

@@ -6,6 +6,7 @@
 
 #include "ui/panel/panel.hpp"
 #include "ui/session/session_view.hpp"
+#include "ui/widgets/imgui_calls.hpp"
 #include "ui/widgets/scene_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -179,7 +180,7 @@ void draw_scene_tree(Session& session, UiState&) {
     const float height = std::clamp(static_cast<float>(rows.size()) + 0.8f, 2.0f, 11.0f) * line;
     ImGui::PushStyleColor(ImGuiCol_ChildBg, colors::kGround);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(6 * ui_scale(), 5 * ui_scale()));
-    ImGui::BeginChild("tree", {0, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    begin_padded_child("tree", {0, height});
     if (rows.empty()) dim_text("nothing of that name");
     scroll_to_selection(session, *scene, rows, line);
     ImGuiListClipper clipper;

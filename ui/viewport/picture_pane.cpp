@@ -14,6 +14,7 @@
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/viewport/picture_captions.hpp"
+#include "ui/widgets/imgui_calls.hpp"
 #include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {
@@ -248,10 +249,9 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         if (state.show_lights) handles_ = light_handles(Projection(area_, picture_->job.view.camera), session.desired.lights);
         place_move_handles(session, state);
         ImGui::SetCursorScreenPos({room.x, room.y});
-        ImGui::InvisibleButton(
+        covered_button(
             "picture", {room.width, room.height},
             ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
-        ImGui::SetItemAllowOverlap();
         const bool wipe = places_.size() == 2 && !side_by_side();
         mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe, move_handles_ ? &*move_handles_ : nullptr}, session,
                       state);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "ui/widgets/imgui_calls.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -72,8 +73,7 @@ void drag_loop_end(const char* label, const char* help, bool end, const Timeline
 
 void draw_loop(const Rect& bar, const TimelineScale& scale, Session& session) {
     ImGui::SetCursorScreenPos({bar.x, bar.y});
-    ImGui::InvisibleButton("##loop", {bar.width, bar.height});
-    ImGui::SetItemAllowOverlap();
+    covered_button("##loop", {bar.width, bar.height});
     const ClipInfo& clip = session.playback().clip(session.desired);
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
         session.playback().set_loop(session.desired, clip.begin_s, clip.end_s);

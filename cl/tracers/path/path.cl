@@ -4,7 +4,7 @@
  * left. There is no queue of rays. A work-item of one lane does the same with the samples of its pixel. */
 
 /* Traces the packets of a group of the launch. film: two planes, see sum.h, and those of guides.h. counters: of each packet, shadow rays, rays after the camera's,
- * samples that are not finite, and full stacks. distances: those of sample 0's camera rays, as in iterative.cl. */
+ * samples that are not finite, and rays that were stopped by RT_MOST_PASSED cut-outs (debug programs: full stacks). distances: those of sample 0's camera rays, as in iterative.cl. */
 RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *frame, uint group, global float4 *film, global uint4 *counters,
                                  global float *distances)
 {
@@ -25,7 +25,12 @@ RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *f
             rt_end_paths(frame, &paths, rt_bits(paths.alive & ~on), film, &not_finite);
             paths.alive = on;
         }
-        counters[number] = (uint4)(tally.shadow, tally.secondary, not_finite, tally.overflow);
+#ifdef RT_DEBUG
+        const uint last = tally.overflow;
+#else
+        const uint last = tally.dropped;
+#endif
+        counters[number] = (uint4)(tally.shadow, tally.secondary, not_finite, last);
     }
 }
 

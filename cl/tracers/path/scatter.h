@@ -5,8 +5,8 @@
 #ifndef RT_PATH_SCATTER_H
 #define RT_PATH_SCATTER_H
 
-/* Numbers of a work-item's rays: shadow rays, rays after the camera's, rays that surfaces stop though they are cut out (which nobody is
- * told: see RT_MOST_PASSED), and full traversal stacks. */
+/* Numbers of a work-item's rays: shadow rays, rays after the camera's, rays that surfaces stop though they are cut out (RT_MOST_PASSED),
+ * and full traversal stacks. */
 typedef struct rt_tally {
     uint shadow, secondary, dropped, overflow;
 } rt_tally;

@@ -17,12 +17,13 @@ trace_all_hits(const constant rt_frame *frame, RT_GROUPS_PARAMS const uint block
             rt_hit_list list;
             vfloat t_max;
             rt_load_ray_block(frame, rays, b, &ray, &t_max);
+            const vfloat scale = rt_scale_of_block(rays, b);
             const vmask active = RT_MASK(t_max >= rt_vfloat(0.0f));
             const global vfloat *last = (const global vfloat *)after + 2u * (size_t)b;
             rt_clear_hits(&hit, active);
             hit.t = rt_select(active, t_max, rt_vfloat(-1.0f));
             hit.list = &list;
-            rt_clear_list(&list, hit.t, last[0], rt_as_vint(last[1]));
+            rt_clear_list(&list, hit.t, last[0] * RT_INVERSE_POWER(scale), rt_as_vint(last[1]));
             if (rt_any(active)) {
                 rt_prepare(&ray, rt_bits(active));
                 rt_trace_closest(&ctx, frame, &ray, &hit);
@@ -30,7 +31,7 @@ trace_all_hits(const constant rt_frame *frame, RT_GROUPS_PARAMS const uint block
             RT_COUNT_OVERFLOW(&hit)
             global vfloat *out = (global vfloat *)answers + RT_LIST_FIELDS * RT_ALL_HITS * (size_t)b;
             for (uint i = 0; i < RT_ALL_HITS; ++i, out += RT_LIST_FIELDS) {
-                out[0] = list.t[i];
+                out[0] = list.t[i] * scale;
                 out[1] = list.u[i];
                 out[2] = list.v[i];
                 out[3] = rt_as_vfloat(rt_select(active, list.prim[i], rt_vint(-1)));

@@ -44,7 +44,7 @@ trace_dynamic_fetch(const constant rt_frame *frame, const uint first, const uint
         if (idle) {
             if (index != RT_NO_RAY) {
                 RT_COUNT_OVERFLOW(&hit)
-                hit.t = hit.prim >= 0 ? hit.t : INFINITY;
+                hit.t = hit.prim >= 0 ? hit.t * rt_scale_of_block(rays, index) : INFINITY;
                 rt_store_hit_block(answers, index, fields, stride, before, &hit);
             }
             index = next + popcount(idle_bits & before_me);

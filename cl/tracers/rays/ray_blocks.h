@@ -12,11 +12,41 @@
  *   RT_ANSWER_PLACED     these, and instance
  *   programs that count: these, steps, leaf_tests, lane_steps, and the members of a RayWork
  * The host fills the last block up with inactive rays. It packs rays and unpacks answers in
- * host/render/tracers/rays/ray_blocks.cpp. */
+ * host/render/tracers/rays/ray_blocks.cpp.
+ *
+ * All rays of callers enter here, so the rule for their directions stands here and nowhere else. A ray hits nothing if its direction is
+ * zero or not finite, or has no component of at least RT_LEAST_DIRECTION. Any other direction is right, however long it is: one far from
+ * the length 1 is multiplied by a power of two, which is exact, and so are the ray's distances by its inverse. For traversals hold lengths
+ * near 1: a component of 0 counts as 2^-80 in boxes (rays.h), which a direction of 2^-40 would take for a slope. */
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
 
-/* t_max of a block; negative in inactive lanes. */
+/* With 2^-60 the distance to anything in a scene, whose coordinates are at most 1e15, is a float. */
+#define RT_LEAST_DIRECTION 8.6736174e-19f
+/* Directions whose largest component is from 1/16 to 16 stay as they are. */
+#define RT_LEAST_USUAL_DIRECTION 0.0625f
+#define RT_MOST_USUAL_DIRECTION 16.0f
+
+/* The power of two by which a ray is traced with a longer direction: 1 for usual directions, 0 for those that hit nothing. By bits, as
+ * integers: so a NaN is greater than infinity, and no compiler takes numbers for finite. */
+RT_INLINE vfloat rt_direction_scale(vfloat x, vfloat y, vfloat z)
+{
+    const vint size = rt_vint(0x7FFFFFFF), infinite = rt_vint(0x7F800000);
+    const vint bx = rt_as_vint(x) & size, by = rt_as_vint(y) & size, bz = rt_as_vint(z) & size;
+    const vint xy = rt_select(RT_MASK(bx > by), bx, by), largest = rt_select(RT_MASK(xy > bz), xy, bz);
+    const vmask usual =
+        RT_MASK(largest >= rt_vint(as_int(RT_LEAST_USUAL_DIRECTION))) & RT_MASK(largest <= rt_vint(as_int(RT_MOST_USUAL_DIRECTION)));
+    if (rt_bits(usual) == RT_ALL_LANES) return rt_vfloat(1.0f);
+    const vmask is_ray = RT_MASK(largest >= rt_vint(as_int(RT_LEAST_DIRECTION))) & RT_MASK(largest < infinite);
+    /* 2^(1 - e) for a component of 2^e or more, which becomes 2 to 4: a power whose inverse is a normal number, too. */
+    const vfloat scale = rt_as_vfloat(infinite - (largest & infinite));
+    return rt_select(usual, rt_vfloat(1.0f), rt_select(is_ray, scale, rt_vfloat(0.0f)));
+}
+
+/* 1 / 2^k, exactly. */
+#define RT_INVERSE_POWER(power) rt_as_vfloat(rt_vint(0x7F000000) - rt_as_vint(power))
+
+/* t_max of a block as the caller gave it; negative in inactive lanes. */
 RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
 {
     return ((const global vfloat *)blocks)[RT_RAY_FIELDS * (size_t)block + 7u];
@@ -35,6 +65,7 @@ RT_INLINE void rt_fetch_ahead(const global float *blocks, uint block, uint last)
 #endif
 }
 
+/* *t_max: negative in lanes that hit nothing: inactive ones, and those whose directions are none. */
 RT_INLINE void rt_load_ray_block(const constant rt_frame *frame, const global float *blocks, uint block, rt_rays *ray, vfloat *t_max)
 {
     RT_SEEN_BY(ray, rt_vint((int)frame->ray_mask))
@@ -59,6 +90,27 @@ RT_INLINE void rt_load_ray_block(const constant rt_frame *frame, const global fl
     ray->dy = in[5];
     ray->dz = in[6];
     *t_max = in[7];
+#endif
+    const vfloat scale = rt_direction_scale(ray->dx, ray->dy, ray->dz);
+    if (rt_bits(RT_MASK(scale == rt_vfloat(1.0f))) == RT_ALL_LANES) return;
+    const vfloat shorter = RT_INVERSE_POWER(scale);
+    ray->dx *= scale;
+    ray->dy *= scale;
+    ray->dz *= scale;
+    ray->t_min *= shorter;
+    *t_max = rt_select(RT_MASK(scale == rt_vfloat(0.0f)), rt_vfloat(-1.0f), *t_max * shorter);
+}
+
+/* The scale of a block's directions, for distances: one that the caller gave, times RT_INVERSE_POWER(scale), is one of the ray; one that a
+ * traversal has found, times the scale, is one for the caller. */
+RT_INLINE vfloat rt_scale_of_block(const global float *blocks, uint block)
+{
+#if RT_LANES == 1
+    const float4 direction = ((const global float4 *)blocks)[2u * (size_t)block + 1u];
+    return rt_direction_scale(direction.x, direction.y, direction.z);
+#else
+    const global vfloat *in = (const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block;
+    return rt_direction_scale(in[4], in[5], in[6]);
 #endif
 }
 

@@ -32,6 +32,8 @@ trace_rays(const constant rt_frame *frame, RT_GROUPS_PARAMS const uint blocks, c
                 if (!rt_any(active[b])) continue;
 #if RT_LANES > 1
                 rt_load_ray_block(frame, rays, base + b, ray + b, &t_max);
+                active[b] &= RT_MASK(t_max >= rt_vfloat(0.0f));
+                if (!rt_any(active[b])) continue;
 #endif
                 rt_prepare_for_boxes(ray + b);
                 /* Skips packets that miss the scene: where few rays hit anything, a stream spends most of its time on preparing
@@ -60,7 +62,7 @@ trace_rays(const constant rt_frame *frame, RT_GROUPS_PARAMS const uint blocks, c
                 if (any_hit)
                     hit[b].t = rt_select(active[b] & RT_MASK(hit[b].t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
                 else
-                    hit[b].t = rt_select(RT_MASK(hit[b].prim >= rt_vint(0)), hit[b].t, RT_INFINITY);
+                    hit[b].t = rt_select(RT_MASK(hit[b].prim >= rt_vint(0)), hit[b].t * rt_scale_of_block(rays, base + b), RT_INFINITY);
                 rt_store_hit_block(answers, base + b, fields, stride, before, hit + b);
             }
         }

@@ -32,7 +32,7 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
             hit.t = hit.t < 0.0f ? 0.0f : INFINITY;
         } else {
             rt_trace_closest(&ctx, frame, &ray, &hit);
-            hit.t = hit.prim >= 0 ? hit.t : INFINITY;
+            hit.t = hit.prim >= 0 ? hit.t * rt_scale_of_block(rays, at) : INFINITY;
         }
         if (hit.step_budget < 0 && !(any_hit && hit.t == 0.0f)) list[2u + atomic_inc(list + parity)] = at;
     }
@@ -60,7 +60,7 @@ trace_long_closest(const constant rt_frame *frame,
         rt_prepare(&ray, 1u);
         rt_clear_hits(&hit, -1);
         hit.step_budget = INT_MAX;
-        const float known = answers[before + at];
+        const float known = answers[before + at] * RT_INVERSE_POWER(rt_scale_of_block(rays, at));
         hit.t = fmin(t_max, known);
         if (known < INFINITY) hit.prim = as_int(answers[stride + (size_t)before + at]);
         if (get_local_id(0) == 0) nearest = lowest = 0x7FFFFFFFu;
@@ -72,7 +72,10 @@ trace_long_closest(const constant rt_frame *frame,
         barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
         if (found && as_uint(hit.t) == nearest) atomic_min(&lowest, (uint)hit.prim);
         barrier(CLK_LOCAL_MEM_FENCE);
-        if (found && as_uint(hit.t) == nearest && (uint)hit.prim == lowest) rt_store_hit_block(answers, at, fields, stride, before, &hit);
+        if (found && as_uint(hit.t) == nearest && (uint)hit.prim == lowest) {
+            hit.t *= rt_scale_of_block(rays, at);
+            rt_store_hit_block(answers, at, fields, stride, before, &hit);
+        }
         barrier(CLK_LOCAL_MEM_FENCE);
     }
 }

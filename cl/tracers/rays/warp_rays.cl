@@ -81,7 +81,7 @@ trace_warps(const constant rt_frame *frame, const uint first_group, const uint c
         if (any_hit)
             hit[i].t = active[i] && hit[i].t < 0.0f ? 0.0f : INFINITY;
         else
-            hit[i].t = hit[i].prim >= 0 ? hit[i].t : INFINITY;
+            hit[i].t = hit[i].prim >= 0 ? hit[i].t * rt_scale_of_block(rays, at) : INFINITY;
         rt_store_hit_block(answers, at, fields, stride, before, hit + i);
     }
 }

@@ -50,7 +50,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 global uint *idle_control, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    local uint scratch[RT_TEAM_SCRATCH];
+    RT_TEAM_SCRATCH(scratch)
     const uint group_packets = RT_GROUP_PACKETS(frame);
     const uint count = level == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
                                    : min(control[level * RT_CONTROL], room);

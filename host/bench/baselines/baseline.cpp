@@ -1,6 +1,6 @@
 #include "bench/baselines/baseline.hpp"
 
-#ifdef CLARITY_HAVE_EMBREE
+#ifdef CLARITY_EMBREE
 #include "bench/baselines/embree_baseline.hpp"
 #endif
 
@@ -43,7 +43,7 @@ Problem baselines_cannot(const Scene& scene) {
 }
 
 std::vector<BaselineKind> baseline_kinds(std::string* why) {
-#ifdef CLARITY_HAVE_EMBREE
+#ifdef CLARITY_EMBREE
     (void)why;
     return {{"embree", "low", build_embree}, {"embree", "medium", build_embree}, {"embree", "high", build_embree}};
 #else
@@ -52,9 +52,12 @@ std::vector<BaselineKind> baseline_kinds(std::string* why) {
 #endif
 }
 
-#ifndef CLARITY_HAVE_EMBREE
+#ifndef CLARITY_EMBREE
 std::unique_ptr<MovingBaseline> make_moving_baseline(const BaselineMesh&, const std::string&, unsigned) {
     return nullptr;
+}
+std::string baseline_version() {
+    return {};
 }
 #endif
 

@@ -65,6 +65,8 @@ struct BaselineKind {
 };
 // The kinds this program was built with. If there are none, `why` receives the reason.
 std::vector<BaselineKind> baseline_kinds(std::string* why);
+// Name and version of the library that runs: "Embree 4.3.3". "": this program was built without it.
+std::string baseline_version();
 
 // A baseline with triangles that move.
 

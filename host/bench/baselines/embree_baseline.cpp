@@ -2,7 +2,6 @@
 // flag for packets of all but diffuse rays, denormals flushed to zero, rays and hits in flat arrays.
 #include "bench/baselines/embree_baseline.hpp"
 
-#include <embree3/rtcore.h>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -58,23 +57,11 @@ template <>
 struct Packet<8> {
     using Ray = RTCRay8;
     using RayHit = RTCRayHit8;
-    static void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
-        rtcIntersect8(valid, scene, context, rays);
-    }
-    static void occluded(const int* valid, RTCScene scene, RTCIntersectContext* context, Ray* rays) {
-        rtcOccluded8(valid, scene, context, rays);
-    }
 };
 template <>
 struct Packet<16> {
     using Ray = RTCRay16;
     using RayHit = RTCRayHit16;
-    static void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context, RayHit* rays) {
-        rtcIntersect16(valid, scene, context, rays);
-    }
-    static void occluded(const int* valid, RTCScene scene, RTCIntersectContext* context, Ray* rays) {
-        rtcOccluded16(valid, scene, context, rays);
-    }
 };
 
 template <class Rays>
@@ -94,7 +81,7 @@ void load(Rays& to, const RayBlock& from, size_t first, size_t width) {
 }
 
 template <int kWidth>
-void trace_block(RTCScene scene, RTCIntersectContext& context, bool any_hit, const RayBlock& block, BaselineHit* hits) {
+void trace_block(RTCScene scene, EmbreeQuery& query, bool any_hit, const RayBlock& block, BaselineHit* hits) {
     using P = Packet<kWidth>;
     for (size_t first = 0; first < kBlock; first += kWidth) {
         alignas(64) int valid[kWidth];
@@ -104,13 +91,13 @@ void trace_block(RTCScene scene, RTCIntersectContext& context, bool any_hit, con
         if (any_hit) {
             alignas(64) typename P::Ray rays;
             load(rays, block, first, kWidth);
-            P::occluded(valid, scene, &context, &rays);
+            query.any(valid, scene, &rays);
             for (int i = 0; i < kWidth; ++i) hits[first + i] = {rays.tfar[i] < 0 ? 0.0f : INFINITY, -1};
         } else {
             alignas(64) typename P::RayHit rays;
             load(rays.ray, block, first, kWidth);
             std::memset(rays.hit.geomID, 0xff, sizeof rays.hit.geomID);
-            P::intersect(valid, scene, &context, &rays);
+            query.closest(valid, scene, &rays);
             for (int i = 0; i < kWidth; ++i) {
                 const bool hit = rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
                 hits[first + i] = {hit ? rays.ray.tfar[i] : INFINITY, hit ? rt_i32(rays.hit.primID[i]) : -1};
@@ -120,7 +107,7 @@ void trace_block(RTCScene scene, RTCIntersectContext& context, bool any_hit, con
 }
 
 template <>
-void trace_block<1>(RTCScene scene, RTCIntersectContext& context, bool any_hit, const RayBlock& block, BaselineHit* hits) {
+void trace_block<1>(RTCScene scene, EmbreeQuery& query, bool any_hit, const RayBlock& block, BaselineHit* hits) {
     for (size_t i = 0; i < kBlock; ++i) {
         const auto& f = block.field;
         if (f[7][i] < 0) continue;
@@ -128,10 +115,10 @@ void trace_block<1>(RTCScene scene, RTCIntersectContext& context, bool any_hit, 
         one.ray = {f[0][i], f[1][i], f[2][i], f[3][i], f[4][i], f[5][i], f[6][i], 0, f[7][i], ~0u, 0, 0};
         one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         if (any_hit) {
-            rtcOccluded1(scene, &context, &one.ray);
+            query.any(scene, &one.ray);
             hits[i] = {one.ray.tfar < 0 ? 0.0f : INFINITY, -1};
         } else {
-            rtcIntersect1(scene, &context, &one);
+            query.closest(scene, &one);
             const bool hit = one.hit.geomID != RTC_INVALID_GEOMETRY_ID;
             hits[i] = {hit ? one.ray.tfar : INFINITY, hit ? rt_i32(one.hit.primID) : -1};
         }
@@ -197,15 +184,13 @@ class EmbreeScene : public BaselineScene {
             const unsigned saved = _mm_getcsr();
             _mm_setcsr(saved | 0x8040);  // flush denormal results (FTZ) and operands (DAZ) to zero
 #endif
-            RTCIntersectContext context;
-            rtcInitIntersectContext(&context);
-            context.flags = coherent_ ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+            EmbreeQuery query(coherent_);
             for (;;) {
                 const size_t first = next.fetch_add(kTaskBlocks);
                 if (first >= blocks_.size()) break;
                 for (size_t b = first; b < std::min(first + kTaskBlocks, blocks_.size()); ++b) {
                     fetch_ahead(blocks_, b);
-                    trace(scene_, context, any_hit_, blocks_[b], &hits[b * kBlock]);
+                    trace(scene_, query, any_hit_, blocks_[b], &hits[b * kBlock]);
                 }
             }
 #if defined(__SSE2__)
@@ -253,6 +238,17 @@ class EmbreeScene : public BaselineScene {
 };
 
 }  // namespace
+
+std::string baseline_version() {
+    static const std::string text = [] {
+        const RTCDevice device = rtcNewDevice("threads=1");
+        const auto version = device ? rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION) : RTC_VERSION;  // 40303: 4.3.3
+        if (device) rtcReleaseDevice(device);
+        return "Embree " + std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
+               std::to_string(version % 100);
+    }();
+    return text;
+}
 
 std::unique_ptr<BaselineScene> build_embree(const BaselineMesh& mesh, const std::string& quality, unsigned threads) {
     return std::make_unique<EmbreeScene>(mesh, quality, threads);

@@ -1,8 +1,7 @@
-// embree_baseline.hpp -- Embree 3 as a baseline.
+// embree_baseline.hpp -- Embree as a baseline.
 #pragma once
-#include <embree3/rtcore.h>
-
 #include "bench/baselines/baseline.hpp"
+#include "bench/baselines/embree.hpp"
 
 namespace clarity::bench {
 

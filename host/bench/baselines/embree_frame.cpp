@@ -161,7 +161,7 @@ INLINED void shading_normals(const BaselineMesh& mesh, const RTCHit16& hit, cons
 // Traces the packet of `queue` at `base`, and appends shadow rays and mirror rays. See rt_point_of(), rt_direct_light() and
 // rt_mirror_direction(). go_on: whether mirror rays are needed for a next generation.
 INLINED void trace_packet(const Job& job, Tile& tile, const RayQueue& queue, unsigned base, float weight, bool go_on,
-                          RTCIntersectContext& context, RayQueue& next) {
+                          EmbreeQuery& query, RayQueue& next) {
     const WhittedScene& whitted = *job.whitted;
     alignas(64) int valid[kWide];
     alignas(64) RTCRayHit16 packet;
@@ -169,7 +169,7 @@ INLINED void trace_packet(const Job& job, Tile& tile, const RayQueue& queue, uns
     EACH_LANE valid[i] = base + i < queue.count ? -1 : 0;
     EACH_LANE packet.ray.tfar[i] = kFar;
     std::memset(packet.hit.geomID, 0xff, sizeof packet.hit.geomID);
-    rtcIntersect16(valid, job.scene, &context, &packet);
+    query.closest(valid, job.scene, &packet);
 
     alignas(64) unsigned met[kWide], lit[kWide], from[kWide];
     unsigned any_met = 0;
@@ -240,7 +240,7 @@ INLINED void trace_packet(const Job& job, Tile& tile, const RayQueue& queue, uns
     next.count += count;
 }
 
-INLINED void trace_shadows(const Job& job, Tile& tile, RTCIntersectContext& context) {
+INLINED void trace_shadows(const Job& job, Tile& tile, EmbreeQuery& query) {
     const RayQueue& queue = tile.shadow;
     for (unsigned base = 0; base < queue.count; base += kWide) {
         alignas(64) int valid[kWide];
@@ -248,7 +248,7 @@ INLINED void trace_shadows(const Job& job, Tile& tile, RTCIntersectContext& cont
         load(packet, queue, base);
         std::memcpy(packet.tfar, queue.field[6] + base, sizeof packet.tfar);
         EACH_LANE valid[i] = base + i < queue.count ? -1 : 0;
-        rtcOccluded16(valid, job.scene, &context, &packet);
+        query.any(valid, job.scene, &packet);
         const unsigned count = std::min(kWide, queue.count - base);
         for (unsigned i = 0; i < count; ++i)
             tile.lit[queue.pixel[base + i]] += packet.tfar[i] < 0.0f ? 0.0f : queue.field[7][base + i];
@@ -273,15 +273,12 @@ EACH_ISA void embree_tile(const Job& job, Tile& tile, unsigned left, unsigned to
         RayQueue& queue = tile.rays[generation & 1u];
         RayQueue& next = tile.rays[1u - (generation & 1u)];
         if (queue.count == 0) break;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags =
-            generation == 0 || job.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+        EmbreeQuery query(generation == 0 || job.coherent);
         next.count = tile.shadow.count = 0;
         const bool go_on = generation + 1 < whitted.generations && weight * whitted.reflect > whitted.min_weight;
         for (unsigned base = 0; base < queue.count; base += kWide)
-            trace_packet(job, tile, queue, base, weight, go_on, context, next);
-        trace_shadows(job, tile, context);
+            trace_packet(job, tile, queue, base, weight, go_on, query, next);
+        trace_shadows(job, tile, query);
         tile.counts.shadow += tile.shadow.count;
         tile.counts.secondary += next.count;
         weight *= whitted.reflect;

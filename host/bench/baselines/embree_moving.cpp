@@ -1,13 +1,12 @@
 // embree_moving.cpp -- Embree's dynamic scenes: geometry of quality REFIT, LOW or MEDIUM, whose vertices are in a shared
 // buffer.
-#include <embree3/rtcore.h>
-
 #include <atomic>
 #include <chrono>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/baselines/baseline.hpp"
+#include "bench/baselines/embree.hpp"
 
 namespace clarity::bench {
 

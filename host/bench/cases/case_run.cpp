@@ -22,6 +22,7 @@ Entry& add_baseline_entry(CaseState& state, const std::string& name) {
     Entry& entry = state.add_entry();
     entry.row.baseline = entry.row.variant = name;
     describe_host(entry.row, state.fixture.baseline_threads());
+    entry.row.driver = baseline_version();
     return entry;
 }
 

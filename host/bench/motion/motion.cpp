@@ -242,6 +242,7 @@ class MotionCase : CaseRun {
         Entry& entry = state_.add_entry();
         entry.row.baseline = entry.row.variant = "embree " + quality;
         describe_host(entry.row, fixture.baseline_threads());
+        entry.row.driver = baseline_version();
         run_or_mark_failed(entry, [&](BenchRecord&) {
             const std::shared_ptr<MovingBaseline> baseline =
                 make_moving_baseline(fixture.baseline_mesh(), quality, fixture.baseline_threads());

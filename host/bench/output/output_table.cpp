@@ -213,6 +213,17 @@ std::string note_on_clock(const BenchReport& report) {
     return {};
 }
 
+// Which version of its peers was measured, a line each.
+std::string note_on_peers(const BenchReport& report) {
+    std::vector<std::string> versions;
+    for (const BenchRecord& r : report.records)
+        if (!r.baseline.empty() && !r.driver.empty() && std::find(versions.begin(), versions.end(), r.driver) == versions.end())
+            versions.push_back(r.driver);
+    std::string text;
+    for (const std::string& version : versions) text += "peers: " + version + "\n";
+    return text.empty() ? text : text + "\n";
+}
+
 // Joins the parts with commas, and breaks lines to fit a terminal of 120 columns.
 std::string wrapped(std::string line, const std::vector<std::string>& parts) {
     std::string text;
@@ -272,8 +283,8 @@ std::string left_out(const BenchReport& report) {
 std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
            accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + speedup_table(report) +
-           light_table(report) + threads_table(report) + row_tables(report) + shapes_table(report) + note_on_clock(report) +
-           analysis_table(report) + dropped_table(report) + left_out(report);
+           light_table(report) + threads_table(report) + row_tables(report) + shapes_table(report) + note_on_peers(report) +
+           note_on_clock(report) + analysis_table(report) + dropped_table(report) + left_out(report);
 }
 
 }  // namespace clarity::bench

@@ -78,7 +78,7 @@ struct BenchRecord {
     std::string baseline;   // "" for our rows, else "embree packet16 high"
 
     // ---- on which device
-    std::string device, device_id, driver;  // of a baseline: the host's processor
+    std::string device, device_id, driver;  // of a baseline: the host's processor, "host", and "Embree 4.3.3"
     unsigned device_clock_mhz = 0;          // highest clock, as the driver says; 0: unknown
     unsigned threads = 0;                   // compute units of the device; for a baseline its threads
 

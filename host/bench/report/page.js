@@ -521,7 +521,7 @@ function leftOutSection() {
 function machineSection() {
     const runs = data.runs, looks = data.looks;
     const span = pair => figure(pair.before) + ' to ' + figure(pair.after);
-    const seen = new Map(records.filter(r => !r.peer).map(r => [r.device + '\n' + r.driver, r]));
+    const seen = new Map(records.filter(r => !r.peer || r.driver).map(r => [r.device + '\n' + r.driver, r]));
     const keys = ['fps', 'mrays_per_s', 'rays'];
     const rows = records.map(
         r =>
@@ -539,7 +539,7 @@ function machineSection() {
                      ]))),
         table(
             ['in the charts', 'device', 'id', 'driver', 'compute units'], 4,
-            [...seen.values()].map(r => [device(r), r.device, r.device_id, r.driver, String(r.threads)])),
+            [...seen.values()].map(r => [r.peer ? 'peers' : device(r), r.device, r.device_id, r.driver, String(r.threads)])),
         el('p', {},
            'A figure is the p50 (the median) of many repetitions after a warm-up. Figures of one chart and one run were measured interleaved, A B A B, so that a disturbance of the ' +
                'machine affects all alike. The spread is the interquartile range divided by the median. If it stays above ' +

@@ -434,10 +434,7 @@ class RenderJob {
     void report() {
         if (!is_first()) return;
         if (stats_.dropped > 0)
-            log(LogLevel::warning, plural(stats_.dropped, "ray was", "rays were") +
-                                       " dropped because a pixel's ray slots were full: raise --ray-slots (now " +
-                                       std::to_string(settings_.ray_slots) + "), or because more than " +
-                                       std::to_string(RT_MOST_PASSED) + " surfaces that are cut out lie one behind the other");
+            log(LogLevel::warning, dropped_text(stats_.dropped, settings_.tracer == "path" ? 0 : settings_.ray_slots));
         if (stats_.overflowed > 0)
             log(LogLevel::error,
                 plural(stats_.overflowed, "time") + " a traversal stack was full: a fault of accel " + settings_.accel);

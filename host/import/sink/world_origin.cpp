@@ -78,11 +78,16 @@ void SceneBuilder::subtract_origin() {
         scene_.warnings.push_back("coordinates near " + exact_text(static_cast<float>(mesh_box.farthest())) +
                                   " are floats in the file, in steps of " + step_text(mesh_box.farthest()) +
                                   ": finer details are lost; write doubles or text, or subtract an origin before");
+    if (box.size() > 0 && box.size() < kLeastSize)
+        scene_.warnings.push_back("all surfaces lie within " + exact_text(static_cast<float>(box.size())) + ", less than " +
+                                  exact_text(static_cast<float>(kLeastSize)) +
+                                  ", where rays miss triangles: write lengths in a smaller unit, or scale the scene up");
     if (!box.is_far(has_digits ? kFarWithDigits : kFar)) {
         for (const Instance& instance : world_.instances) {
             WorldBox own;
             own.add(of_mesh[instance.mesh], placed(instance));
-            if (!own.is_far(kFar) || instance.rounded_off == std::array<double, 3>{}) continue;
+            const bool had_digits = instance.rounded_off != std::array<double, 3>{};
+            if (!own.is_far(had_digits ? kFar : kFarAsNoShape)) continue;
             scene_.warnings.push_back("'" + instance.name + "' lies " + exact_text(static_cast<float>(own.farthest())) +
                                       " from the origin, but other objects are near it: its details are rounded to steps of " +
                                       step_text(own.farthest()));

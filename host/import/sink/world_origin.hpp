@@ -11,6 +11,11 @@ namespace clarity::import {
 inline constexpr double kFar = 256;
 // The same where files have digits that floats do not hold.
 inline constexpr double kFarWithDigits = 16;
+// The same where nothing but floats was there, and the shape itself is lost: less than 16 of their steps are as wide as it.
+inline constexpr double kFarAsNoShape = 1 << 20;
+
+// Products of two edges of a triangle have to be floats with all their digits. A world that is smaller loses hits.
+inline constexpr double kLeastSize = 1e-17;
 
 struct WorldBox {
     Vec lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};

@@ -33,6 +33,12 @@ void grow(Bounds& bounds, const rt_prim& prim) {
     bounds.add(prim.hi);
 }
 
+void add(const Bounds& box, Bounds& to) {
+    if (box.empty) return;
+    to.add(box.min.data());
+    to.add(box.max.data());
+}
+
 void grow(rt_prim& prim, const float* p) {
     for (int k = 0; k < 3; ++k) {
         prim.lo[k] = std::min(prim.lo[k], p[k]);
@@ -394,12 +400,9 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
             if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));
-            const Bounds bounds = add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object,
-                                                instance.material, next_prim, next_ref, static_cast<rt_u32>(i), at, out);
-            if (!bounds.empty) {
-                out.bounds.add(bounds.min.data());
-                out.bounds.add(bounds.max.data());
-            }
+            add(add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, next_prim,
+                              next_ref, static_cast<rt_u32>(i), at, out),
+                out.bounds);
             next_ref += mesh.triangle_count;
             at += mesh.triangle_count;
         } else {
@@ -409,7 +412,10 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             placed.material = instance.material;
             placed.hidden = hidden_from(instance, instance.visible);
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
-            if (group_boxes[group].empty) group_boxes[group] = bounds_of(out, group);
+            if (group_boxes[group].empty) {
+                group_boxes[group] = bounds_of(out, group);
+                add(group_boxes[group], out.object_bounds);
+            }
             rt_prim prim = box_of_instance(group_boxes[group], instance.world_from_object, inverse[i], index);
             prim.mesh = static_cast<rt_u32>(i);
             grow(out.bounds, prim);

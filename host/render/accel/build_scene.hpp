@@ -27,7 +27,8 @@ struct BuildScene {
     std::vector<rt_polygon> polygon_table;
     std::vector<float> polygon_corners;  // 3 floats a corner
     std::vector<rt_plane> planes;
-    Bounds bounds;  // of the world's group, that is of everything but planes
+    Bounds bounds;         // of the world's group, that is of everything but planes
+    Bounds object_bounds;  // of all other groups, each in the space of its mesh
     // Where the Scene's meshes and instances are in here, for scenes that move.
     std::vector<rt_u32> group_of_mesh;       // 0: its triangles are in the world's group, or nowhere
     std::vector<rt_u32> first_ref_of_group;  // ref of the group's first triangle; the others follow

@@ -10,7 +10,8 @@ namespace {
 template <class Parcel, class Accel>
 void visit_plain(Parcel& parcel, Accel& a) {
     auto& s = a.scene;
-    parcel(a.leaf_count, a.bytes, a.build_ms, a.pack_ms, s.bounds.min, s.bounds.max, s.bounds.empty, a.defines, a.stats);
+    parcel(a.leaf_count, a.bytes, a.build_ms, a.pack_ms, s.bounds.min, s.bounds.max, s.bounds.empty, s.object_bounds.min,
+           s.object_bounds.max, s.object_bounds.empty, a.defines, a.stats);
     parcel(a.params, a.roots, a.instances);
     parcel(s.groups, s.instances, s.group_of_instance, s.world_from_object, s.attribute_triangle, s.flattened);
     parcel(s.instance_leaves, s.spheres, s.polygons, s.shape_leaves, s.shapes, s.polygon_table, s.polygon_corners);

@@ -49,7 +49,7 @@ ByteImage show_values(const std::function<FloatImage()>& read, const std::string
 }
 
 CompileRequest film_program() {
-    return {"#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film", true};
+    return {"#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film"};
 }
 
 FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memory_(device) {

@@ -244,8 +244,14 @@ struct FrameRenderer::Impl {
         const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
         stats.shadow = counts.shadow;
         stats.secondary = counts.secondary;
-        (sums_samples ? stats.not_finite : stats.dropped) = counts.dropped;
-        stats.overflowed = counts.overflowed;
+        if (!sums_samples) {
+            stats.dropped = counts.dropped;
+            stats.overflowed = counts.overflowed;
+            return;
+        }
+        // cl/tracers/path/path.cl has four counters for five numbers.
+        stats.not_finite = counts.dropped;
+        (debug ? stats.overflowed : stats.dropped) = counts.overflowed;
     }
     // Debug programs that trace only camera rays have no ray counters, so they count full stacks separately.
     bool counts_overflows() const { return debug && !tracer->counts_rays(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "rt_types.h"
 
 namespace clarity {
 namespace {
@@ -20,6 +21,13 @@ std::string not_finite_text(uint64_t samples) {
     return "tracing: " + plural(samples, "sample is", "samples are") +
            " not a finite number, and so are their pixels: a number of the scene is too large, or a kernel has a fault. Look "
            "for huge radiances and scales; `--only-paths` shows which light and which event they come from";
+}
+
+std::string dropped_text(uint64_t rays, int ray_slots) {
+    const std::string slots =
+        "because a pixel's ray slots were full: raise --ray-slots (now " + std::to_string(ray_slots) + "), or ";
+    return plural(rays, "ray was", "rays were") + " dropped " + (ray_slots > 0 ? slots : "") + "because more than " +
+           std::to_string(RT_MOST_PASSED) + " surfaces that are cut out lie one behind the other";
 }
 
 void add_rays(FrameStats& sum, const FrameStats& more) {

@@ -33,8 +33,10 @@ struct FrameStats {
     std::vector<DeviceShare> devices;
 };
 
-// What to tell a user of a picture with such samples.
+// What to tell a user of a picture with such samples, or with dropped rays. ray_slots: of the settings; 0: of `path`, which has
+// none.
 std::string not_finite_text(uint64_t samples);
+std::string dropped_text(uint64_t rays, int ray_slots);
 
 // Adds ray counts and launches only.
 void add_rays(FrameStats& sum, const FrameStats& more);

@@ -276,6 +276,7 @@ void write_numbers(SourceWriter& out) {
 
 void write_features(SourceWriter& out, const SceneFeatures& features, const Settings& settings, const KernelRow& row) {
     out.define_int("RT_HAS_INSTANCES", features.instances);
+    if (features.scale != 0) out.line("#define RT_SCENE_SCALE 0x1p" + std::to_string(features.scale) + "f");
     if (features.masks) out.define_int("RT_HAS_MASKS", 1);
     out.define_int("RT_HAS_SPHERES", features.spheres);
     out.define_int("RT_HAS_POLYGONS", features.polygons);

@@ -45,8 +45,8 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool
             return it->program;
         }
     ++compiled_;
-    const BuildResult built = compile_program(
-        *device_, {source.text, options_for(device_->info(), source), source.what, source.row->has(kFrame)}, progress);
+    const BuildResult built =
+        compile_program(*device_, {source.text, options_for(device_->info(), source), source.what}, progress);
     auto program = std::make_shared<TraceProgram>(source, built.program);
     program->compile_ms = built.ms;
     entries_.push_front({key, program});

@@ -18,6 +18,7 @@ struct SceneFeatures {
     bool uvs2 = false;        // they may name a second set of texture coordinates
     bool light_tree = false;  // lights are picked by one: see has_light_tree()
     bool wraps = false;       // a texture is clamped or mirrored somewhere; otherwise all repeat
+    int scale = 0;            // RT_SCENE_SCALE is 2 to this power
     Optics optics;
 };
 // more: what views have that the scene's own has not.

@@ -39,7 +39,13 @@ Setting with_choices(Setting s, const std::vector<std::string>& choices, Read re
     s.kind = Setting::Kind::choice;
     s.choices = choices;
     s.set = [key = s.key, choices, read](Settings& settings, const std::string& text) {
-        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return read(settings, text);
+        const auto has = [&](const std::string& word) {
+            return std::find(choices.begin(), choices.end(), word) != choices.end();
+        };
+        if (has(text)) return read(settings, text);
+        // `true` and `false`, as from Python, are `on` and `off` where there are such choices.
+        if (text == "true" && has("on")) return read(settings, "on");
+        if (text == "false" && has("off")) return read(settings, "off");
         std::string known;
         for (const std::string& c : choices) known += (known.empty() ? "" : ", ") + c;
         refuse_value(key, text, "one of " + known);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "device/device.hpp"
@@ -79,7 +80,7 @@ Tracer tracer_with(const char* id, void (*smoke)(const Smoke& smoke));
 // All tracers, in the order of their rows.
 const std::vector<const Tracer*>& tracers();
 // Throws std::out_of_range.
-const Tracer& find_tracer(const std::string& id);
+const Tracer& find_tracer(std::string_view id);
 // The tracer that makes frames of these settings: settings.tracer, which is not `auto`, or that of settings.aov.
 const Tracer& tracer_of(const Settings& settings);
 // What `auto` stands for.

@@ -74,10 +74,10 @@ const std::vector<TracerChoice>& tracer_choices() {
     return choices;
 }
 
-const Tracer& find_tracer(const std::string& id) {
+const Tracer& find_tracer(std::string_view id) {
     for (const Tracer* tracer : tracers())
         if (id == tracer->id) return *tracer;
-    throw std::out_of_range("no tracer `" + id + "`");
+    throw std::out_of_range("no tracer `" + std::string(id) + "`");
 }
 
 const Tracer& tracer_of(const Settings& settings) {

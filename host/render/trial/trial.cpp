@@ -122,6 +122,7 @@ TrialJob job_of(const Prepared& prepared, const DeviceInfo& info, const KernelRo
     job.features = features_of(*prepared.scene, accel.scene, prepared.settings.optics);
     job.surfaces = surface_model_ids();
     job.shapes = sample_shapes(*prepared.scene);
+    job.defines = accel.defines;
     job.settings.accel = accel.plugin->id;
     job.settings.accel_params = accel.params;
     return job;

@@ -48,6 +48,9 @@ struct TrialJob {
     std::vector<std::string> surfaces;             // ids of models that plugins bring, by their numbers
     SceneFeatures features;
     std::vector<TrialShape> shapes;
+    // Of the user's structure, where kernels' arrays are as large as its tree is deep. Those of the small scene count if they
+    // are larger.
+    std::map<std::string, rt_u32> defines;
     Settings settings;
 
     template <class Parcel, class Self>
@@ -56,7 +59,7 @@ struct TrialJob {
         if constexpr (Parcel::kWrites)
             for (const Setting& setting : settings_table()) texts.emplace_back(setting.key, setting.get(self.settings));
         parcel(self.kernels, self.libraries, self.device, self.device_name, self.surfaces, self.features, self.shapes,
-               self.settings.accel, self.settings.accel_params, texts);
+               self.defines, self.settings.accel, self.settings.accel_params, texts);
         if constexpr (!Parcel::kWrites)
             for (const auto& [key, value] : texts) set_setting(self.settings, key, value);
     }

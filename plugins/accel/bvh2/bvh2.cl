@@ -46,14 +46,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                 inside = swap ? bits1 : bits0;
                 continue;
             }
-            if (bits0 != 0u) {
-                ref = child0;
-                inside = bits0;
-                continue;
-            }
-            if (bits1 != 0u) {
-                ref = child1;
-                inside = bits1;
+            if ((bits0 | bits1) != 0u) {
+                ref = bits0 != 0u ? child0 : child1;
+                inside = bits0 | bits1;
                 continue;
             }
         }

@@ -32,6 +32,12 @@
 namespace assimp_import {
 namespace {
 
+// What assimp reports as an error although it is none, by words of the message.
+constexpr const char* kNone[] = {
+    "setting default material",         // a mesh without a material
+    "Unexpected effect input mapping",  // any texture in COLLADA: assimp 5.4 takes the word of input_semantic for a number
+};
+
 // Collects errors that assimp only logs: parts of a file that it gave up on while it read the rest.
 
 // Collects while it exists; create it around one ReadFile(). assimp has one logger per process, so imports in one process must
@@ -62,8 +68,8 @@ class Complaints {
     void add(std::string line) {
         while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.pop_back();
         if (const size_t at = line.find("T0: "); at != line.npos) line.erase(0, at + 4);
-        // assimp reports a mesh without a material as an error. It is none.
-        if (line.find("setting default material") != line.npos) return;
+        for (const char* none : kNone)
+            if (line.find(none) != line.npos) return;
         for (const std::string& known : errors_) {
             if (known == line) return;
         }

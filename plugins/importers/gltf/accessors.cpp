@@ -23,7 +23,7 @@ constexpr Component kComponents[] = {{5120, 1, true, false},  {5121, 1, false, f
                                      {5123, 2, false, false}, {5125, 4, false, false}, {5126, 4, true, true}};
 constexpr std::pair<std::string_view, size_t> kTypes[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};
 
-const Component& component_of(const Value& owner, bool integers_only) {
+Component component_of(const Value& owner, bool integers_only) {
     const Value code = owner["componentType"];
     for (const Component& c : kComponents) {
         if (c.code == code.count() && !(integers_only && c.is_signed)) return c;
@@ -150,7 +150,7 @@ void Accessors::read_sparse(const Value& sparse, Range values, Elements<T>& out)
     Range places;
     places.components = 1;
     places.count = values.count;
-    const Component& component = component_of(sparse["indices"], true);
+    const Component component = component_of(sparse["indices"], true);
     places.component_type = component.code;
     places.component_bytes = component.bytes;
     bind(sparse["indices"], places);

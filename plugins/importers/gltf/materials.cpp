@@ -50,8 +50,10 @@ std::vector<std::string> unknown_extensions(const Value& material) {
     constexpr const char* kOthers[] = {"KHR_materials_ior", "KHR_materials_volume", "KHR_materials_emissive_strength",
                                        "KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"};
     std::vector<std::string> unknown;
-    if (!material.has("extensions") || !material["extensions"].json().is_object()) return unknown;
-    for (const auto& extension : material["extensions"].json().items()) {
+    if (!material.has("extensions")) return unknown;
+    const Value extensions = material["extensions"];
+    if (!extensions.json().is_object()) return unknown;
+    for (const auto& extension : extensions.json().items()) {
         const std::string& name = extension.key();
         const auto is_name = [&](const char* known) { return name == known; };
         const bool known =

@@ -32,6 +32,7 @@ const char* const kDefects[] = {"none",
                                 "define_of_odd_name",
                                 "define_of_no_name",
                                 "stat_of_no_name",
+                                "deep_stack",
                                 nullptr};
 
 struct Run {
@@ -94,13 +95,28 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
     if (is("define_of_odd_name")) out->define(out->ctx, "1 ); abort(", 1);
     if (is("define_of_no_name")) out->define(out->ctx, nullptr, 1);
     if (is("stat_of_no_name")) out->stat(out->ctx, nullptr, 1);
+    // 16 MiB, of which a thread has 8: but not for the small scene on which kernels are tried.
+    if (is("deep_stack")) out->define(out->ctx, "BAD_BUILDER_STACK", total > 5000 ? 4u << 20 : 8192);
     return RT_OK;
 }
 
 constexpr rt_slot kSlots[] = {rt::slot<Run>("bad_builder_runs", "uint2")};
 constexpr rt_param kParams[] = {rt::enum_param("defect", "Defect", "what the builder does wrong", kDefects, 0)};
 // Not wrapped in rt::guarded: the host must stop the exceptions of a careless plugin.
-constexpr rt_accel kAccel = rt::accel(kSlots, {}, {"bad_builder.cl", "void RT_TRAVERSE() {}"}, build, nullptr, {});
+// Pushes all primitives before it tests the first.
+constexpr const char* kKernel = R"(
+#ifndef BAD_BUILDER_STACK
+#define BAD_BUILDER_STACK 8192
+#endif
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    uint stack[BAD_BUILDER_STACK], top = 0;
+    const uint2 run = ctx->bad_builder_runs[root];
+    for (uint i = 0; i < run.y; ++i) stack[top++] = run.x + i;
+    while (top) RT_LEAF(ctx, stack[--top], ray, hit);
+}
+)";
+constexpr rt_accel kAccel = rt::accel(kSlots, {}, {"bad_builder.cl", kKernel}, build, nullptr, {});
 
 }  // namespace
 

@@ -87,6 +87,7 @@ TEST_F(ReportShown, EveryThesisChartWithItsAxisEnd) {
         EXPECT_EQ(count_of(page, std::string("<h2 id=\"") + id + "\""), 1u) << id;
         EXPECT_EQ(count_of(page, std::string("href=\"#") + id + "\""), 1u) << id;
     }
+    EXPECT_EQ(count_of(page, ">Embree 4.3.3<"), 1u) << "which version of the peers was measured";
     EXPECT_EQ(count_of(page, "<canvas"), 5u + 2)
         << "a chart of curves for each kind of rays, and for builds; two of errors of light";
     for (const char* name : {"p50", "p95", "p99", "undefined", "NaN"})

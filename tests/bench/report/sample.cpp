@@ -141,6 +141,7 @@ void add_structures(BenchReport& report, const char* suite, const std::string& s
             BenchRecord r = record_on(kWhere[0], suite, scene, measure);
             r.baseline = baseline;
             r.device = "AMD EPYC";
+            r.driver = "Embree 4.3.3";
             r.triangles = triangles;
             r.accel.clear();
             set_rays(r, (baseline[7] == 's' ? 30 : 84) / size);

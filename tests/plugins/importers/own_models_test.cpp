@@ -23,18 +23,18 @@ std::string data(const std::string& name) {
     return std::string(CLARITY_SOURCE_DIR "/tests/plugins/importers/data/") + name;
 }
 
-const Material& material_named(const Scene& scene, const std::string& name) {
+const Material& material_named(const Scene& scene, std::string_view name) {
     for (const Material& material : scene.materials) {
         if (material.name == name) return material;
     }
-    throw std::runtime_error("no material " + name);
+    throw std::runtime_error("no material " + std::string(name));
 }
 
-const Instance& instance_named(const Scene& scene, const std::string& name) {
+const Instance& instance_named(const Scene& scene, std::string_view name) {
     for (const Instance& instance : scene.instances) {
         if (instance.name == name) return instance;
     }
-    throw std::runtime_error("no instance " + name);
+    throw std::runtime_error("no instance " + std::string(name));
 }
 
 // Returns the material of a triangle as the instance shows it.

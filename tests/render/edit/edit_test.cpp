@@ -215,7 +215,7 @@ TEST(Edit, RefusalsNameTheAllowedValues) {
         {"camera.focus", "2e15", "a length from 0 to 1e15"},
         {"light.0", "point,1,2", "six numbers"},
         {"light.0", "directional,0,0,0,1,1,1", "no length"},
-        {"light.0", "point,0,0,0,-1,0,0", "`-1,0,0` is not from 0 to 1e+15"},
+        {"light.0", "point,0,0,0,-1,0,0", "from 0 to 1e+15"},
         {"material.7.color", "1,1,1", "0 to 1"},
         {"material.0.colour", "1,1,1", "shininess"},
         {"material.0", "1", "material.N.PART"},

@@ -4,13 +4,18 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
+#include "render/accel/accel_build.hpp"
 #include "render/kernels/kernel_arguments.hpp"
+#include "render/kernels/kernel_source.hpp"
 #include "render/kernels/layout.hpp"
 #include "render/settings/aov.hpp"
 #include "render/tracers/rays/ray_kernels.hpp"
 #include "render/tracers/tracer.hpp"
 #include "support/errors.hpp"
+#include "support/scenes.hpp"
+#include "support/workbench.hpp"
 
 namespace clarity {
 namespace {
@@ -67,6 +72,42 @@ TEST(KernelTable, ColorsByTracerAndLayout) {
     EXPECT_EQ(std::string(row("wavefront", gpu).entry), "trace_wavefront");
     EXPECT_EQ(std::string(row("iterative", gpu).headers.back()), "tracers/iterative/iterative_single.h");
     EXPECT_EQ(std::string(row("iterative", cpu).headers.back()), "tracers/iterative/generations.h");
+}
+
+// Local memory is shared by work-items, so a work-group of one needs none. PoCL 6.0 ends the process at a local variable that
+// no instruction uses. With the optimiser, which removes such ones, that depends on what it finds.
+TEST(KernelTable, WorkGroupsOfOneHaveNoLocalMemory) {
+    Device& device = *test::Workbench::get().shared_device();
+    if (!device.info().traces_packets()) GTEST_SKIP() << "SKIPPED: kernels for CPUs";
+    const auto scene = test::load_scene(test::source_file("scenes/showpiece.scene"));
+    const rt_plugin& plugin = *test::Workbench::get().plugins().accel("bvh2");
+    Progress progress;
+    const AccelData data = build_accel(*scene, plugin, default_parameters(plugin), progress);
+    std::set<const KernelRow*> rows{&plain_rays(), &all_hits()};
+    for (const TracerChoice& choice : tracer_choices()) {
+        Settings settings = one_pixel();
+        settings.tracer = choice.id;
+        rows.insert(&tracer_of(settings).kernel(settings, make_layout(settings, true)));
+    }
+    size_t kernels = 0;
+    for (const KernelRow* row : rows) {
+        const Settings settings = test::make_settings({{"accel", "bvh2"}, {"lanes", "4"}});
+        const KernelSource source = kernel_for(*row, settings, make_layout(settings, true), *scene, data);
+        wrap_cl_errors(device, "asking for local memory", [&] {
+            cl::Program program(device.context(), source.text);
+            program.build(device.info().cl_device, (source.options + " -cl-opt-disable").c_str());
+            std::vector<cl::Kernel> all;
+            program.createKernels(&all);
+            for (const cl::Kernel& kernel : all) {
+                if (kernel.getWorkGroupInfo<CL_KERNEL_COMPILE_WORK_GROUP_SIZE>(device.info().cl_device)[0] != 1) continue;
+                EXPECT_EQ(kernel.getWorkGroupInfo<CL_KERNEL_LOCAL_MEM_SIZE>(device.info().cl_device), 0u)
+                    << row->file << ": " << kernel.getInfo<CL_KERNEL_FUNCTION_NAME>();
+                ++kernels;
+            }
+            return 0;
+        });
+    }
+    EXPECT_GE(kernels, 5u);
 }
 
 // A finished frame of one tracer that `auto` takes serves as one of another.

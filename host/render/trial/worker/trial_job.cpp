@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -215,11 +216,13 @@ class TrialProgress : public Progress {
     const TrialSteps& say_step_;
 };
 
-// A copy of a structure, with its arrays between guard pages. Kernels on a CPU read them in place.
-std::shared_ptr<const AccelData> guarded(const AccelData& built, std::list<GuardedBytes>& memory) {
+// A copy of a structure, with its arrays between guard pages. Kernels on a CPU read them in place. They are compiled with what
+// the user's structure defines: a stack that a thread has no room for crashes here.
+std::shared_ptr<const AccelData> guarded(const AccelData& built, const std::map<std::string, rt_u32>& defines,
+                                         std::list<GuardedBytes>& memory) {
     const rt_accel& accel = *built.layout->accel;
     rt_u32 slot = 0;
-    return std::make_shared<const AccelData>(copy_of(built, [&](const AlignedBytes& from) {
+    auto copied = std::make_shared<AccelData>(copy_of(built, [&](const AlignedBytes& from) {
         const std::string name = slot < accel.slot_count ? std::string("the slot ") + accel.slots[slot].name : "the leaves";
         ++slot;
         GuardedBytes& copy = memory.emplace_back(from.bytes(), name);
@@ -227,6 +230,11 @@ std::shared_ptr<const AccelData> guarded(const AccelData& built, std::list<Guard
         copy.make_read_only();
         return AlignedBytes::borrow(copy.data(), copy.bytes());
     }));
+    for (const auto& [name, value] : defines) {
+        rt_u32& here = copied->defines[name];
+        here = std::max(here, value);
+    }
+    return copied;
 }
 
 // Between guard pages, which kernels on a CPU see.
@@ -259,7 +267,7 @@ Problem try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, c
     TrialProgress progress(say_step);
     Preparer preparer(plugins, device);
     std::list<GuardedBytes> memory;  // outlives all that uses the structure
-    const auto accel = guarded(*preparer.build(scene, settings, progress), memory);
+    const auto accel = guarded(*preparer.build(scene, settings, progress), job.defines, memory);
     const auto prepared = prepare_queries(*device, scene, accel, settings, progress);
     const Smoke smoke{device, *prepared, make_view(*scene, float(kWidth) / float(kHeight)), say_step};
     const Tracer& tracer = find_tracer(job.kernels);
