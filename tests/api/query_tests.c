@@ -120,6 +120,13 @@ void test_move(const clarity_scene* scene) {
     WORKS(clarity_move(tracer, &places, NULL));
     WORKS(clarity_closest(tracer, &query, &hits, NULL));
     CHECK(t == 2.5f);
+    int32_t cancel = 1;
+    clarity_watch watch = {0};
+    watch.struct_bytes = sizeof watch;
+    watch.cancel = &cancel;
+    CHECK(clarity_move(tracer, &places, &watch) == CLARITY_CANCELLED);
+    for (int i = 0; i < 5; ++i) WORKS(clarity_move(tracer, &places, NULL)); /* until no copy of the structure differs */
+    CHECK(clarity_move(tracer, &places, &watch) == CLARITY_CANCELLED); /* although nothing moves */
     places.type = 9;
     FAILS(clarity_move(tracer, &places, NULL), CLARITY_USAGE, "unknown type 9");
     places.type = CLARITY_FLOAT64;
