@@ -73,6 +73,7 @@ void clarity_tracer::move(const clarity_places& places, Progress& progress) {
     check_arrays();
     const Pose pose = pose_of(places);
     progress.stage("moving the scene");
+    if (progress.cancelled()) throw Cancelled();  // what moves nothing asks nowhere else
     Scene moved = posed(*placed_, pose);
     if (places.transforms)
         for (Instance& instance : moved.instances) instance.apart = true;  // the next move can refit

@@ -49,6 +49,7 @@ static inline clarity_rays one_ray(const float origin[3], const float direction[
 void test_rays(const clarity_scene* scene, const char* accel, const char* lanes);
 void test_far(void);
 void test_move(const clarity_scene* scene);
+void test_move_cancelled(const clarity_scene* scene);
 void test_rows(void);
 void test_packed(const clarity_scene* scene);
 void test_kept(const clarity_scene* scene, const char* lanes);

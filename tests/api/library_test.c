@@ -395,6 +395,7 @@ int main(int argc, char** argv) {
     test_kept_moved(scene);
     test_packed(scene);
     test_move(scene);
+    test_move_cancelled(scene);
     test_rows();
     test_far();
     test_pictures(scene);

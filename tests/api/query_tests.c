@@ -130,6 +130,24 @@ void test_move(const clarity_scene* scene) {
     clarity_tracer_free(tracer);
 }
 
+/* A move is cancelled, too, if nothing has to be done for it: after some moves no copy of the structure differs. */
+void test_move_cancelled(const clarity_scene* scene) {
+    const clarity_options options = options_of("bvh2", NULL);
+    clarity_tracer* tracer = NULL;
+    clarity_places places = {0};
+    clarity_watch watch = {0};
+    int32_t cancel = 1;
+    places.struct_bytes = sizeof places;
+    watch.struct_bytes = sizeof watch;
+    watch.cancel = &cancel;
+    WORKS(clarity_tracer_new(scene, &options, NULL, &tracer));
+    for (int i = 0; i < 5; ++i) {
+        CHECK(clarity_move(tracer, &places, &watch) == CLARITY_CANCELLED);
+        WORKS(clarity_move(tracer, &places, NULL));
+    }
+    clarity_tracer_free(tracer);
+}
+
 static void on_row(void* user, const char* json) {
     if (strstr(json, "\"status\":\"passed\"") && !strchr(json, '\n')) ++*(int*)user;
 }

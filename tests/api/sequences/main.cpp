@@ -23,7 +23,7 @@ namespace sequences {
 namespace {
 
 // A sequence begins with nothing, and ends with nothing.
-constexpr uint64_t kSteps = 2000;
+constexpr uint64_t kSteps = 4000;
 // A call that takes longer hangs; compilers of kernels take seconds each.
 constexpr int kPatienceS = 600;
 

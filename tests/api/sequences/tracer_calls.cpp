@@ -214,10 +214,11 @@ void tracer_move(Step& step) {
 
 }  // namespace
 
+// A new tracer is rare: PoCL takes as long to load its programs as for a thousand calls.
 const std::vector<Call> kTracerCalls = {
-    {"clarity_tracer_new", 0.3, tracer_new},
+    {"clarity_tracer_new", 0.05, tracer_new},
     {"clarity_tracer_info", 2, tracer_info},
-    {"clarity_tracer_free", 0.15, tracer_free},
+    {"clarity_tracer_free", 0.02, tracer_free},
     {"clarity_move", 1.5, tracer_move},
 };
 
