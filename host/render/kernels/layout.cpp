@@ -1,6 +1,7 @@
 #include "render/kernels/layout.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "base/error.hpp"
 
@@ -24,6 +25,8 @@ void resolve_packet(Settings& settings, const DeviceInfo& info) {
 }
 
 Layout make_layout(const Settings& settings, bool cpu) {
+    if (settings.lanes <= 0 || settings.packet_w <= 0 || settings.packet_h <= 0)
+        throw std::logic_error("make_layout: resolve_packet() has not chosen lanes and packet yet");
     Layout layout;
     layout.lanes = static_cast<unsigned>(settings.lanes);
     layout.packet_w = static_cast<unsigned>(settings.packet_w);

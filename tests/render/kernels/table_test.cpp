@@ -91,7 +91,8 @@ TEST(KernelTable, WorkGroupsOfOneHaveNoLocalMemory) {
     }
     size_t kernels = 0;
     for (const KernelRow* row : rows) {
-        const Settings settings = test::make_settings({{"accel", "bvh2"}, {"lanes", "4"}});
+        Settings settings = test::make_settings({{"accel", "bvh2"}, {"lanes", "4"}});
+        resolve_packet(settings, device.info());
         const KernelSource source = kernel_for(*row, settings, make_layout(settings, true), *scene, data);
         wrap_cl_errors(device, "asking for local memory", [&] {
             cl::Program program(device.context(), source.text);
@@ -108,6 +109,15 @@ TEST(KernelTable, WorkGroupsOfOneHaveNoLocalMemory) {
         });
     }
     EXPECT_GE(kernels, 5u);
+}
+
+TEST(KernelTable, LayoutsWantSettingsThatAreResolved) {
+    Settings settings = test::make_settings({{"lanes", "4"}});
+    EXPECT_THROW(make_layout(settings, true), std::logic_error);
+    DeviceInfo info;
+    info.cpu = true;
+    resolve_packet(settings, info);
+    EXPECT_EQ(make_layout(settings, true).packet_w, static_cast<unsigned>(settings.packet_w));
 }
 
 // A finished frame of one tracer that `auto` takes serves as one of another.
