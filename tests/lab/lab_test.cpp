@@ -46,7 +46,7 @@ const std::vector<Submission> kMedian = {
     {"opens_sockets", kBegin, PROBE("if (socket(AF_INET, SOCK_STREAM, 0) < 0) throw rt::fail(host, \"probe: no net\");"), 0, 0,
      "probe: no net"},
     {"forks", kBegin, PROBE("if (fork() < 0) throw rt::fail(host, \"probe: no fork\");"), 0, 0, "probe: no fork"},
-    {"fills_memory", kBegin, PROBE("for (;;) *new char[1 << 24] = 1;"), 0, 0, "memory"},
+    {"fills_memory", kBegin, PROBE("static char* volatile kept; for (;;) *(kept = new char[1 << 24]) = 1;"), 0, 0, "memory"},
     {"loops", kBegin, PROBE("for (volatile int i = 0;;) i = i + 1;"), 0, 0, "the builder"},
     {"sleeps", kBegin, PROBE("for (;;) sleep(1);"), 0, 0, "did not come to its end"},
     {"reports_progress_for_ever", kBegin, PROBE("for (float f = 0;; f += 1e-6f) host->progress(host->ctx, f);"), 0, 0, ""},
