@@ -31,12 +31,34 @@ std::optional<cl::Program> program_of(Device& device, const std::vector<char>& b
     }
 }
 
-// A program for one device. options: of the request, and what else the compiler is told.
+// How a compiler can be made to take other paths to the same program.
+struct Way {
+    const char* options;            // besides the request's
+    const char* work_group_method;  // of PoCL; empty: its usual one
+    const char* consequence;        // for the user
+};
+
+// LLVM 18 and 19, which PoCL 6.0 uses, end the process where one of their passes has more to do when it is run again
+// ("Instruction Combining did not reach a fixpoint"). No text of ours can rule that out. So where a compiler crashes, it is
+// tried in the next way. Work-groups of our kernels for CPUs are one work-item, which all methods make the same of, and as
+// fast (docs/performance.md). The last way is slow.
+constexpr Way kWays[] = {
+    {"", "", ""},
+    {"", "cbs", "in another way of the compiler's"},
+    {" -cl-opt-disable", "cbs", "without the compiler's optimiser, so pictures will take longer"},
+};
+
+// A program for one device.
 struct DeviceRequest {
-    DeviceRequest(const DeviceInfo& of, const CompileRequest& what, const char* more_options = "")
-        : info(of), request(what), options(what.options + more_options), key(program_key(of, what.source, options)) {}
+    DeviceRequest(const DeviceInfo& of, const CompileRequest& what, const Way& the_way)
+        : info(of),
+          request(what),
+          way(the_way),
+          options(what.options + way.options),
+          key(program_key(of, what.source, options + way.work_group_method)) {}
     const DeviceInfo& info;
     const CompileRequest& request;
+    const Way& way;
     const std::string options, key;
 };
 
@@ -46,8 +68,8 @@ BuildResult build_here(Device& device, const DeviceRequest& wanted) {
 
 // Compiles a program that is not on disk, and keeps it there.
 CompileOutcome compile_first(const DeviceRequest& wanted, Progress& progress) {
-    CompileOutcome outcome =
-        compile_in_worker(wanted.info, wanted.request.source, wanted.options, wanted.request.what, progress);
+    CompileOutcome outcome = compile_in_worker(wanted.info, wanted.request.source, wanted.options, wanted.way.work_group_method,
+                                               wanted.request.what, progress);
     if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
     return outcome;
 }
@@ -62,6 +84,9 @@ BuildResult take(Device& device, const DeviceRequest& wanted, const std::vector<
         }
         forget_program(wanted.key);
     }
+    if (*wanted.way.work_group_method)  // it is too late to tell PoCL in this process
+        throw Error(Exit::kernel_build_failed, wanted.info.name + " gives no binary of " + wanted.request.what +
+                                                   ", or refuses its own, and crashes at compiling it as usual");
     set_aside(wanted.key);
     BuildResult built = build_here(device, wanted);
     put_back(wanted.key);
@@ -86,32 +111,25 @@ BuildResult compile(Device& device, const DeviceRequest& wanted, Progress& progr
     return result;
 }
 
-// LLVM 18, which PoCL 6.0 uses, ends the process where one of its passes has more to do when it is run again ("Instruction
-// Combining did not reach a fixpoint"). No text of ours can rule that out. So where a compiler crashes, the program is compiled
-// without the compiler's optimiser. Its pictures are the same, and take longer.
-constexpr const char* kNoOptimiser = " -cl-opt-disable";
-
 // Returns load(program), or, where that gives nothing, compile(program). If the compiler crashes at it, or has done so before,
-// the program is the one without the optimiser: it alone is kept then, which tells later starts. Throws the first
-// CompilerCrashed if there are two.
+// the program is one of another way: it alone is kept then, which tells later starts. Throws the first CompilerCrashed where
+// all ways end so.
 template <class Load, class Compile>
 auto compile_in_spite_of_crashes(const DeviceInfo& info, const CompileRequest& request, const Load& load,
                                  const Compile& compile) {
-    const DeviceRequest wanted(info, request);
-    if (auto loaded = load(wanted)) return *loaded;
-    const DeviceRequest plain(info, request, kNoOptimiser);
-    if (auto loaded = load(plain)) return *loaded;
-    try {
-        return compile(wanted);
-    } catch (const CompilerCrashed& crash) {
-        log(LogLevel::warning,
-            std::string(crash.what()) + "; compiling again without the compiler's optimiser, so pictures will take longer");
+    for (const Way& way : kWays)
+        if (auto loaded = load(DeviceRequest(info, request, way))) return *loaded;
+    std::optional<CompilerCrashed> first;
+    for (const Way& way : kWays) {
+        if (first && !info.pocl && !*way.options) continue;
+        if (first) log(LogLevel::warning, std::string(first->what()) + "; compiling again " + way.consequence);
         try {
-            return compile(plain);
-        } catch (const CompilerCrashed&) {
-            throw crash;
+            return compile(DeviceRequest(info, request, way));
+        } catch (const CompilerCrashed& crash) {
+            if (!first) first = crash;
         }
     }
+    throw *first;
 }
 
 }  // namespace

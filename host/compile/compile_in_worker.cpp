@@ -110,10 +110,11 @@ double compile_patience_s() {
 }
 
 CompileOutcome compile_in_worker(const DeviceInfo& info, const std::string& source, const std::string& options,
-                                 const std::string& what, Progress& progress) {
+                                 const std::string& work_group_method, const std::string& what, Progress& progress) {
     if (progress.cancelled()) throw Cancelled();
     const WorkerFolder folder(info);
-    return Compilation(info, what).outcome({source, options, info.id(), info.name, info.driver, folder.path()}, progress);
+    return Compilation(info, what)
+        .outcome({source, options, info.id(), info.name, info.driver, folder.path(), work_group_method}, progress);
 }
 
 }  // namespace clarity

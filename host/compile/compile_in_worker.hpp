@@ -17,10 +17,10 @@ struct CompilerCrashed : Error {
     using Error::Error;
 };
 
-// Runs the job. what: for messages. Throws CompilerCrashed, Error(kernel_build_failed) if the worker does not end as it should
-// for another reason, both with what the compiler printed in details(), and Cancelled. Compiler errors are no failure: they are
-// in the result.
+// Runs the job. what: for messages. work_group_method: see CompileJob. Throws CompilerCrashed, Error(kernel_build_failed) if
+// the worker does not end as it should for another reason, both with what the compiler printed in details(), and Cancelled.
+// Compiler errors are no failure: they are in the result.
 CompileOutcome compile_in_worker(const DeviceInfo& info, const std::string& source, const std::string& options,
-                                 const std::string& what, Progress& progress);
+                                 const std::string& work_group_method, const std::string& what, Progress& progress);
 
 }  // namespace clarity

@@ -114,6 +114,7 @@ CompileOutcome compile(const CompileJob& job) {
 void compile_job(ParcelReader& arguments) {
     const auto job = worker::arguments_in<CompileJob>(arguments);
     if (!job.pocl_cache.empty()) setenv("POCL_CACHE_DIR", job.pocl_cache.c_str(), 1);
+    if (!job.work_group_method.empty()) setenv("POCL_WORK_GROUP_METHOD", job.work_group_method.c_str(), 1);
     keep_freed_memory();
     worker::enter_sandbox(worker::WorkerKind::driver);
     try {

@@ -13,9 +13,10 @@ struct CompileJob {
     std::string source, options;
     std::string device, name, driver;  // id as `--device` takes it; the worker refuses a device of another name or driver
     std::string pocl_cache;            // an empty folder that PoCL compiles into; empty: its usual one
+    std::string work_group_method;     // POCL_WORK_GROUP_METHOD; empty: as the user has it
     template <class Parcel, class Self>
     static void visit(Parcel& parcel, Self& self) {
-        parcel(self.source, self.options, self.device, self.name, self.driver, self.pocl_cache);
+        parcel(self.source, self.options, self.device, self.name, self.driver, self.pocl_cache, self.work_group_method);
     }
 };
 

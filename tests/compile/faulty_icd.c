@@ -7,6 +7,7 @@
  *   build-hangs, build-crashes, build-exits, build-eats, build-refuses     what clBuildProgram does with a source
  *   build-hangs-late   the first build of a process is in order
  *   optimiser-crashes  clBuildProgram crashes, but with -cl-opt-disable it is in order
+ *   method-crashes     clBuildProgram crashes, but with PoCL's work-group method cbs it is in order
  *   binary-flipped     binaries have a wrong byte; clBuildProgram refuses such ones with an error
  *   no-source          clCreateProgramWithSource fails: whoever comes here wanted to compile
  *   enqueue=CODE@N, buffer=CODE@N, read=CODE@N     the N-th launch, buffer, read-back and all after it fail with CODE
@@ -130,7 +131,9 @@ static cl_int CL_API_CALL build(cl_program program, cl_uint count, const cl_devi
     ++builds;
     if (is_source(program)) {
         if (fault("build-hangs", NULL) || (fault("build-hangs-late", NULL) && builds > 1)) hang();
-        if (fault("build-crashes", NULL) || (fault("optimiser-crashes", NULL) && !(options && strstr(options, "-cl-opt-disable")))) {
+        const char *method = getenv("POCL_WORK_GROUP_METHOD");
+        if (fault("build-crashes", NULL) || (fault("optimiser-crashes", NULL) && !(options && strstr(options, "-cl-opt-disable"))) ||
+            (fault("method-crashes", NULL) && !(method && strcmp(method, "cbs") == 0))) {
             fprintf(stderr, "Instruction does not dominate all uses!\n");
             abort();
         }

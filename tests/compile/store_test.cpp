@@ -142,11 +142,12 @@ Value unpacked(const char* bytes, size_t count) {
 }
 
 TEST(CompileJob, ArrivesWholeOrNotAtAll) {
-    const std::vector<char> job = packed(CompileJob{"source", "options", "0:0", "name", "driver", "folder"});
+    const std::vector<char> job = packed(CompileJob{"source", "options", "0:0", "name", "driver", "folder", "method"});
     const CompileJob read = unpacked<CompileJob>(job.data(), job.size());
     EXPECT_EQ(read.source, "source");
     EXPECT_EQ(read.driver, "driver");
     EXPECT_EQ(read.pocl_cache, "folder");
+    EXPECT_EQ(read.work_group_method, "method");
     const CompileOutcome outcome{CompileOutcome::failed, -11, "log", {'b', '\0', 'c'}};
     const std::vector<char> sent = packed(outcome);
     const CompileOutcome back = unpacked<CompileOutcome>(sent.data(), sent.size());

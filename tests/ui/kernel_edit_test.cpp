@@ -76,7 +76,7 @@ TEST_F(KernelEdit, TheKernelThatInspectsPixelsIsTriedFirst) {
     window->command("set lanes 1");
     window->settle();
     window->command("inspect 8 8");
-    window->settle(400);
+    window->settle();
     const std::string failure = window->command("inspection");
     EXPECT_NE(failure.find("did not come to an end within"), std::string::npos) << failure;
     EXPECT_NE(failure.find("while they recorded the rays of some pixels"), std::string::npos) << failure;

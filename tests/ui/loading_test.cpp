@@ -40,7 +40,7 @@ TEST_F(Loading, AnswersWhileImportingAndBuilding) {
         answers.push_back(seconds_since(press) * 1e3);
         if (answers.size() % 5 == 0) arrived = !window->state()["busy"];
     }
-    window->settle(180);
+    window->settle();
     const auto now = window->state();
     EXPECT_GT(now["triangles"], 800000);
     std::sort(answers.begin(), answers.end());
@@ -87,7 +87,7 @@ TEST_F(Loading, ANewChangeCancelsARunningBuild) {
     ASSERT_TRUE(sees_stage(*window, "build"));
     ASSERT_EQ(window->command("accel spheres"), "");
     ASSERT_EQ(window->command("accel bvh2,max_leaf=2"), "");
-    window->settle(300);
+    window->settle();
     auto now = window->state();
     EXPECT_EQ(now["accel"], "bvh2");
     EXPECT_GT(int(now["triangles"]), 800000);
@@ -100,7 +100,7 @@ TEST_F(Loading, ANewChangeCancelsARunningBuild) {
     ASSERT_EQ(window->command("accel spheres"), "");
     ASSERT_TRUE(sees_stage(*window, "build"));
     window->key("Escape");
-    window->settle(300);
+    window->settle();
     EXPECT_EQ(window->state()["accel"], "bvh2");
     EXPECT_FALSE(window->state()["behind"]);
     EXPECT_EQ(difference(large, window->picture(), 0), 0);
@@ -109,7 +109,7 @@ TEST_F(Loading, ANewChangeCancelsARunningBuild) {
     ASSERT_EQ(window->command("accel spheres"), "");
     ASSERT_TRUE(sees_stage(*window, "build"));
     ASSERT_EQ(window->command("open " + source_path("scenes/primitives.scene")), "");
-    window->settle(300);
+    window->settle();
     now = window->state();
     EXPECT_EQ(now["files"], was["files"]);
     EXPECT_EQ(now["accel"], "spheres");

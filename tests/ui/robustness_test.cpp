@@ -20,7 +20,7 @@ TEST_F(Window, ManyChangesAtOnceShowTheLastOne) {
         for (const char* change :
              {"accel spheres", "set lanes 4", "set depth 2", "accel bvh2", "set lanes auto", "set depth 4"})
             window->send(change);
-    window->settle(180);
+    window->settle();
     const auto now = window->state();
     EXPECT_EQ(now["accel"], "bvh2");
     EXPECT_EQ(now["depth"], 4);

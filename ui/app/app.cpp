@@ -179,8 +179,9 @@ void App::give_memory_back() {
 
 double App::longest_wait() const {
     if (session_->playback().playing()) return 1.0 / 60;
-    if (session_->activity().busy || !overlay_->ready() || session_->moving()) return 1.0 / 30;
-    return typing() ? 0.1 : 0.5;  // the cursor of a text field blinks
+    if (!overlay_->ready() || session_->moving()) return 1.0 / 30;
+    if (session_->activity().busy) return 0.1;  // a bar of progress; what works has the processors
+    return typing() ? 0.1 : 0.5;                // the cursor of a text field blinks
 }
 
 double App::wait_seconds() const {

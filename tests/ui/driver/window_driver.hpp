@@ -23,9 +23,8 @@ Pixels read_png(const std::string& path);
 // The share of pixels that differ by more than `tolerance` of 255 in any channel; 1 if the sizes differ.
 double difference(const Pixels& a, const Pixels& b, int tolerance = 8);
 
-// Seconds that a command or an idle window may take. Drivers compile kernels for half a minute on a machine that runs other
-// tests and builds at once.
-constexpr double kLongestWait = 180;
+// Seconds that a command or an idle window may take: what is not slow but hangs takes longer.
+constexpr double kLongestWait = test::kHangs_s;
 
 // A folder that is deleted after the test.
 class TemporaryFolder {
