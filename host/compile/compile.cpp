@@ -38,7 +38,7 @@ struct Way {
     const char* consequence;        // for the user
 };
 
-// LLVM 18 and 19, which PoCL 6.0 uses, end the process where one of their passes has more to do when it is run again
+// LLVM 18, which PoCL 6.0 uses, ends the process where one of its passes has more to do when it is run again
 // ("Instruction Combining did not reach a fixpoint"). No text of ours can rule that out. So where a compiler crashes, it is
 // tried in the next way. Work-groups of our kernels for CPUs are one work-item, which all methods make the same of, and as
 // fast (docs/performance.md). The last way is slow.

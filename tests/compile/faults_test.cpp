@@ -170,7 +170,7 @@ TEST_F(Faults, ACompilerThatCrashesIsAMessageWithItsLog) {
     EXPECT_FALSE(has_picture());
 }
 
-// LLVM 18 and 19 end the process at some programs. The second start knows which way the program was compiled.
+// LLVM 18 ends the process at some programs. The second start knows which way the program was compiled.
 TEST_F(Faults, ACompilerThatCrashesIsTriedInOtherWays) {
     const struct {
         const char *driver, *fault, *way;

@@ -159,7 +159,7 @@ int App::run() {
 // for one. At most 100 frames a second are drawn (kShortestTurn), even if a small picture is traced 1000 times a second.
 bool App::due() const {
     const double since = now_s() - last_turn_s_;
-    if (settle_frames_ > 0 || (script_ && script_->has_lines())) return true;
+    if (settle_frames_ > 0 || (script_ && script_->has_lines() && (!script_->waits_for_work() || since >= 0.1))) return true;
     if (woken_ || held_.any_held(*state_.key_map)) return since >= kShortestTurn;
     return since >= longest_wait();
 }

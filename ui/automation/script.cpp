@@ -161,6 +161,7 @@ void Script::step(ScriptedWindow& window) {
             answer = "error " + line + ": " + error.what();
         }
         waiting_since_ = 0;
+        waits_for_work_ = false;
         lines_.pop_front();
         std::printf("%s\n", answer.c_str());
         std::fflush(stdout);
@@ -186,6 +187,7 @@ bool Script::wait(ScriptedWindow& window, const std::string& text) {
                                        : session.idle() && window.overlay.ready();
     if (met && (what == "busy" || --frames_left_ < 0)) return true;
     if (!met) frames_left_ = 2;
+    waits_for_work_ = !met && what != "busy";
     if (now - waiting_since_ > limit) throw Error(Exit::failed, "still waiting after " + std::to_string(limit) + " s");
     return false;
 }

@@ -57,6 +57,8 @@ class Script {
 
     // Reads new lines. Returns whether there are lines to run.
     bool has_lines();
+    // Whether the next line waits until work is done. Frames that are drawn meanwhile only take processors from that work.
+    bool waits_for_work() const { return waits_for_work_; }
     // Runs the next line. A line that waits stays the next one.
     void step(ScriptedWindow& window);
 
@@ -71,6 +73,7 @@ class Script {
     std::string partial_;
     std::deque<std::string> lines_;
     double waiting_since_ = 0;
+    bool waits_for_work_ = false;
     int frames_left_ = 0;  // frames to draw before a wait may end, so that its result is on the screen
 };
 

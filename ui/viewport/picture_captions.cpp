@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "base/numbers.hpp"
-#include "base/statistics.hpp"
 #include "ui/session/session_output.hpp"
 #include "ui/widgets/plots.hpp"
 #include "ui/widgets/theme.hpp"
@@ -118,7 +117,8 @@ std::string speed_verdict(const std::vector<float>& mine, const std::vector<floa
         return percentile(a, 0.9) < percentile(b, 0.1);
     };
     if (beats(others, mine)) return {};
-    const double ratio = median({others.begin(), others.end()}) / std::max(median({mine.begin(), mine.end()}), 1e-9);
+    const auto shown = [](const std::vector<float>& ms) { return static_cast<double>(percentile(ms, 0.5)); };  // as in `speed`
+    const double ratio = shown(others) / std::max(shown(mine), 1e-9);
     if (!beats(mine, others) || ratio < 1.005) return kAboutTheSame;
     char text[64];
     std::snprintf(text, sizeof text, ratio < 10 ? "%.2f\u00d7 faster" : "%.0f\u00d7 faster", ratio);

@@ -105,7 +105,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
         throw std::runtime_error(std::string("byte 0: found ") + kind + ", expected what its extension says");
     const auto report = [&](float fraction) { rt::progress(host, kReadShare * std::min(1.0f, std::max(0.0f, fraction))); };
     const Source source{path, file.bytes(), report, *sink};
-    const Format& format = format_of(path, file.bytes());
+    const Format format = format_of(path, file.bytes());
     FlatMesh mesh;
     const Reading reading = read(format, source, mesh);
     const size_t vertices = mesh.vertex_count();
