@@ -363,7 +363,7 @@ TEST(SpeedVerdict, NamesNoFasterSideWithinTheSpread) {
     // One delayed frame changes nothing.
     std::vector<float> held_up = calm;
     held_up[3] = 500;
-    EXPECT_EQ(speed_verdict(held_up, scaled(calm, 2)), "1.99\u00d7 faster");
+    EXPECT_EQ(speed_verdict(held_up, scaled(calm, 2)), "2.00\u00d7 faster");
     // Too few times for a verdict.
     EXPECT_EQ(speed_verdict({1, 1, 1, 1}, {5, 5, 5, 5}), "");
     EXPECT_EQ(speed_verdict({}, {}), "");

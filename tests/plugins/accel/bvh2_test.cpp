@@ -13,8 +13,8 @@ using namespace accel_test;
 namespace {
 
 const rt_plugin& bvh2() {
-    static const rt_plugin& plugin = load("bvh2");
-    return plugin;
+    static const rt_plugin* const plugin = &load("bvh2");
+    return *plugin;
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ using namespace accel_test;
 namespace {
 
 const rt_plugin& spheres() {
-    static const rt_plugin& plugin = load("spheres");
-    return plugin;
+    static const rt_plugin* const plugin = &load("spheres");
+    return *plugin;
 }
 
 // Walks the trees of a group, both as a traversal that enters every node and as trees.

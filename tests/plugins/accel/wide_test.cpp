@@ -22,8 +22,8 @@ using namespace accel_test;
 namespace {
 
 const rt_plugin& bvh8() {
-    static const rt_plugin& plugin = load("bvh8");
-    return plugin;
+    static const rt_plugin* const plugin = &load("bvh8");
+    return *plugin;
 }
 
 double area(const float* box) {
@@ -130,8 +130,8 @@ TEST(Bvh8, LosesNoPrimitiveWhereDenormalsAreZero) {
 namespace {
 
 const rt_plugin& cwbvh() {
-    static const rt_plugin& plugin = load("cwbvh");
-    return plugin;
+    static const rt_plugin* const plugin = &load("cwbvh");
+    return *plugin;
 }
 
 // Returns boxes that are spread over a volume of the given size around `at`.
