@@ -186,7 +186,10 @@ class RenderJob {
                 std::unique_lock<std::mutex> lock(mutex);
                 while (!saved() && !interrupted()) wake.wait_for(lock, std::chrono::milliseconds(100));
             }
-            if (interrupted()) return static_cast<int>(code);
+            if (interrupted()) {
+                take_time_to_stop();  // nothing is launched: only a busy machine makes the end slow
+                return static_cast<int>(code);
+            }
             if (scenes.revision() != scenes_seen || kernels->revision() != kernels_seen) {
                 const FileWatch& from = scenes.revision() != scenes_seen ? scenes : *kernels;
                 for (const std::string& path : from.last_changed()) log(LogLevel::info, "changed: " + path);
