@@ -3,6 +3,7 @@
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
@@ -34,7 +35,7 @@ std::optional<cl::Program> program_of(Device& device, const std::vector<char>& b
 // How a compiler can be made to take other paths to the same program.
 struct Way {
     const char* options;            // besides the request's
-    const char* work_group_method;  // of PoCL; empty: its usual one
+    const char* work_group_method;  // of PoCL, which alone has some; empty: its usual one
     const char* consequence;        // for the user
 };
 
@@ -48,18 +49,19 @@ constexpr Way kWays[] = {
     {" -cl-opt-disable", "cbs", "without the compiler's optimiser, so pictures will take longer"},
 };
 
-// A program for one device.
+// A program for one device, compiled in one way. Two ways have the same key if they do not differ for this device.
 struct DeviceRequest {
-    DeviceRequest(const DeviceInfo& of, const CompileRequest& what, const Way& the_way)
+    DeviceRequest(const DeviceInfo& of, const CompileRequest& what, const Way& by)
         : info(of),
           request(what),
-          way(the_way),
-          options(what.options + way.options),
-          key(program_key(of, what.source, options + way.work_group_method)) {}
+          way(by),
+          options(what.options + by.options),
+          work_group_method(of.pocl ? by.work_group_method : ""),
+          key(program_key(of, what.source, options + work_group_method)) {}
     const DeviceInfo& info;
     const CompileRequest& request;
     const Way& way;
-    const std::string options, key;
+    const std::string options, work_group_method, key;
 };
 
 BuildResult build_here(Device& device, const DeviceRequest& wanted) {
@@ -68,7 +70,7 @@ BuildResult build_here(Device& device, const DeviceRequest& wanted) {
 
 // Compiles a program that is not on disk, and keeps it there.
 CompileOutcome compile_first(const DeviceRequest& wanted, Progress& progress) {
-    CompileOutcome outcome = compile_in_worker(wanted.info, wanted.request.source, wanted.options, wanted.way.work_group_method,
+    CompileOutcome outcome = compile_in_worker(wanted.info, wanted.request.source, wanted.options, wanted.work_group_method,
                                                wanted.request.what, progress);
     if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
     return outcome;
@@ -84,7 +86,7 @@ BuildResult take(Device& device, const DeviceRequest& wanted, const std::vector<
         }
         forget_program(wanted.key);
     }
-    if (*wanted.way.work_group_method)  // it is too late to tell PoCL in this process
+    if (!wanted.work_group_method.empty())  // it is too late to tell PoCL in this process
         throw Error(Exit::kernel_build_failed, wanted.info.name + " gives no binary of " + wanted.request.what +
                                                    ", or refuses its own, and crashes at compiling it as usual");
     set_aside(wanted.key);
@@ -117,14 +119,18 @@ BuildResult compile(Device& device, const DeviceRequest& wanted, Progress& progr
 template <class Load, class Compile>
 auto compile_in_spite_of_crashes(const DeviceInfo& info, const CompileRequest& request, const Load& load,
                                  const Compile& compile) {
-    for (const Way& way : kWays)
-        if (auto loaded = load(DeviceRequest(info, request, way))) return *loaded;
-    std::optional<CompilerCrashed> first;
+    std::vector<DeviceRequest> ways;
     for (const Way& way : kWays) {
-        if (first && !info.pocl && !*way.options) continue;
-        if (first) log(LogLevel::warning, std::string(first->what()) + "; compiling again " + way.consequence);
+        const DeviceRequest wanted(info, request, way);
+        if (!ways.empty() && wanted.key == ways.back().key) continue;
+        if (auto loaded = load(wanted)) return *loaded;
+        ways.push_back(wanted);
+    }
+    std::optional<CompilerCrashed> first;
+    for (const DeviceRequest& wanted : ways) {
+        if (first) log(LogLevel::warning, std::string(first->what()) + "; compiling again " + wanted.way.consequence);
         try {
-            return compile(DeviceRequest(info, request, way));
+            return compile(wanted);
         } catch (const CompilerCrashed& crash) {
             if (!first) first = crash;
         }

@@ -94,7 +94,7 @@ TEST_F(Textures, APictureOfAFileIsReadAndGiven) {
     ASSERT_TRUE(window->reaches([](const auto& state) { return state["browser_open"] && state["typing"]; }));
     window->type(path("green.ppm"));
     window->tap("Return");
-    ASSERT_TRUE(window->reaches([](const auto& state) { return state["undo"] == "Texture"; }, kLongestWait));
+    ASSERT_TRUE(window->reaches([](const auto& state) { return state["undo"] == "Texture"; }));
     window->settle();
     EXPECT_EQ(window->state()["message"], "");
     const auto green = color(kPlain);
@@ -180,8 +180,8 @@ class PreviewOfMaterials : public FaultyDriverTest {
     static bool is_done(const nlohmann::json& state) { return state.contains("preview") && state["preview"]["done"] == true; }
     // The finished ball of a material.
     Pixels ball(WindowDriver& window, int material) const {
-        EXPECT_TRUE(window.reaches(
-            [&](const auto& state) { return is_done(state) && state["preview"]["material"] == material; }, kLongestWait));
+        EXPECT_TRUE(
+            window.reaches([&](const auto& state) { return is_done(state) && state["preview"]["material"] == material; }));
         const auto preview = window.state()["preview"];
         EXPECT_EQ(preview["failure"], "");
         const std::string file = path("ball.png");
@@ -247,7 +247,7 @@ TEST_F(PreviewOfMaterials, AFaultOfTheDriverIsSaid) {
     window->click_on("Materials");
     fault("build-refuses");
     window->click_on("row matt");  // and not by a pixel, whose rays have a kernel of their own
-    ASSERT_TRUE(window->reaches(is_done, kLongestWait));
+    ASSERT_TRUE(window->reaches(is_done));
     EXPECT_NE(std::string(window->state()["preview"]["failure"]).find("-11"), std::string::npos)
         << window->state()["preview"].dump();
     window->settle();
@@ -272,12 +272,12 @@ TEST_F(PreviewOfMaterials, AKernelThatNeverEndsIsLeft) {
     ball(*window, material);
     fault("launch-endless=1");
     ASSERT_EQ(window->command("edit material." + std::to_string(material) + ".color .1,.1,.8"), "");
-    ASSERT_TRUE(window->reaches([](const auto& state) { return state["message"] != ""; }, kLongestWait));
+    ASSERT_TRUE(window->reaches([](const auto& state) { return state["message"] != ""; }));
     fault("");
     window->key("ctrl+z");
     window->key("Left");
     window->key("Home");
-    ASSERT_TRUE(window->reaches([](const auto& now) { return !now["behind"] && !now["busy"]; }, kLongestWait));
+    ASSERT_TRUE(window->reaches([](const auto& now) { return !now["behind"] && !now["busy"]; }));
     window->settle();
     EXPECT_EQ(difference(window->picture(), before, 0), 0);
     ball(*window, material);

@@ -94,7 +94,8 @@ constexpr float kLongestStep =
     0.1f;  // longest time that one step of motion covers, so that nothing jumps after the loop paused
 constexpr float kTurnRadPerSecond = 0.9f;
 constexpr double kShortestTurn = 0.01;
-constexpr double kCloseSeconds = 5;  // the threads may take this long to end when the window is closed
+constexpr double kWhileBusy_s = 0.1;  // between frames that show a bar of progress: the work needs the processors
+constexpr double kCloseSeconds = 5;   // the threads may take this long to end when the window is closed
 
 }  // namespace
 
@@ -159,7 +160,8 @@ int App::run() {
 // for one. At most 100 frames a second are drawn (kShortestTurn), even if a small picture is traced 1000 times a second.
 bool App::due() const {
     const double since = now_s() - last_turn_s_;
-    if (settle_frames_ > 0 || (script_ && script_->has_lines() && (!script_->waits_for_work() || since >= 0.1))) return true;
+    if (settle_frames_ > 0 || (script_ && script_->has_lines() && (!script_->waits_for_work() || since >= kWhileBusy_s)))
+        return true;
     if (woken_ || held_.any_held(*state_.key_map)) return since >= kShortestTurn;
     return since >= longest_wait();
 }
@@ -180,8 +182,8 @@ void App::give_memory_back() {
 double App::longest_wait() const {
     if (session_->playback().playing()) return 1.0 / 60;
     if (!overlay_->ready() || session_->moving()) return 1.0 / 30;
-    if (session_->activity().busy) return 0.1;  // a bar of progress; what works has the processors
-    return typing() ? 0.1 : 0.5;                // the cursor of a text field blinks
+    if (session_->activity().busy) return kWhileBusy_s;
+    return typing() ? 0.1 : 0.5;  // the cursor of a text field blinks
 }
 
 double App::wait_seconds() const {

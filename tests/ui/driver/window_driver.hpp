@@ -23,9 +23,6 @@ Pixels read_png(const std::string& path);
 // The share of pixels that differ by more than `tolerance` of 255 in any channel; 1 if the sizes differ.
 double difference(const Pixels& a, const Pixels& b, int tolerance = 8);
 
-// Seconds that a command or an idle window may take: what is not slow but hangs takes longer.
-constexpr double kLongestWait = test::kHangs_s;
-
 // A folder that is deleted after the test.
 class TemporaryFolder {
  public:
@@ -76,8 +73,8 @@ class WindowDriver {
     ~WindowDriver();
 
     // Sends a script line and waits for its answer. Returns an empty text for ok, otherwise the error.
-    std::string command(const std::string& line, double seconds = kLongestWait);
-    void settle(double seconds = kLongestWait);  // waits until idle; the test fails if that does not happen
+    std::string command(const std::string& line, double seconds = test::kHangs_s);
+    void settle(double seconds = test::kHangs_s);  // waits until idle; the test fails if that does not happen
     nlohmann::json state();
     nlohmann::json query(const std::string& line);  // for commands that answer with JSON
     Pixels picture();
