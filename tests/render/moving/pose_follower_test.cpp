@@ -50,8 +50,9 @@ class Follower : public ::testing::Test {
         const auto refitted = follower_.refit({rest_, clip}, scene, pose, way, 10, progress_);
         if (refitted.accel) return true;
         const rt_plugin& plugin = *Workbench::get().plugins().accel(accel);
-        const auto built =
-            std::make_shared<const AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress_));
+        AccelData data = build_accel(*scene, plugin, default_parameters(plugin), progress_);
+        data.build_ms = 10, data.pack_ms = 0;  // the clock's figures are those of a busy machine, too
+        const auto built = std::make_shared<const AccelData>(std::move(data));
         follower_.built({rest_, clip}, scene, pose, built, std::make_unique<HostMover>(scene, built));
         return false;
     }
@@ -126,7 +127,7 @@ TEST_F(Follower, BuildsForAHiddenInstanceAndForOtherMeshes) {
 TEST_F(Follower, BuildsWhenSlowRaysHaveCostAsMuchAsABuild) {
     show(leaning(0));
     int poses = 0;
-    while (poses < 10000 && show(leaning(3 + 0.001f * static_cast<float>(poses)))) ++poses;
+    while (poses < 10000 && show(mixed(0.001f * static_cast<float>(poses)))) ++poses;
     EXPECT_GT(poses, 0);
     EXPECT_LT(poses, 10000) << "cost ratio " << follower_.update().cost_ratios.back();
     EXPECT_NE(follower_.update().why.find("slow rays"), std::string::npos) << follower_.update().why;
