@@ -64,7 +64,7 @@ if(TARGET meshoptimizer::meshoptimizer)
 else()
   clarity_left_out("glTF files with EXT_meshopt_compression" "meshoptimizer not found (libmeshoptimizer-dev)")
 endif()
-# Embree with the number of its interface, CLARITY_EMBREE: host/bench/baselines/embree.hpp.
+# Embree with the number of its interface, CLARITY_EMBREE: tools/bench/baselines/embree.hpp.
 find_package(embree 4 CONFIG QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3 CONFIG QUIET)

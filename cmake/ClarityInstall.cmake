@@ -7,12 +7,12 @@ set_target_properties(clarity_sdk PROPERTIES EXPORT_NAME sdk)
 target_include_directories(clarity_sdk INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/clarity>)
 set_target_properties(clarity_bvh PROPERTIES EXPORT_NAME bvh)
 install(TARGETS clarity_sdk clarity_bvh EXPORT clarityTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT sdk)
-install(DIRECTORY host/sdk/clarity_bvh host/sdk/clarity_space DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
-install(FILES host/sdk/rt_plugin.h host/sdk/rt_refit.h host/sdk/rt_surface.h host/sdk/rt_surface.hpp host/sdk/rt_device.h host/sdk/rt_device.hpp host/sdk/rt_digest.h host/sdk/rt_plugin.hpp host/sdk/rt_cost.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
+install(DIRECTORY sdk/clarity_bvh sdk/clarity_space DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
+install(FILES sdk/rt_plugin.h sdk/rt_refit.h sdk/rt_surface.h sdk/rt_surface.hpp sdk/rt_device.h sdk/rt_device.hpp sdk/rt_digest.h sdk/rt_plugin.hpp sdk/rt_cost.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
 # `clarity new-plugin` finds the templates at ../share/clarity/template relative to itself, in a build folder too.
-install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
+install(DIRECTORY sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/clarity)
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/host/sdk/template ${PROJECT_BINARY_DIR}/share/clarity/template SYMBOLIC)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/sdk/template ${PROJECT_BINARY_DIR}/share/clarity/template SYMBOLIC)
 # The pages, and the kernels and structures that they name, lie as in the sources, so that links between them hold.
 install(FILES README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk)
 install(DIRECTORY docs cl DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk PATTERN "*.sh" EXCLUDE)
@@ -21,7 +21,7 @@ install(FILES scenes/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPON
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/clarity)
 install(EXPORT clarityTargets NAMESPACE clarity:: DESTINATION ${package} COMPONENT sdk)
-file(STRINGS ${PROJECT_SOURCE_DIR}/host/sdk/rt_plugin.h CLARITY_ABI_VERSION REGEX "^#define RT_ABI_VERSION")
+file(STRINGS ${PROJECT_SOURCE_DIR}/sdk/rt_plugin.h CLARITY_ABI_VERSION REGEX "^#define RT_ABI_VERSION")
 string(REGEX REPLACE "^#define RT_ABI_VERSION ([0-9]+)u$" "\\1" CLARITY_ABI_VERSION "${CLARITY_ABI_VERSION}")
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/clarityConfig.cmake.in ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake
   INSTALL_DESTINATION ${package} NO_CHECK_REQUIRED_COMPONENTS_MACRO)

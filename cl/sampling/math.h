@@ -2,7 +2,7 @@
  *
  * Plain arithmetic, so that all lane counts and devices agree; the functions of a library differ between them. The polynomials are
  * minimax fits of the functions named beside them. Errors are the largest found against a library in double precision
- * (tests/render/tracers/path/math_test.cpp), roundings included. */
+ * (tests/tracers/path/math_test.cpp), roundings included. */
 #ifndef RT_MATH_H
 #define RT_MATH_H
 

@@ -15,7 +15,7 @@
 #include "base/files/library_files.hpp"
 #include "import/import.hpp"
 #include "import/wire.hpp"
-#include "render/accel/shared_accel.hpp"
+#include "structures/shared_accel.hpp"
 
 namespace clarity {
 namespace {

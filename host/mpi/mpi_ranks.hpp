@@ -8,11 +8,11 @@
 #include "base/files/memory_file.hpp"
 #include "base/progress.hpp"
 #include "device/device.hpp"
+#include "frames/multi/ranks.hpp"
 #include "mpi/mpi_module.h"
 #include "plugin/registry.hpp"
-#include "render/accel/accel_build.hpp"
-#include "render/multi/ranks.hpp"
 #include "scene/scene.hpp"
+#include "structures/accel_build.hpp"
 
 namespace clarity {
 

@@ -133,7 +133,7 @@ struct Camera {
     rt_u32 source = 0;                                          // for the import only: by which channels name it
 };
 
-// A change that a file makes to what it and the files that it loads hold: words of host/render/edit/edit.hpp.
+// A change that a file makes to what it and the files that it loads hold: words of host/view/edit/edit.hpp.
 struct SceneEdit {
     std::string key, value;
     std::string where;  // "FILE:LINE:COLUMN"

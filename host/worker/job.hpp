@@ -33,7 +33,7 @@ struct JobKind {
     // "exit code 3"; no_progress, processor_time and memory: the limit, "7 s", "1 GiB". {who}, {what}, {step} and {advice} are
     // members of Job.
     std::array<const char*, 6> deaths;
-    void (*main)(ParcelReader& arguments);  // the work, in the worker: see child.hpp
+    void (*main)(ParcelReader& arguments);  // the work, in the worker: see child.hpp; nullptr: a tool has it, and fills it in
 };
 
 struct JobDied : Error {

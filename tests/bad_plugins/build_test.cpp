@@ -12,8 +12,8 @@
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
 #include "plugin/trust.hpp"
-#include "render/accel/accel_build.hpp"
 #include "rt_plugin.hpp"
+#include "structures/accel_build.hpp"
 
 namespace {
 

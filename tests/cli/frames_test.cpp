@@ -11,8 +11,8 @@
 
 #include "base/machine.hpp"
 #include "cli/run_program.hpp"
-#include "render/settings/tracer_choice.hpp"
 #include "support/scratch.hpp"
+#include "view/settings/tracer_choice.hpp"
 
 namespace fs = std::filesystem;
 

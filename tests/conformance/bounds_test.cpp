@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/progress.hpp"
-#include "render/accel/build_scene.hpp"
+#include "structures/build_scene.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "conformance/oracle.hpp"
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 #include "support/workbench.hpp"
 
 namespace clarity::test {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "bench/baselines/embree.hpp"
 #include "reference/primitives.hpp"
+#include "tools/bench/baselines/embree.hpp"
 
 namespace clarity::test {
 

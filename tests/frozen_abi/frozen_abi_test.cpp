@@ -6,7 +6,7 @@
 #include <random>
 
 #include "import/import.hpp"
-#include "render/accel/accel_volumes.hpp"
+#include "structures/accel_volumes.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "render/accel/accel_build.hpp"
 #include "rt_plugin.hpp"
+#include "structures/accel_build.hpp"
 #include "support/errors.hpp"
 #include "support/generated.hpp"
 

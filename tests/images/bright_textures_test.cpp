@@ -6,7 +6,7 @@
 #include "base/pictures/shared_exponent.hpp"
 #include "images/map_scenes.hpp"
 #include "import/sink/texture.hpp"
-#include "render/emitters/sky_table.hpp"
+#include "launch/emitters/sky_table.hpp"
 #include "scene/bright_texture.hpp"
 
 using namespace clarity;

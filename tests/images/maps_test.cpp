@@ -6,8 +6,8 @@
 
 #include "images/map_scenes.hpp"
 #include "import/sink/texture.hpp"
-#include "render/emitters/sky_table.hpp"
-#include "render/kernels/scene_features.hpp"
+#include "kernels/scene_features.hpp"
+#include "launch/emitters/sky_table.hpp"
 #include "scene/tangents.hpp"
 
 using namespace clarity;

@@ -5,7 +5,7 @@
 
 #include "images/optics.hpp"
 #include "images/path_checks.hpp"
-#include "render/kernels/scene_features.hpp"
+#include "kernels/scene_features.hpp"
 #include "scene/emissive.hpp"
 
 using namespace clarity;

@@ -56,7 +56,7 @@ TEST(PathSurfaces, FaultsOfTheCallsAreFound) {
 }
 
 // Faults that a path tracer may have, each planted into the text of a kernel: the checks find all.
-// Those of lights and skies are in tests/render/emitters/faults_test.cpp.
+// Those of lights and skies are in tests/launch/emitters/faults_test.cpp.
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "images/optics.hpp"
-#include "render/kernels/scene_features.hpp"
+#include "kernels/scene_features.hpp"
 
 using namespace clarity;
 using namespace clarity::test;

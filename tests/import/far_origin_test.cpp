@@ -6,10 +6,10 @@
 #include <cstring>
 #include <string>
 
-#include "render/edit/edit.hpp"
-#include "render/view/view.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"
+#include "view/edit/edit.hpp"
+#include "view/view.hpp"
 
 namespace clarity::test {
 namespace {

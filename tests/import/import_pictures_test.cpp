@@ -6,7 +6,7 @@
 #include "base/files/read_file.hpp"
 #include "base/pictures/shared_exponent.hpp"
 #include "import/sink/texture.hpp"
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 #include "scene/bright_texture.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"

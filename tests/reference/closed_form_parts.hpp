@@ -2,10 +2,10 @@
 #pragma once
 #include <string>
 
-#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 #include "scene/vec.hpp"
 #include "support/generated.hpp"
+#include "view/view.hpp"
 
 namespace clarity::reference::parts {
 

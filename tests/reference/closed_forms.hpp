@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 #include "scene/vec.hpp"
+#include "view/view.hpp"
 
 namespace clarity::reference {
 

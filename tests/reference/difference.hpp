@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 
 namespace clarity::reference {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/view/view.hpp"
 #include "scene/scene.hpp"
 #include "scene/vec.hpp"
+#include "view/view.hpp"
 
 namespace clarity::reference {
 

@@ -4,11 +4,11 @@
 // Whitted 1980, An Improved Illumination Model for Shaded Display; Glassner (ed.) 1989, An Introduction to Ray Tracing.
 // It has no textures and refuses scenes with textures.
 #pragma once
-#include "render/film/byte_image.hpp"
-#include "render/film/image_io.hpp"
-#include "render/settings/settings.hpp"
-#include "render/view/view.hpp"
+#include "picture/byte_image.hpp"
+#include "picture/image_io.hpp"
 #include "scene/scene.hpp"
+#include "view/settings/settings.hpp"
+#include "view/view.hpp"
 
 namespace clarity::reference {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 
 namespace clarity {
 

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "render/settings/accel_choice.hpp"
-#include "render/settings/tracer_choice.hpp"
-#include "render/view/view.hpp"
+#include "view/settings/accel_choice.hpp"
+#include "view/settings/tracer_choice.hpp"
+#include "view/view.hpp"
 
 namespace clarity::test {
 namespace {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "device/device.hpp"
+#include "frames/frame_renderer.hpp"
+#include "frames/preparer.hpp"
 #include "plugin/registry.hpp"
-#include "render/frame/frame_renderer.hpp"
-#include "render/frame/preparer.hpp"
-#include "render/tracers/rays/ray_queries.hpp"
 #include "support/quick.hpp"
+#include "tracers/rays/ray_queries.hpp"
 
 namespace clarity::test {
 

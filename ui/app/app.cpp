@@ -20,7 +20,7 @@
 #include "base/files/process_folder.hpp"
 #include "base/log.hpp"
 #include "base/machine.hpp"
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 #include "ui/app/key_actions.hpp"
 #include "ui/automation/script.hpp"
 #include "ui/hud/hud.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 
 struct GLFWwindow;
 

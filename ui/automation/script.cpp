@@ -15,8 +15,8 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "picture/image_io.hpp"
 #include "plugin/parameters.hpp"
-#include "render/film/image_io.hpp"
 #include "ui/automation/script_commands.hpp"
 #include "ui/automation/scripted_window.hpp"
 #include "ui/session/session_output.hpp"

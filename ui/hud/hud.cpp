@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "render/film/film_noise.hpp"
+#include "picture/film_noise.hpp"
 #include "ui/session/session_output.hpp"
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/theme.hpp"

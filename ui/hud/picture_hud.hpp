@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/film/false_colors.hpp"
+#include "picture/false_colors.hpp"
 #include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 #include "ui/overlay/line_quads.hpp"
 
 namespace clarity::ui {

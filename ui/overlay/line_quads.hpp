@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/overlay/projection.hpp"
 

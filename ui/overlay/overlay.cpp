@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/log.hpp"
-#include "render/moving/on_device/read_back.hpp"
+#include "moving/on_device/read_back.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
-#include "render/accel/accel_volumes.hpp"
-#include "render/launch/device_scene.hpp"
+#include "launch/device_scene.hpp"
+#include "structures/accel_volumes.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/widgets/rect.hpp"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "render/tracers/inspect/inspect.hpp"
-#include "render/tracers/replay/replay.hpp"
+#include "tracers/inspect/inspect.hpp"
+#include "tracers/replay/replay.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/overlay/projection.hpp"
 

@@ -8,9 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "render/settings/tracer_choice.hpp"
-#include "render/tracers/inspect/inspect.hpp"
 #include "scene/scene.hpp"
+#include "tracers/inspect/inspect.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/session.hpp"
@@ -18,6 +17,7 @@
 #include "ui/widgets/scene_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
+#include "view/settings/tracer_choice.hpp"
 
 namespace clarity::ui {
 namespace {

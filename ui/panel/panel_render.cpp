@@ -2,10 +2,10 @@
 // plugins' parameters.
 #include <imgui.h>
 
-#include "render/settings/tracer_choice.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
+#include "view/settings/tracer_choice.hpp"
 
 namespace clarity::ui {
 namespace {

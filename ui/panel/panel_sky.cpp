@@ -1,13 +1,13 @@
 // The rows of the sky.
 #include <imgui.h>
 
-#include "render/edit/sky_edit.hpp"
-#include "render/settings/tracer_choice.hpp"
 #include "scene/sky_kinds.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
+#include "view/edit/sky_edit.hpp"
+#include "view/settings/tracer_choice.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -4,16 +4,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/files/frame_path.hpp"
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session.hpp"
 
 namespace clarity::ui {
 namespace {
-
-constexpr float kTurn = 6.2831853f;
 
 // Catmull-Rom spline from b (u = 0) to c (u = 1).
 template <size_t N>
@@ -35,7 +34,7 @@ void Sequence::start_turntable(Session& session, const std::string& pattern, int
     std::vector<Camera> cameras;
     for (int i = 0; i < frames; ++i) {
         cameras.push_back(from);
-        orbit_camera(cameras.back(), kTurn * static_cast<float>(i) / static_cast<float>(frames), 0);
+        orbit_camera(cameras.back(), static_cast<float>(kTurn) * static_cast<float>(i) / static_cast<float>(frames), 0);
     }
     start(session, pattern, std::move(cameras));
 }

@@ -8,10 +8,10 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
-#include "render/settings/accel_choice.hpp"
-#include "render/settings/aov.hpp"
-#include "render/view/view.hpp"
 #include "ui/session/comparisons.hpp"
+#include "view/settings/accel_choice.hpp"
+#include "view/settings/aov.hpp"
+#include "view/view.hpp"
 
 namespace clarity::ui {
 namespace {

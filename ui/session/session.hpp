@@ -15,7 +15,6 @@
 #include "base/log.hpp"
 #include "device/kernel_watch.hpp"
 #include "plugin/library_watch.hpp"
-#include "render/edit/preset.hpp"
 #include "ui/session/history.hpp"
 #include "ui/session/log_buffer.hpp"
 #include "ui/session/playback.hpp"
@@ -26,6 +25,7 @@
 #include "ui/threads/inspect_thread.hpp"
 #include "ui/threads/prepare_worker.hpp"
 #include "ui/threads/preview_thread.hpp"
+#include "view/edit/preset.hpp"
 
 namespace clarity::ui {
 

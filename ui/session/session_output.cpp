@@ -7,8 +7,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "render/edit/scene_text.hpp"
-#include "render/settings/aov.hpp"
+#include "view/edit/scene_text.hpp"
+#include "view/settings/aov.hpp"
 
 namespace clarity::ui {
 

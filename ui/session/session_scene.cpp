@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "base/log.hpp"
-#include "render/view/view.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/comparisons.hpp"
 #include "ui/session/session.hpp"
+#include "view/view.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -7,9 +7,9 @@
 #include "base/pictures/float_image.hpp"
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
-#include "render/edit/edit.hpp"
-#include "render/settings/settings.hpp"
 #include "scene/motion/pose_time.hpp"
+#include "view/edit/edit.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "render/edit/edit.hpp"
-#include "render/settings/settings.hpp"
 #include "scene/motion/pose_time.hpp"
 #include "ui/threads/picture_part.hpp"
+#include "view/edit/edit.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 

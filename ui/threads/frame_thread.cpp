@@ -9,11 +9,11 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "render/compare/picture_errors.hpp"
-#include "render/multi/multi_device_film.hpp"
-#include "render/settings/aov.hpp"
+#include "frames/multi/multi_device_film.hpp"
+#include "tools/compare/picture_errors.hpp"
 #include "ui/threads/picture.hpp"
 #include "ui/threads/thread_priority.hpp"
+#include "view/settings/aov.hpp"
 
 namespace clarity::ui {
 

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "render/noise/noise.hpp"
-#include "render/tracers/inspect/inspect.hpp"
+#include "tools/why/noise.hpp"
+#include "tracers/inspect/inspect.hpp"
 #include "ui/threads/picture.hpp"
 
 namespace clarity::ui {

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <utility>
 
-#include "render/compare/picture_errors.hpp"
-#include "render/settings/aov.hpp"
 #include "scene/camera.hpp"
+#include "tools/compare/picture_errors.hpp"
+#include "view/settings/aov.hpp"
 
 namespace clarity::ui {
 

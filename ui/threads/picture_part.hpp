@@ -3,8 +3,8 @@
 #include <string>
 
 #include "base/pictures/float_image.hpp"
-#include "render/film/byte_image.hpp"
-#include "render/settings/settings.hpp"
+#include "picture/byte_image.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 

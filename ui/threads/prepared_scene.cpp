@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "render/launch/device_scene.hpp"
-#include "render/view/view.hpp"
+#include "launch/device_scene.hpp"
 #include "scene/motion/deform.hpp"
+#include "view/view.hpp"
 
 namespace clarity::ui {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "render/moving/follow/pose_follower.hpp"
-#include "render/multi/motion_blur.hpp"
+#include "frames/multi/motion_blur.hpp"
+#include "moving/follow/pose_follower.hpp"
 #include "ui/threads/desired_state.hpp"
 
 namespace clarity::ui {

@@ -8,12 +8,12 @@
 
 #include "base/angle.hpp"
 #include "base/error.hpp"
-#include "render/settings/accel_choice.hpp"
-#include "render/view/view.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/scene.hpp"
 #include "scene/tangents.hpp"
 #include "ui/threads/thread_priority.hpp"
+#include "view/settings/accel_choice.hpp"
+#include "view/view.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <thread>
 
-#include "render/frame/frame_renderer.hpp"
-#include "render/frame/preparer.hpp"
+#include "frames/frame_renderer.hpp"
+#include "frames/preparer.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {

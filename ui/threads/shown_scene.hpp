@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/progress.hpp"
+#include "frames/multi/pose_preparer.hpp"
 #include "import/import.hpp"
-#include "render/multi/pose_preparer.hpp"
 #include "scene/instance_edit.hpp"
 #include "ui/threads/prepared_scene.hpp"
 

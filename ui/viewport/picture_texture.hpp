@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/problem.hpp"
-#include "render/film/image_io.hpp"
+#include "picture/image_io.hpp"
 
 namespace clarity::ui {
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "render/settings/settings.hpp"
 #include "rt_plugin.h"
 #include "ui/widgets/formats.hpp"
 #include "ui/widgets/rect.hpp"
 #include "ui/widgets/theme.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 

@@ -1,6 +1,6 @@
 /* aov.cl -- one quantity of what the camera rays hit, without shading: frame->aov.
  *
- * A quantity is a row of the host's table (host/render/settings/aov.cpp), from which RT_AOV_T, RT_AOV_PRIM and the like are defined.
+ * A quantity is a row of the host's table (host/view/settings/aov.cpp), from which RT_AOV_T, RT_AOV_PRIM and the like are defined.
  * With RT_COUNT_STEPS the program has those that are counted, else the others. out: 1 or 3 floats a pixel as the table says, top row
  * first. prim and instance are ints in the bits of floats. Steps, leaf tests and lanes are counted for the packet that the pixel's
  * ray belongs to. */

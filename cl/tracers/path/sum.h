@@ -5,7 +5,7 @@
  *   sums of r, g and b, and the number of samples
  *   what these sums lack by rounding (Knuth 1969, The Art of Computer Programming 2, section 4.2.2), and the sum of squared
  *   deviations of the samples' luminance from its mean (Welford 1962, Note on a Method for Calculating Corrected Sums of Squares)
- * The sign of that last sum, if it is a number, says that the pixel rests: the host sets it (host/render/film/film_noise.hpp), and no
+ * The sign of that last sum, if it is a number, says that the pixel rests: the host sets it (host/picture/film_noise.hpp), and no
  * sample is added. */
 #ifndef RT_PATH_SUM_H
 #define RT_PATH_SUM_H

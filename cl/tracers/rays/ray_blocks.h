@@ -12,7 +12,7 @@
  *   RT_ANSWER_PLACED     these, and instance
  *   programs that count: these, steps, leaf_tests, lane_steps, and the members of a RayWork
  * The host fills the last block up with inactive rays. It packs rays and unpacks answers in
- * host/render/tracers/rays/ray_blocks.cpp.
+ * host/tracers/rays/ray_blocks.cpp.
  *
  * All rays of callers enter here, so the rule for their directions stands here and nowhere else. A ray hits nothing if its direction is
  * zero or not finite, or has no component of at least RT_LEAST_DIRECTION. Any other direction is right, however long it is: one far from

@@ -1,5 +1,5 @@
 // deformation.hpp -- what moves the vertices of a mesh at one time: numbers, from which vertices are made by deform.hpp on the
-// host, or by render/moving/on_device/device_deformer.hpp on a device.
+// host, or by moving/on_device/device_deformer.hpp on a device.
 #pragma once
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "reference.hpp"
-#include "render/view/view.hpp"
+#include "view/view.hpp"
 
 using namespace clarity;
 using namespace clarity::test;

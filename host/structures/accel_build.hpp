@@ -1,0 +1,71 @@
+// accel_build.hpp -- runs the builder of a structure over a scene, and checks and packs what it returns.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/aligned_bytes.hpp"
+#include "base/progress.hpp"
+#include "device/device.hpp"
+#include "plugin/parameters.hpp"
+#include "rt_plugin.h"
+#include "scene/scene.hpp"
+#include "structures/build_in_worker.hpp"
+#include "structures/build_scene.hpp"
+
+namespace clarity {
+
+// Zeroed primitives behind the last leaf, because cl/primitives/triangle_row.h reads RT_ROW leaves from any leaf on.
+constexpr uint64_t kLeafPadding = 3;
+
+// What is known of a structure besides its memory.
+struct AccelFacts {
+    const rt_plugin* plugin = nullptr;
+    const rt_plugin* layout = nullptr;  // whose slots and kernels these are: plugin itself, or the layout of its topology
+    ParameterValues params;
+    std::vector<rt_u32> roots;  // one for each group
+    std::map<std::string, rt_u32> defines;
+    std::vector<std::pair<std::string, double>> stats;  // as the plugin reported them, in its order
+    double build_ms = 0;  // time of the plugin's build() alone, or of topology() and the layout's pack()
+    double pack_ms = 0;   // time of the conversion before and of checks and packing after it
+    uint64_t bytes = 0;   // size of slots, leaves and instances
+    // The plugin's statistic of that label, or `otherwise`.
+    double stat(const std::string& label, double otherwise = 0) const;
+};
+
+// A finished structure. Immutable.
+struct AccelData : AccelFacts {
+    struct Slot {
+        AlignedBytes memory;
+        uint64_t count = 0;
+    };
+    std::vector<Slot> slots;
+    AlignedBytes leaves;  // rt_packed_prim in leaf order, then kLeafPadding zeroed ones
+    uint64_t leaf_count = 0;
+    std::vector<rt_instance> instances;  // with roots
+    BuildScene scene;
+};
+
+// What decides about a build besides the plugin, the scene and the parameters.
+struct BuildTarget {
+    const rt_plugin* layout = nullptr;  // PluginRegistry::layout_of(); nullptr: the plugin itself
+    rt_device device = {sizeof(rt_device), RT_DEVICE_UNKNOWN, 0, 0, 0, 0, 0, 0, 0};
+    BuildPlace place = BuildPlace::automatic;
+};
+// Describes a device to builders. lanes: rays of a work-item.
+rt_device device_for_builders(const DeviceInfo& info, unsigned lanes);
+
+// Runs a plugin's builder on a scene, on the calling thread and those that it starts. Throws Error(failed) "accel bvh2: why",
+// and Cancelled. It also throws if the builder breaks its contract, for example by a missing root, a root or a ref out of
+// range, a slot allocated twice, or an exception. A stranger's builder runs in a worker process: see BuildTarget::place.
+AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
+                      const BuildTarget& target = {});
+
+// Builds the structure of a scene, on any thread.
+using AccelBuilder = std::function<std::shared_ptr<const AccelData>(const Scene&, Progress&)>;
+
+}  // namespace clarity
