@@ -22,7 +22,9 @@ struct Box {
 };
 
 // Twice the centre of a primitive's box: only the order matters.
-inline float centre(const rt_prim& prim, int axis) { return prim.lo[axis] + prim.hi[axis]; }
+inline float centre(const rt_prim& prim, int axis) {
+    return prim.lo[axis] + prim.hi[axis];
+}
 
 // Puts the half with the lesser centres first, across the longest axis of the box. Returns where the other half begins; of two
 // and fewer primitives `begin`: they become a leaf.
@@ -32,7 +34,8 @@ inline rt_prim* split_at_median(const Box& box, rt_prim* begin, rt_prim* end) {
     for (int k = 1; k < 3; ++k)
         if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
     rt_prim* const middle = begin + (end - begin) / 2;
-    std::nth_element(begin, middle, end, [axis](const rt_prim& a, const rt_prim& b) { return centre(a, axis) < centre(b, axis); });
+    std::nth_element(begin, middle, end,
+                     [axis](const rt_prim& a, const rt_prim& b) { return centre(a, axis) < centre(b, axis); });
     return middle;
 }
 
@@ -55,7 +58,9 @@ Tree make_tree(const rt_prim* prims, rt_u32 count, Split split) {
             Box box;
             for (const rt_prim* prim = begin; prim < end; ++prim) box.add(prim->lo, prim->hi);
             const rt_u32 at = rt_u32(tree.nodes.size()), first = rt_u32(tree.order.size());
-            tree.nodes.push_back({{box.lo[0], box.lo[1], box.lo[2]}, first, {box.hi[0], box.hi[1], box.hi[2]},
+            tree.nodes.push_back({{box.lo[0], box.lo[1], box.lo[2]},
+                                  first,
+                                  {box.hi[0], box.hi[1], box.hi[2]},
                                   RT_TOPOLOGY_LEAF | rt_u32(end - begin)});
             // Halves end: no tree is deeper than RT_TOPOLOGY_DEPTH.
             rt_prim* const middle = level < 128 ? split(box, begin, end) : split_at_median(box, begin, end);

@@ -3,8 +3,8 @@
 
 namespace {
 
-// Puts the primitives of one child before those of the other, and returns where the other's begin; `begin`: all of them become a
-// leaf. box: around all of them.
+// Puts the primitives of one child before those of the other, and returns where the other's begin; `begin`: all of them become
+// a leaf. box: around all of them.
 rt_prim* split(const lab::Box& box, rt_prim* begin, rt_prim* end) {
     return lab::split_at_median(box, begin, end);
 }

@@ -1,5 +1,5 @@
-// binned.cpp -- our solution of the lab: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies", with 16 bins
-// for each axis.
+// binned.cpp -- our solution of the lab: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies", with 16
+// bins for each axis.
 #include "lab_tree.hpp"
 
 namespace {
@@ -56,8 +56,7 @@ rt_prim* split(const lab::Box& box, rt_prim* begin, rt_prim* end) {
     for (const rt_prim* prim = begin; prim < end; ++prim)
         lo = std::min(lo, lab::centre(*prim, best.axis)), hi = std::max(hi, lab::centre(*prim, best.axis));
     const Bins place(lo, hi);
-    return std::partition(begin, end,
-                          [&](const rt_prim& prim) { return place.of(lab::centre(prim, best.axis)) < best.bin; });
+    return std::partition(begin, end, [&](const rt_prim& prim) { return place.of(lab::centre(prim, best.axis)) < best.bin; });
 }
 
 int32_t build(const rt_host*, const rt_build_input* in, const rt_topology_output* out) {

@@ -10,8 +10,8 @@
 namespace {
 
 constexpr double kCellsOfPrimitive = 2, kMostCells = 64;  // along an axis
-// A primitive is in each cell that its box comes as near to, in cells. So a ray may be taken for one of the cell beside it, where
-// it is that close to an edge, and loses nothing.
+// A primitive is in each cell that its box comes as near to, in cells. So a ray may be taken for one of the cell beside it,
+// where it is that close to an edge, and loses nothing.
 constexpr double kSlack = 0.01;
 
 struct Grid {
@@ -47,8 +47,11 @@ struct Grid {
         for (rt_u32 i = 0; i < count; ++i) {
             int from[3], to[3];
             for (int k = 0; k < 3; ++k) {
-                const auto cell = [&](double place) { return int(std::clamp(std::floor(place), 0.0, double(head.cells[k] - 1))); };
-                from[k] = cell((prims[i].lo[k] - lo[k]) / size[k] - kSlack), to[k] = cell((prims[i].hi[k] - lo[k]) / size[k] + kSlack);
+                const auto cell = [&](double place) {
+                    return int(std::clamp(std::floor(place), 0.0, double(head.cells[k] - 1)));
+                };
+                from[k] = cell((prims[i].lo[k] - lo[k]) / size[k] - kSlack),
+                to[k] = cell((prims[i].hi[k] - lo[k]) / size[k] + kSlack);
             }
             for (int z = from[2]; z <= to[2]; ++z)
                 for (int y = from[1]; y <= to[1]; ++y)
@@ -89,8 +92,8 @@ constexpr rt_cl_file kFiles[] = {
 };
 constexpr rt_slot kSlots[] = {rt::slot<dda_grid>("dda_grids", "dda_grid"), rt::slot<rt_u32>("dda_starts", "uint"),
                               rt::slot<rt_u32>("dda_list", "uint")};
-constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "dda_types.h"), rt::file(kFiles, "dda.cl"), rt::guarded<build>, nullptr,
-                                      rt::Traits().can(RT_TRAVERSES_SINGLE_RAYS));
+constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "dda_types.h"), rt::file(kFiles, "dda.cl"), rt::guarded<build>,
+                                      nullptr, rt::Traits().can(RT_TRAVERSES_SINGLE_RAYS));
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-// median.cpp -- our solution of the lab: splits at the median of the boxes' centres, across the axis on which these spread most.
+// median.cpp -- our solution of the lab: splits at the median of the boxes' centres, across the axis on which these spread
+// most.
 #include <algorithm>
 #include <vector>
 

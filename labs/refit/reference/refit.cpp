@@ -1,6 +1,7 @@
-// refit.cpp -- our solution of the lab. Boxes are fitted from the leaves up (Wald, Boulos, Shirley 2007, "Ray Tracing Deformable
-// Scenes using Dynamic Bounding Volume Hierarchies"). A tree that has become worse costs its rays more in each pose; once that sum
-// is as large as the cost of a build, a build follows. So we pay at most twice what the best choice would have cost.
+// refit.cpp -- our solution of the lab. Boxes are fitted from the leaves up (Wald, Boulos, Shirley 2007, "Ray Tracing
+// Deformable Scenes using Dynamic Bounding Volume Hierarchies"). A tree that has become worse costs its rays more in each pose;
+// once that sum is as large as the cost of a build, a build follows. So we pay at most twice what the best choice would have
+// cost.
 #include "refit_poses.hpp"
 
 namespace {

@@ -1,4 +1,5 @@
-// wide.cpp -- the lab's tree: median splits, of which each node takes up to four. You need not change it, and it is not handed in.
+// wide.cpp -- the lab's tree: median splits, of which each node takes up to four. You need not change it, and it is not handed
+// in.
 #include "lab_tree.hpp"
 // included after rt_plugin.hpp, because it uses its types:
 #include "wide_pack.hpp"
@@ -18,7 +19,8 @@ struct Packer {
         return box;
     }
 
-    // A node with the children of the binary node `root`. While it has room, the largest one that has children gives way to them.
+    // A node with the children of the binary node `root`. While it has room, the largest one that has children gives way to
+    // them.
     rt_u32 pack(rt_u32 root) {
         const rt_u32 at = node_count++;
         rt_u32 children[4] = {root};
@@ -42,9 +44,10 @@ struct Packer {
         wide_pack(all, boxes, count, made);
         for (int i = 0; i < 4; ++i) {
             const rt_topology_node* const child = i < count ? &tree.nodes[children[i]] : nullptr;
-            made.child[i] = !child          ? WIDE_NONE
-                            : is_leaf(*child) ? WIDE_LEAF | (child->right & ~RT_TOPOLOGY_LEAF) << 28 | (first_leaf + child->left)
-                                              : pack(children[i]);
+            made.child[i] = !child ? WIDE_NONE
+                            : is_leaf(*child)
+                                ? WIDE_LEAF | (child->right & ~RT_TOPOLOGY_LEAF) << 28 | (first_leaf + child->left)
+                                : pack(children[i]);
         }
         nodes[at] = made;
         return at;
