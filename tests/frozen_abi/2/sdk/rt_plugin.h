@@ -1,4 +1,4 @@
-/* rt_plugin.h -- the plugin ABI, version 2, as it was when it was frozen, without its comments: host/sdk/rt_plugin.h has them. */
+/* rt_plugin.h -- the plugin ABI, version 2, as it was when it was frozen, without its comments: sdk/rt_plugin.h has them. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
