@@ -5,14 +5,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/angle.hpp"
 #include "ui/session/camera_control.hpp"
 
 namespace clarity::ui {
-namespace {
-
-constexpr float kTwoPi = 6.2831853f;
-
-}  // namespace
 
 std::array<glm::vec3, 2> axes_across(const glm::vec3& unit) {
     const glm::vec3 other = std::abs(unit.x) < 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
@@ -41,7 +37,8 @@ void LineList::box(const std::array<std::array<float, 3>, 8>& corners, uint32_t 
 void LineList::circle(const glm::vec3& center, const glm::vec3& a, const glm::vec3& b, int segments, uint32_t color,
                       float width) {
     // Each point is the last one rotated by a constant angle: two products instead of a sine and a cosine.
-    const float step = kTwoPi / static_cast<float>(segments), turn_c = std::cos(step), turn_s = std::sin(step);
+    const float step = static_cast<float>(kTurn) / static_cast<float>(segments), turn_c = std::cos(step),
+                turn_s = std::sin(step);
     float c = 1, s = 0;
     glm::vec3 last = center + a;
     for (int i = 1; i <= segments; ++i) {

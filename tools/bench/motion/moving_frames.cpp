@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
@@ -119,8 +120,9 @@ Pose MovingFrames::clip_pose(unsigned frame) const {
 Pose MovingFrames::pose_of(float phase) const {
     Pose pose = pose_at_rest(*scene_);
     Affine& at = pose.instances.back().world_from_object;
-    at[3] += 0.2f * size_ * std::cos(6.2831853f * phase);
-    at[11] += 0.2f * size_ * std::sin(6.2831853f * phase);
+    const float turn = static_cast<float>(kTurn) * phase;
+    at[3] += 0.2f * size_ * std::cos(turn);
+    at[11] += 0.2f * size_ * std::sin(turn);
     return pose;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.hpp"
 #include "base/numbers.hpp"
 #include "tools/check/seed.hpp"
 
@@ -314,7 +315,7 @@ std::string fault_of_poles(Surface& surface, const std::vector<Spot>& spots, siz
                 for (int k = 0; k < kLoopPoints; ++k) {
                     const Vec x = across(spot.found ? spot.normal : Vec{0, 0, 1}),
                               y = cross(spot.found ? spot.normal : Vec{0, 0, 1}, x);
-                    const double angle = 6.283185307179586 * k / kLoopPoints, r = kLoopRadius * surface.size();
+                    const double angle = kTurn * k / kLoopPoints, r = kLoopRadius * surface.size();
                     from.push_back(spot);
                     by.push_back(r * std::cos(angle) * x + r * std::sin(angle) * y);
                 }
