@@ -3,7 +3,7 @@
 // A kernel that loops for ever ends on no GPU without a display, and no call of OpenCL stops it. So the thread that waits asks
 // for the state of an event, and gives up after a limit. The device is then stuck (device_loss.hpp): its objects are kept, and
 // the caller may open it anew, in another context. A CPU is waited for without a limit: its threads would be busy for ever, in
-// any context. Kernels for CPUs are therefore tried in a worker first (trial).
+// any context. Kernels for CPUs are therefore tried in a worker first (trial/trial.hpp).
 #pragma once
 #include <CL/opencl.hpp>
 #include <functional>

@@ -1,4 +1,4 @@
-// kernel_row.hpp -- what makes up a kernel that traces rays. Tracers (tracers) say it of theirs.
+// kernel_row.hpp -- what makes up a kernel that traces rays. Each tracer (tracers/<id>) describes its own kernels.
 #pragma once
 #include <string>
 #include <vector>
