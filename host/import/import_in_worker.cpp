@@ -33,9 +33,9 @@ struct ImportJob {
     worker::WorkerLimits limits;
     std::vector<std::string> plugins, surfaces, search_paths, importers, files;
     std::vector<PictureFile> pictures;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.limits, self.plugins, self.surfaces, self.search_paths, self.importers, self.files, self.pictures);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.limits, self.plugins, self.surfaces, self.search_paths, self.importers, self.files, self.pictures);
     }
 };
 

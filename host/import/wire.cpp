@@ -1,32 +1,63 @@
-// Layout: a number that tells a scene, then the arrays of scene_sections.hpp in the order of `visit`.
+// Layout: a number that tells a scene, then its members in the order of their lists.
 #include "import/wire.hpp"
 
 #include <type_traits>
 
 #include "base/digest.hpp"
-#include "import/scene_sections.hpp"
 
 namespace clarity::import {
 namespace {
 
-constexpr uint64_t kMagic = 0x32656E6563536C43;  // "ClScene2"
+constexpr uint64_t kMagic = 0x33656E6563536C43;  // "ClScene3"
 
+// Writes a value, which is empty afterwards. Memory that it does not share goes back to the system behind the writing.
 template <class T>
-void give(ParcelWriter& parcel, std::vector<T>& array) {
-    static_assert(std::is_trivially_copyable_v<T>, "only plain data goes through shared memory");
-    parcel.bytes(array.data(), array.size() * sizeof(T), true);
-    std::vector<T>().swap(array);
+void give(ParcelWriter& parcel, T& value) {
+    if constexpr (has_members<T>) {
+        for_each_member(value, [&](auto& member) { give(parcel, member); });
+    } else if constexpr (detail::is_shared<T>) {
+        if (value.is_sole_owner())
+            give(parcel, value.own());
+        else
+            parcel(value);
+    } else if constexpr (detail::is_array<T> && !std::is_trivially_copyable_v<T> && !std::is_same_v<T, std::string>) {
+        parcel.bytes(value.data(), value.size() * sizeof value[0], true);
+    } else {
+        parcel(value);
+    }
+    if constexpr (!has_members<T>) value = T();
 }
 
-// Elements that others have, too, are copied.
-template <class T>
-void give(ParcelWriter& parcel, SharedArray<T>& array) {
-    if (array.is_sole_owner())
-        give(parcel, array.own());
-    else
-        parcel(array);
-    array.clear();
-}
+// A parcel of which only a digest is kept, without the texts in it.
+class DigestParcel {
+ public:
+    static constexpr bool kWrites = true;
+    template <class... Values>
+    void operator()(const Values&... values) {
+        (add(values), ...);
+    }
+    Digest digest;
+
+ private:
+    template <class T>
+    void add(const T& value) {
+        if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, std::vector<std::string>>) {
+            return;
+        } else if constexpr (detail::is_visited<T, DigestParcel>) {
+            T::visit(*this, value);
+        } else if constexpr (has_members<T>) {
+            for_each_member(value, [this](const auto& member) { add(member); });
+        } else if constexpr (std::is_trivially_copyable_v<T>) {
+            digest.add_bytes(&value, sizeof value);
+        } else {
+            digest.add_value(uint64_t{value.size()});
+            if constexpr (detail::is_array<T>)
+                digest.add_bytes(value.data(), value.size() * sizeof *value.data());
+            else
+                for (const auto& element : value) add(element);
+        }
+    }
+};
 
 Scene scene_in(ParcelReader parcel) {
     SentScene sent;
@@ -35,27 +66,18 @@ Scene scene_in(ParcelReader parcel) {
     return std::move(sent.scene);
 }
 
-// Leaves out the texts of these elements, which would otherwise leave a trace by their length.
-template <class Elements>
-void forget_names(Elements& elements) {
-    for (auto& element : elements) element.name_bytes = 0;
-}
-
 }  // namespace
 
 void SentScene::send(ParcelWriter& parcel, Scene scene) {
-    Converted converted = convert(scene);
     parcel(kMagic);
-    import::visit(scene, converted, [&](auto& array) { give(parcel, array); });
-}  // namespace clarity::import
+    give(parcel, scene);
+}
 
 void SentScene::receive(ParcelReader& parcel, Scene& scene) {
     uint64_t magic = 0;
     parcel(magic);
     if (magic != kMagic) throw Error(Exit::failed, "the shared memory holds no scene");
-    Converted converted;
-    import::visit(scene, converted, [&](auto& array) { parcel(array); });
-    if (!convert_back(converted, scene)) throw ParcelDamaged();
+    parcel(scene);
 }
 
 void write_scene(MemoryFile& file, Scene scene) {
@@ -73,20 +95,9 @@ Scene map_scene(const MemoryFile& file) {
 }
 
 std::string scene_digest(const Scene& scene) {
-    Converted converted = convert(scene);
-    forget_names(converted.meshes), forget_names(converted.instances), forget_names(converted.materials);
-    forget_names(converted.lights), forget_names(converted.nodes), forget_names(converted.morphs);
-    forget_names(converted.sequences);
-    for (WireNode& node : converted.nodes) node.values.name = nullptr;
-    converted.globals.front().sky_file_bytes = 0;
-    converted.warnings.clear(), converted.edits.clear(), converted.sources.clear(), converted.names.clear();
-    converted.texture_names.clear();
-    Digest digest;
-    visit(scene, converted, [&](const auto& array) {
-        using Element = typename std::decay_t<decltype(array)>::value_type;
-        digest.add_value(uint64_t(array.size()));
-        digest.add_bytes(array.data(), array.size() * sizeof(Element));
-    });
+    DigestParcel parcel;
+    parcel(scene);
+    Digest& digest = parcel.digest;
     // Users choose cameras and clips by their names; the id of a shape says which kernel intersects it.
     for (const ShapeKind& kind : scene.shape_kinds) digest.add(kind.id);
     for (const Camera& camera : scene.cameras) digest.add(camera.name);

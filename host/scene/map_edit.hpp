@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/members.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -11,11 +12,11 @@ namespace clarity {
 struct PictureFile {
     std::string path;
     rt_u32 space = RT_SPACE_SRGB;  // RT_SPACE_
-    bool operator==(const PictureFile& b) const { return path == b.path && space == b.space; }
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.path, self.space);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.path, self.space);
     }
+    bool operator==(const PictureFile& b) const { return members_of(*this) == members_of(b); }
 };
 
 // All that a user has done to the textures of a scene's materials.

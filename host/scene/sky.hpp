@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/members.hpp"
 #include "rt_types.h"
 #include "scene/shared_array.hpp"
 
@@ -23,6 +24,10 @@ struct Sky {
     SkyValues values;
     std::string file;           // of the picture, as the scene's file names it
     SharedArray<float> texels;  // of the picture: linear RGB, radiance, top row first
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.values, self.file, self.texels);
+    }
 };
 
 }  // namespace clarity

@@ -101,6 +101,9 @@ Problem check_meshes(const Scene& s) {
             return text("instance", i, "material " + of(instance.material, s.materials.size()));
         }
         if (!all_finite(instance.world_from_object)) return text("instance", i, "its transform is not finite");
+        const InstanceShift& shift = instance.shift;
+        for (const auto* numbers : {&shift.translate, &shift.degrees, &shift.scale, &instance.pivot})
+            if (!all_finite(*numbers)) return text("instance", i, "what moves it is not finite");
     }
     return {};
 }

@@ -126,6 +126,15 @@ rt_device device_for_builders(const DeviceInfo& info, unsigned lanes) {
     return device;
 }
 
+void finish_accel(AccelData& data) {
+    data.instances = data.scene.instances;
+    for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
+    data.bytes = data.leaf_count * sizeof(rt_packed_prim) + data.instances.size() * sizeof(rt_instance);
+    const rt_accel& table = built_slots(*data.layout);
+    for (rt_u32 s = 0; s < table.slot_count; ++s)
+        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY)) data.bytes += data.slots[s].count * table.slots[s].elem_bytes;
+}
+
 AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
                       const BuildTarget& target) {
     const rt_plugin& layout = target.layout ? *target.layout : plugin;
@@ -184,12 +193,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     if (const Problem why = pack_leaves(built.result.refs, data)) throw fault(name_of(plugin, layout), why.text());
     built.result = {};
     data.scene.triangles = {};
-    data.instances = data.scene.instances;
-    for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
-    data.bytes = data.leaf_count * sizeof(rt_packed_prim) + data.instances.size() * sizeof(rt_instance);
-    for (rt_u32 s = 0; s < layout.accel->slot_count; ++s)
-        if (!(layout.accel->slots[s].flags & RT_SLOT_HOST_ONLY))
-            data.bytes += data.slots[s].count * layout.accel->slots[s].elem_bytes;
+    finish_accel(data);
     data.pack_ms += ms_since(start);
     return data;
 }

@@ -33,6 +33,11 @@ struct AccelFacts {
     double build_ms = 0;  // time of the plugin's build() alone, or of topology() and the layout's pack()
     double pack_ms = 0;   // time of the conversion before and of checks and packing after it
     uint64_t bytes = 0;   // size of slots, leaves and instances
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.plugin, self.layout, self.params, self.roots, self.defines, self.stats, self.build_ms,
+                        self.pack_ms, self.bytes);
+    }
     // The plugin's statistic of that label, or `otherwise`.
     double stat(const std::string& label, double otherwise = 0) const;
 };
@@ -42,13 +47,25 @@ struct AccelData : AccelFacts {
     struct Slot {
         AlignedBytes memory;
         uint64_t count = 0;
+        template <class Self>
+        static auto members(Self& self) {
+            return std::tie(self.memory, self.count);
+        }
     };
     std::vector<Slot> slots;
     AlignedBytes leaves;  // rt_packed_prim in leaf order, then kLeafPadding zeroed ones
     uint64_t leaf_count = 0;
     std::vector<rt_instance> instances;  // with roots
     BuildScene scene;
+    template <class Self>
+    static auto members(Self& self) {
+        using Facts = std::conditional_t<std::is_const_v<Self>, const AccelFacts, AccelFacts>;
+        return std::tie(static_cast<Facts&>(self), self.slots, self.leaves, self.leaf_count, self.instances, self.scene);
+    }
 };
+
+// Fills in what follows from the rest: the instances with their roots, and `bytes`.
+void finish_accel(AccelData& data);
 
 // What decides about a build besides the plugin, the scene and the parameters.
 struct BuildTarget {

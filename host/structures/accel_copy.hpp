@@ -15,6 +15,7 @@ AccelData copy_of(const AccelData& from, Memory&& memory) {
     copy.leaf_count = from.leaf_count;
     copy.instances = from.instances;
     copy.scene = from.scene;
+    static_assert(has_member_count<AccelData, 6>, "a new member has to be copied here");
     return copy;
 }
 

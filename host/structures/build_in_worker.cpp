@@ -40,13 +40,10 @@ struct BuildJob {
     SharedArray<rt_topology_node> nodes;
     SharedArray<rt_u32> refs, roots;
 
-    BuildJob() = default;
-    BuildJob(std::string library_file, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
-             const rt_topology* tree);
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.library, self.memory_bytes, self.cpu_s, self.device, self.params, self.prims, self.groups, self.triangles,
-               self.nodes, self.refs, self.roots);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.library, self.memory_bytes, self.cpu_s, self.device, self.params, self.prims, self.groups,
+                        self.triangles, self.nodes, self.refs, self.roots);
     }
 };
 
@@ -79,18 +76,20 @@ void read_array(ParcelReader& parcel, bool wanted, uint64_t count, uint64_t elem
     parcel.take(memory, bytes);
 }
 
-BuildJob::BuildJob(std::string library_file, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
-                   const rt_topology* tree)
-    : library(std::move(library_file)),
-      device(*input.device),
-      params(input.params, input.params + param_count),
-      prims(borrowed(input.prims, prim_count)),
-      groups(borrowed(input.groups, input.group_count)) {
-    if (input.geometry) triangles = borrowed(input.geometry->triangles, input.geometry->triangle_count);
-    if (!tree) return;
-    nodes = borrowed(tree->nodes, tree->node_count);
-    refs = borrowed(tree->refs, tree->ref_count);
-    roots = borrowed(tree->roots, tree->group_count);
+BuildJob job_of(std::string library, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
+                const rt_topology* tree) {
+    BuildJob job;
+    job.library = std::move(library);
+    job.device = *input.device;
+    job.params.assign(input.params, input.params + param_count);
+    job.prims = borrowed(input.prims, prim_count);
+    job.groups = borrowed(input.groups, input.group_count);
+    if (input.geometry) job.triangles = borrowed(input.geometry->triangles, input.geometry->triangle_count);
+    if (!tree) return job;
+    job.nodes = borrowed(tree->nodes, tree->node_count);
+    job.refs = borrowed(tree->refs, tree->ref_count);
+    job.roots = borrowed(tree->roots, tree->group_count);
+    return job;
 }
 
 void BuildAnswer::visit(ParcelWriter& parcel, const BuildAnswer& answer) {
@@ -200,7 +199,7 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
     job.advice = "; this is a fault of the plugin: `clarity check " + original_of(library) + "` looks for it";
     job.subject = library;
     BuildReplay replay{built_slots(plugin), input->group_count, *out};
-    BuildJob work(library, *input, prims, plugin.param_count, tree);
+    BuildJob work = job_of(library, *input, prims, plugin.param_count, tree);
     work.memory_bytes = memory;
     try {
         job.run(work, replay, progress);
@@ -235,7 +234,7 @@ ClosedBuilder closed_builder;
 
 // Builds, and hands over what was built. slots: those of the output.
 int32_t build_closed(const rt_host* host, const rt_build_input* input, const rt_accel& slots, const rt_build_output& out) {
-    BuildJob work(closed_builder.library, *input, prim_count_of(*input), 0, nullptr);
+    BuildJob work = job_of(closed_builder.library, *input, prim_count_of(*input), 0, nullptr);
     work.memory_bytes = closed_builder.memory_bytes;
     work.cpu_s = ClosedBuild::cpu_s_of(closed_builder);
     BuildReplay replay{slots, input->group_count, out};

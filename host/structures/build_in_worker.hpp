@@ -29,9 +29,9 @@ struct ClosedBuilder {
     std::string table;
     double limit_s = 10;  // processor time of a build
     uint64_t memory_bytes = uint64_t(1) << 30;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.library, self.id, self.layout, self.table, self.limit_s, self.memory_bytes);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.library, self.id, self.layout, self.table, self.limit_s, self.memory_bytes);
     }
 };
 // The plugin that stands for it in this process, also if this is a worker. One a process.

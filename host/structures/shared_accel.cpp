@@ -6,40 +6,46 @@
 namespace clarity {
 namespace {
 
-// What of a structure is as it is in memory: all but its plugins, its slots and its leaves.
-template <class Parcel, class Accel>
-void visit_plain(Parcel& parcel, Accel& a) {
-    auto& s = a.scene;
-    parcel(a.leaf_count, a.bytes, a.build_ms, a.pack_ms, s.bounds.min, s.bounds.max, s.bounds.empty, s.object_bounds.min,
-           s.object_bounds.max, s.object_bounds.empty, a.defines, a.stats);
-    parcel(a.params, a.roots, a.instances);
-    parcel(s.groups, s.instances, s.group_of_instance, s.world_from_object, s.attribute_triangle, s.flattened);
-    parcel(s.instance_leaves, s.spheres, s.polygons, s.shape_leaves, s.shapes, s.polygon_table, s.polygon_corners);
-    parcel(s.planes, s.group_of_mesh, s.first_ref_of_group, s.number_of_instance);
-}
-
-AlignedBytes borrow(ParcelReader& parcel) {
-    const uint64_t bytes = parcel.begin_array();
-    return AlignedBytes::borrow(const_cast<char*>(parcel.borrow(bytes)), bytes);
-}
-
 const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) {
     if (const rt_plugin* plugin = plugins.accel(id)) return plugin;
     throw Error(Exit::failed,
                 "accel " + id + ", which another process has used, is not there; load the same plugins in all processes");
 }
 
+// Members one after the other: plugins by their ids, memory as it is. The reader borrows the latter of the parcel.
+struct Write {
+    ParcelWriter& parcel;
+    void operator()(const rt_plugin* plugin) const { parcel(std::string(plugin->id)); }
+    void operator()(const AlignedBytes& memory) const { parcel.bytes(memory.data(), memory.bytes()); }
+};
+struct Read {
+    ParcelReader& parcel;
+    const PluginRegistry& plugins;
+    void operator()(const rt_plugin*& plugin) const {
+        std::string id;
+        parcel(id);
+        plugin = accel_of(plugins, id);
+    }
+    void operator()(AlignedBytes& memory) const {
+        const uint64_t bytes = parcel.begin_array();
+        memory = AlignedBytes::borrow(const_cast<char*>(parcel.borrow(bytes)), bytes);
+    }
+};
+template <class How, class T>
+void visit(const How& how, T& value) {
+    if constexpr (has_members<T>)
+        for_each_member(value, [&](auto& member) { visit(how, member); });
+    else if constexpr (std::is_invocable_v<const How&, T&>)
+        how(value);
+    else
+        how.parcel(value);
+}
+
 }  // namespace
 
 void write_accel(MemoryFile& file, const AccelData& accel) {
     ParcelWriter parcel(file);
-    parcel(std::string(accel.plugin->id), std::string(accel.layout->id), uint64_t{accel.slots.size()});
-    visit_plain(parcel, accel);
-    parcel.bytes(accel.leaves.data(), accel.leaves.bytes());
-    for (const AccelData::Slot& slot : accel.slots) {
-        parcel(slot.count);
-        parcel.bytes(slot.memory.data(), slot.memory.bytes());
-    }
+    visit(Write{parcel}, accel);
     parcel.finish();
     file.seal();
 }
@@ -53,18 +59,7 @@ std::shared_ptr<const AccelData> map_accel(const MemoryFile& file, const PluginR
     AccelData& accel = mapped->accel;
     ParcelReader parcel(file, ParcelReader::How::mapped);
     mapped->memory = parcel.memory();
-    std::string plugin, layout;
-    uint64_t slots = 0;
-    parcel(plugin, layout, slots);
-    accel.plugin = accel_of(plugins, plugin);
-    accel.layout = accel_of(plugins, layout);
-    visit_plain(parcel, accel);
-    accel.leaves = borrow(parcel);
-    for (uint64_t s = 0; s < slots; ++s) {
-        uint64_t count = 0;
-        parcel(count);
-        accel.slots.push_back({borrow(parcel), count});
-    }
+    visit(Read{parcel, plugins}, accel);
     parcel.end();
     return {mapped, &accel};
 } catch (const ParcelDamaged&) {

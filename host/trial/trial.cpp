@@ -106,7 +106,7 @@ TrialJob job_for(const DeviceInfo& info, const Settings& settings, const char* k
     job.kernels = kernels;
     job.device = info.id();
     job.device_name = info.name;
-    job.settings = settings;
+    job.settings = {settings};
     return job;
 }
 

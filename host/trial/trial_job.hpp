@@ -21,15 +21,15 @@ struct TrialShape {
     struct Part {
         ShapePart part;
         std::vector<float> more;  // its range of Scene::shape_numbers
-        template <class Parcel, class Self>
-        static void visit(Parcel& parcel, Self& self) {
-            parcel(self.part, self.more);
+        template <class Self>
+        static auto members(Self& self) {
+            return std::tie(self.part, self.more);
         }
     };
     std::vector<Part> parts;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.id, self.parts);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.id, self.parts);
     }
 };
 
@@ -41,6 +41,19 @@ void add_shape(Scene& scene, const TrialShape& shape, rt_u32 kind, rt_u32 materi
 
 inline constexpr const char* kFilmKernels = "film";
 
+// All that a user can say, by the table of settings.
+struct SentSettings : Settings {
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        std::vector<std::pair<std::string, std::string>> texts;
+        if constexpr (Parcel::kWrites)
+            for (const Setting& setting : settings_table()) texts.emplace_back(setting.key, setting.get(self));
+        parcel(self.accel, self.accel_params, texts);
+        if constexpr (!Parcel::kWrites)
+            for (const auto& [key, value] : texts) set_setting(self, key, value);
+    }
+};
+
 struct TrialJob {
     std::string kernels;                           // the id of their tracer, or kFilmKernels
     std::map<std::string, std::string> libraries;  // from each as loaded to the file that it stands for
@@ -51,17 +64,12 @@ struct TrialJob {
     // Of the user's structure, where kernels' arrays are as large as its tree is deep. Those of the small scene count if they
     // are larger.
     std::map<std::string, rt_u32> defines;
-    Settings settings;
+    SentSettings settings;
 
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        std::vector<std::pair<std::string, std::string>> texts;  // of the settings
-        if constexpr (Parcel::kWrites)
-            for (const Setting& setting : settings_table()) texts.emplace_back(setting.key, setting.get(self.settings));
-        parcel(self.kernels, self.libraries, self.device, self.device_name, self.surfaces, self.features, self.shapes,
-               self.defines, self.settings.accel, self.settings.accel_params, texts);
-        if constexpr (!Parcel::kWrites)
-            for (const auto& [key, value] : texts) set_setting(self.settings, key, value);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.kernels, self.libraries, self.device, self.device_name, self.surfaces, self.features, self.shapes,
+                        self.defines, self.settings);
     }
 };
 

@@ -14,9 +14,9 @@ namespace {
 struct Part {
     std::string name;
     std::vector<double> numbers;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.name, self.numbers);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.name, self.numbers);
     }
     bool operator==(const Part& b) const { return name == b.name && numbers == b.numbers; }
 };
@@ -33,10 +33,10 @@ struct All {
     std::vector<Part> parts;
     std::vector<char> bytes;
     SharedArray<uint32_t> large;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.number, self.flag, self.text, self.texts, self.flags, self.set, self.map, self.pairs, self.parts);
-        parcel(self.bytes, self.large);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.number, self.flag, self.text, self.texts, self.flags, self.set, self.map, self.pairs, self.parts,
+                        self.bytes, self.large);
     }
 };
 

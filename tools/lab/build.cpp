@@ -35,9 +35,9 @@ struct Tools {
     std::string work, path;
     std::string bubblewrap;  // the program; "": not used
     uint64_t cpu_s = 0;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.commands, self.folders, self.work, self.path, self.bubblewrap, self.cpu_s);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.commands, self.folders, self.work, self.path, self.bubblewrap, self.cpu_s);
     }
 };
 

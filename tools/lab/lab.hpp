@@ -24,10 +24,10 @@ struct Case {
     // the light that is sent back.
     double reference = 0;
     std::vector<double> truth;
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.name, self.scene, self.triangles, self.rays, self.poses, self.seed, self.hidden, self.color, self.keys,
-               self.reference, self.truth);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.name, self.scene, self.triangles, self.rays, self.poses, self.seed, self.hidden, self.color,
+                        self.keys, self.reference, self.truth);
     }
 };
 

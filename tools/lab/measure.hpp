@@ -24,10 +24,10 @@ struct MeasureJob {
     std::vector<std::vector<rt_ray>> rays;  // of each scene
     std::vector<unsigned> poses;
     std::vector<Case> materials;  // of a model of surfaces, in the place of scenes
-    template <class Parcel, class Self>
-    static void visit(Parcel& parcel, Self& self) {
-        parcel(self.library, self.closed, self.reference, self.layout, self.device, self.lanes, self.times, self.limit_s,
-               self.scenes, self.rays, self.poses, self.materials);
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.library, self.closed, self.reference, self.layout, self.device, self.lanes, self.times,
+                        self.limit_s, self.scenes, self.rays, self.poses, self.materials);
     }
 };
 

@@ -11,6 +11,7 @@ namespace {
 
 // Bytes that both processes hold at the same time while an array goes from one to the other.
 constexpr uint64_t kBytesAtOnce = uint64_t(4) << 20;
+constexpr uint64_t kBytesAhead = uint64_t(4) << 10;
 
 uint64_t padding_at(uint64_t at) {
     return (kParcelAlignment - at % kParcelAlignment) % kParcelAlignment;
@@ -89,10 +90,17 @@ uint64_t ParcelReader::checked(uint64_t count) const {
 void ParcelReader::read(void* to, uint64_t count, bool of_array) {
     checked(count);
     if (count == 0) return;
-    if (memory_)
+    if (memory_) {
         std::memcpy(to, memory_.get() + at_, count);
-    else
+    } else if (of_array || count > kBytesAhead) {
         file_.read_at(at_, to, count);
+    } else {
+        if (at_ < ahead_at_ || at_ + count > ahead_at_ + ahead_.size()) {
+            ahead_.resize(std::min(kBytesAhead, bytes_ - at_));
+            file_.read_at(ahead_at_ = at_, ahead_.data(), ahead_.size());
+        }
+        std::memcpy(to, ahead_.data() + (at_ - ahead_at_), count);
+    }
     at_ += count;
     if (!of_array || how_ != How::emptied || at_ - given_back_ < kBytesAtOnce) return;
     for_whole_pages(given_back_, at_, [&](uint64_t from, uint64_t length) {

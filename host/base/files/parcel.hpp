@@ -5,7 +5,7 @@
 // these. An array of plain data is the number of its bytes, and these at the next multiple of kAlignment; it is padded to such
 // a multiple. So the large arrays of a file may be used where they lie.
 //
-// A struct says once which values it has, for writing and reading:
+// A struct goes by its list of members (base/members.hpp). One that is written in another way has
 //     template <class Parcel, class Self> static void visit(Parcel& parcel, Self& self) { parcel(self.name, self.numbers); }
 #pragma once
 #include <algorithm>
@@ -18,6 +18,7 @@
 
 #include "base/error.hpp"
 #include "base/files/memory_file.hpp"
+#include "base/members.hpp"
 
 namespace clarity {
 
@@ -89,6 +90,8 @@ class ParcelWriter {
         using Value = std::remove_const_t<T>;
         if constexpr (detail::is_visited<Value, ParcelWriter>) {
             Value::visit(*this, value);
+        } else if constexpr (has_members<Value>) {
+            for_each_member(value, [&](auto& member) { put(member); });
         } else if constexpr (detail::is_pair<Value>) {
             put(value.first), put(value.second);
         } else if constexpr (std::is_same_v<Value, std::string>) {
@@ -148,6 +151,12 @@ class ParcelReader {
     void get(T& value) {
         if constexpr (detail::is_visited<T, ParcelReader>) {
             T::visit(*this, value);
+        } else if constexpr (has_members<T>) {
+            for_each_member(value, [&](auto& member) { get(member); });
+        } else if constexpr (std::is_same_v<T, bool>) {
+            char byte = 0;  // that may be no bool
+            read(&byte, 1, false);
+            value = byte != 0;
         } else if constexpr (detail::is_pair<T>) {
             get(value.first), get(value.second);
         } else if constexpr (std::is_same_v<T, std::string>) {
@@ -212,6 +221,8 @@ class ParcelReader {
     const How how_;
     std::shared_ptr<const char> memory_;
     uint64_t bytes_, at_ = 0, given_back_ = 0;
+    std::vector<char> ahead_;  // of a file that is not mapped: what lies from ahead_at_ on, so that not each number is a call
+    uint64_t ahead_at_ = 0;    // of the system
 };
 
 }  // namespace clarity

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/members.hpp"
 #include "rt_plugin.h"
 #include "scene/shared_array.hpp"
 
@@ -11,15 +12,25 @@ namespace clarity {
 
 struct Node {
     std::string name;
-    rt_node_desc
-        values{};  // parent: index of an earlier node, or RT_NONE; matrices are filled in. name and struct_bytes are unused
+    // parent: index of an earlier node, or RT_NONE. Matrices are filled in. name and struct_bytes are unused.
+    rt_node_desc values{};
+    template <class Parcel, class Self>
+    static void visit(Parcel& parcel, Self& self) {
+        parcel(self.name, self.values);
+        if constexpr (!Parcel::kWrites) self.values.name = nullptr;
+    }
 };
+static_assert(has_member_count<Node, 2>, "visit() has all of them");
 
 struct Clip {
     std::string name;
     rt_u32 rig = 0;  // the placed file that it moves
     rt_u32 first_layer = 0, layer_count = 0;
     double begin_s = 0, end_s = 0, fps = 0;
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.name, self.rig, self.first_layer, self.layer_count, self.begin_s, self.end_s, self.fps);
+    }
 };
 
 // Keys of one component or of a quaternion: ranges of the arrays of Motion.
@@ -51,6 +62,10 @@ struct Morph {
     rt_u32 mesh = 0;
     rt_u32 first_target = 0, target_count = 0;
     double weight = 0;  // at rest
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.name, self.mesh, self.first_target, self.target_count, self.weight);
+    }
 };
 struct MorphTarget {
     double weight = 1;
@@ -77,6 +92,10 @@ struct FileSequence {
     rt_u32 first_mesh = 0, mesh_count = 0;
     rt_u32 first_number = 0, number_count = 0;  // in sequence_numbers
     double fps = 24;                            // file n is at n / fps
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.pattern, self.first_mesh, self.mesh_count, self.first_number, self.number_count, self.fps);
+    }
 };
 
 struct Motion {
@@ -103,6 +122,14 @@ struct Motion {
     std::vector<rt_u32> sequence_numbers;
 
     bool empty() const { return nodes.empty() && morphs.empty() && frames.empty() && sequences.empty(); }
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.nodes, self.clips, self.layers, self.channels, self.key_times, self.key_values, self.key_handles,
+                        self.key_spans, self.skins, self.bones, self.weights, self.shares, self.morphs, self.morph_targets,
+                        self.morph_vertices, self.morph_positions, self.morph_normals, self.frames, self.frame_times,
+                        self.frame_positions, self.stored, self.stored_positions, self.stored_normals, self.sequences,
+                        self.sequence_numbers);
+    }
 };
 
 }  // namespace clarity

@@ -116,8 +116,8 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     accel->defines = result.defines;
     for (const auto& [name, value] : as.defines) accel->defines[name] = value;
     accel->stats = result.stats;
-    accel->instances = build.instances;
-    for (size_t i = 0; i < accel->instances.size(); ++i) accel->instances[i].root = accel->roots[build.group_of_instance[i]];
+    finish_accel(*accel);
+    static_assert(has_member_count<AccelData, 6> && has_member_count<AccelFacts, 9>, "all but the times are set here");
     accel_ = std::move(accel);
     queries_ = std::make_unique<RayQueries>(device_);
 }
