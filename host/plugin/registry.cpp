@@ -345,12 +345,13 @@ Problem PluginRegistry::replace(const PluginRecord& rebuilt) {
     const size_t at = size_t(place - next.begin());
     shadow_later_ones(next);
     link_layouts(next);
-    add_surfaces(next);
     for (size_t i = 0; i < next.size(); ++i) {
         if (next[i].plugin || (i != at && !list_->records[i].plugin)) continue;
         if (i == at) return next[i].why;
         return "it packs no trees any more, and " + next[i].path + " needs that: give it its `pack` back";
     }
+    add_surfaces(next);  // last, because it changes what all see
+    if (!next[at].plugin) return next[at].why;
     list_->records = std::move(next);
     return {};
 }

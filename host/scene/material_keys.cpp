@@ -6,6 +6,7 @@
 #include <cstring>
 #include <deque>
 #include <functional>
+#include <iterator>
 #include <mutex>
 
 #include "scene/surface_models.hpp"
@@ -15,9 +16,8 @@ namespace {
 
 using M = rt_material;
 
-// Plugins add theirs.
-const char* models[RT_MODEL_KINDS + kMostSurfaceModels + 1] = {"whitted", "lambert", "conductor", "dielectric",
-                                                               "gltf",    "unlit",   nullptr};
+constexpr const char* kModels[] = {"whitted", "lambert", "conductor", "dielectric", "gltf", "unlit", nullptr};  // of the host
+static_assert(std::size(kModels) == RT_MODEL_KINDS + 1, "a word for each");
 constexpr const char* kAlphas[] = {"opaque", "mask", "blend", nullptr};
 
 // More than a surface can send back, but files have such colours. A colour of 8 bits a channel is beyond it.
@@ -76,7 +76,7 @@ std::vector<Key> layer_keys() {
 
 std::vector<Key> make_keys() {
     std::vector<Key> keys = {
-        shown(word_key("model", offsetof(M, model), 0, models), "Model", "what `path` takes the surface for",
+        shown(word_key("model", offsetof(M, model), 0, kModels), "Model", "what `path` takes the surface for",
               "`lambert` scatters evenly, `conductor` is a metal, `dielectric` is glass or water; `gltf` has the layers of "
               "glTF; `unlit` shows its colour and neither gets nor gives light; `whitted` is the mixture below; others are "
               "plugins'"),
@@ -157,6 +157,7 @@ namespace {
 struct Tables {
     std::mutex mutex;
     std::deque<std::vector<Key>> all{make_keys()};
+    std::deque<std::vector<const char*>> words;  // of the key `model` in these tables
     std::atomic<const std::vector<Key>*> last{&all.back()};
 };
 Tables& tables() {
@@ -183,8 +184,14 @@ void change_table(const std::function<void(std::vector<Key>&)>& change) {
 }  // namespace
 
 void add_model_word(rt_u32 model, const char* word) {
-    models[model] = word;
-    change_table([&](std::vector<Key>& keys) { keys.front().max = model; });
+    change_table([&](std::vector<Key>& keys) {
+        const auto key = std::find_if(keys.begin(), keys.end(), [](const Key& k) { return k.offset == offsetof(M, model); });
+        std::vector<const char*>& words = tables().words.emplace_back(key->words, key->words + model);
+        words.push_back(word);
+        words.push_back(nullptr);
+        key->words = words.data();
+        key->max = model;
+    });
 }
 
 void add_material_keys(const std::vector<Key>& more) {

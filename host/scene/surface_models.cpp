@@ -3,6 +3,7 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <stdexcept>
 
 #include "scene/material_keys.hpp"
 
@@ -83,7 +84,9 @@ Problem add_surface_model(const rt_plugin& plugin, const rt_surface& surface) {
 
 void number_surface_models(const std::vector<std::string>& ids) {
     const std::lock_guard<std::mutex> lock(known().mutex);
-    for (const std::string& id : ids) numbered(id);
+    for (size_t i = 0; i < ids.size(); ++i)
+        if (const SurfaceModel* model = numbered(ids[i]); !model || model->number != RT_MODEL_KINDS + i)
+            throw std::logic_error("models of surfaces get numbers of another process before any is added");
 }
 
 std::vector<std::string> surface_model_ids() {

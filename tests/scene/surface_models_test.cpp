@@ -49,6 +49,7 @@ TEST(SurfaceModels, KeysBelongToTheirModel) {
     const Problem taken = add_surface_model(other, {sizeof(rt_surface), 1, kTaken, {"other.cl", "x"}});
     EXPECT_NE(taken.text().find("'roughness' is one of all materials"), std::string::npos) << taken.text();
     EXPECT_TRUE(add_surface_model(plugin, {sizeof(rt_surface), 1, kKeys, {"velvet.cl", "x"}})) << "its keys have changed";
+    EXPECT_THROW(number_surface_models({"other"}), std::logic_error) << "it would get another number than it has elsewhere";
 }
 
 }  // namespace
