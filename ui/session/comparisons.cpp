@@ -35,9 +35,13 @@ bool same_view(const View& a, const View& b) {
            same_edited_sky(a.sky, b.sky) && same_bytes(a.lights, b.lights) && same_bytes(a.materials, b.materials);
 }
 
+// What of a request does not count here only says how it is prepared, or belongs to the files, of which a change has a
+// revision.
+static_assert(has_member_count<PrepareRequest, 11> && has_member_count<Side, 2>,
+              "a new member is compared here, filled in by Session::desired_request() and taken back by cancel()");
+
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b) {
-    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose) && a.instances == b.instances && a.maps == b.maps &&
-           a.apart == b.apart;
+    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose) && same_edits(a, b) && a.apart == b.apart;
 }
 
 bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b) {

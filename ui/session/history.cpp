@@ -19,6 +19,8 @@ void compare_sides(const Side& a, const Side& b, const char* which, std::vector<
 }
 
 std::vector<std::string> differences(const DesiredState& a, const DesiredState& b) {
+    static_assert(has_member_count<DesiredState, 18> && has_member_count<ObjectEdits, 2> && has_member_count<InstanceEdits, 3>,
+                  "what undo takes back has a name here; restore() keeps the rest");
     std::vector<std::string> names;
     compare_sides(a.main, b.main, "", names);
     if (a.other.has_value() != b.other.has_value())

@@ -64,13 +64,13 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
         if (const rt_plugin* accel = plugins_.accel(desired.main.settings.accel))
             desired.main.settings.accel_params = default_parameters(*accel);
     if (!options.scenes.empty()) open(options.scenes);
-    pictures_ = pictures_of(first_edits_);
+    asked_.pictures = pictures_of(first_edits_);
 }
 
 void Session::open(std::vector<std::string> files) {
-    files_ = std::move(files);
-    files_revision_ = ++last_files_revision_;
-    pictures_.clear();
+    asked_.files = std::move(files);
+    asked_.files_revision = ++last_files_revision_;
+    asked_.pictures.clear();
     waiting_edits_.clear();
 }
 
@@ -113,18 +113,15 @@ void Session::cancel() {
         back(*desired.other, *was.other);
     else
         desired.other = was.other;
-    desired.instances = was.instances;
-    desired.maps = was.maps;
+    static_cast<ObjectEdits&>(desired) = was;
     apart_ = was.apart;
     playback_.rest(desired);
     if (was.pose.time_s) {
         if (was.pose.clip != desired.pose.clip) playback_.choose(desired, was.pose.clip);
         desired.pose = was.pose;
     }
-    files_ = was.files;
-    pictures_ = was.pictures;
+    asked_ = was;
     waiting_edits_.clear();
-    files_revision_ = was.files_revision;
     // The prepared scene already has these settings, so there is nothing to request, unless its devices were closed meanwhile.
     posted_request_.reset();
     if (was_withdrawn) return;
@@ -151,9 +148,7 @@ void Session::follow_main() {
 
 PrepareRequest Session::desired_request() const {
     PrepareRequest request;
-    request.files = files_;
-    request.pictures = pictures_;
-    request.files_revision = files_revision_;
+    static_cast<SceneFiles&>(request) = asked_;
     request.camera = first_camera_;
     request.light = first_light_;
     request.main = desired.main;
@@ -162,9 +157,8 @@ PrepareRequest Session::desired_request() const {
     ask_for_guides(request.main.settings);
     if (request.other) ask_for_guides(request.other->settings);
     // Indices of instances and names of clips are only valid in the scene that they were chosen in.
-    if (files_revision_ == viewed_files_revision_) {
-        request.instances = desired.instances;
-        request.maps = desired.maps;
+    if (asked_.files_revision == viewed_files_revision_) {
+        static_cast<ObjectEdits&>(request) = desired;
         request.apart = apart_;
         if (desired.pose.time_s) request.pose = desired.pose;
         add_optics(request);
@@ -227,8 +221,7 @@ void Session::post_frame() {
     const bool first = !posted_job_.ready;
     const bool moved = !first && (!same_view(job.view, posted_job_.view) ||
                                   !same_pose(job.ready->request.pose, posted_job_.ready->request.pose) ||
-                                  job.ready->request.instances != posted_job_.ready->request.instances ||
-                                  job.ready->request.maps != posted_job_.ready->request.maps);
+                                  !same_edits(job.ready->request, posted_job_.ready->request));
     const double now = now_s();
     if (moved) moved_at_s_ = now;
     moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
@@ -295,10 +288,8 @@ void Session::take_outcomes() {
                 if (outcome.files_failed && ready_) {
                     // The worker keeps the old files by itself. A new request would remove the message.
                     const bool asked = is_posted(desired_request());
-                    files_ = ready_->loaded->files;
-                    pictures_ = ready_->loaded->pictures;
+                    asked_ = *ready_->loaded;
                     waiting_edits_.clear();
-                    files_revision_ = ready_->loaded->files_revision;
                     if (asked) posted_request_ = desired_request();
                 }
                 break;

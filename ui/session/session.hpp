@@ -187,13 +187,12 @@ class Session {
     std::vector<Word> first_edits_;
     PoseTime first_pose_;
     const std::shared_ptr<const FloatImage> reference_;  // ViewOptions::reference
-    std::vector<std::string> files_;                     // of the scene that was asked for
-    uint64_t files_revision_ = 0, last_files_revision_ = 0;
+    SceneFiles asked_;                                   // of the scene that was asked for
+    uint64_t last_files_revision_ = 0;
     std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
     uint64_t viewed_files_revision_ = 0;            // the scene that gave `desired` its camera and lights
     uint64_t reread_files_revision_ = 0;            // the same files read by a rebuilt importer: the camera stays
     uint64_t pictures_revision_ = 0;                // the same files, read again for pictures alone: undo stays, too
-    std::vector<PictureFile> pictures_;             // that the user gave to materials of files_
     std::vector<Word> waiting_edits_;               // for pictures that are being read
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;

@@ -41,17 +41,17 @@ void Session::take_libraries() {
         kernels_ = std::make_unique<KernelWatch>(plugins_.accels(), wake_);
         seen_kernels_ = 0;
     }
-    if (importers && !files_.empty()) reopen();
+    if (importers && !asked_.files.empty()) reopen();
 }
 
 // Reads the same files again: camera, time and edits stay.
 void Session::reopen() {
-    const std::vector<PictureFile> pictures = pictures_;
+    const std::vector<PictureFile> pictures = asked_.pictures;
     const std::vector<Word> waiting = waiting_edits_;
-    open(files_);
-    pictures_ = pictures;
+    open(asked_.files);
+    asked_.pictures = pictures;
     waiting_edits_ = waiting;
-    reread_files_revision_ = files_revision_;
+    reread_files_revision_ = asked_.files_revision;
 }
 
 bool Session::waits_for_picture(const Word& word) {
@@ -59,16 +59,16 @@ bool Session::waits_for_picture(const Word& word) {
     if (picture.path.empty() || !ready_) return false;
     const auto is_known = [&](const PictureFile& known) { return known == picture; };
     const std::vector<PictureFile>& read = ready_->loaded->pictures;
-    if (std::any_of(read.begin(), read.end(), is_known) && ready_->loaded->files_revision == files_revision_) {
+    if (std::any_of(read.begin(), read.end(), is_known) && ready_->loaded->files_revision == asked_.files_revision) {
         // Unless it could not be read then.
         const std::string name = picture_name(picture.path);
         const std::vector<std::string>& names = ready_->loaded->scene->texture_names;
         if (std::find(names.begin(), names.end(), name) != names.end()) return false;
     }
-    if (std::none_of(pictures_.begin(), pictures_.end(), is_known)) pictures_.push_back(picture);
+    if (std::none_of(asked_.pictures.begin(), asked_.pictures.end(), is_known)) asked_.pictures.push_back(picture);
     waiting_edits_.push_back(word);
     reopen();
-    pictures_revision_ = files_revision_;
+    pictures_revision_ = asked_.files_revision;
     return true;
 }
 
@@ -84,7 +84,7 @@ void Session::take_scene_files() {
     if (!scene_files_ || scene_files_->revision() == seen_scene_files_) return;
     seen_scene_files_ = scene_files_->revision();
     log(LogLevel::info, "changed: " + scene_files_->last_changed().front());
-    if (files_revision_ == viewed_files_revision_ || files_revision_ == reread_files_revision_) reopen();
+    if (asked_.files_revision == viewed_files_revision_ || asked_.files_revision == reread_files_revision_) reopen();
 }
 
 void Session::watch_scene_files() {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/members.hpp"
 #include "scene/motion/pose_time.hpp"
 #include "ui/threads/picture_part.hpp"
 #include "view/edit/edit.hpp"
@@ -26,7 +27,20 @@ struct Side {
     Settings settings;
 };
 
-struct DesiredState {
+// What the user has changed of a scene's objects.
+struct ObjectEdits {
+    InstanceEdits instances;  // moved and hidden
+    MapEdits maps;            // other textures of materials
+    template <class Self>
+    static auto members(Self& self) {
+        return std::tie(self.instances, self.maps);
+    }
+};
+inline bool same_edits(const ObjectEdits& a, const ObjectEdits& b) {
+    return members_of(a) == members_of(b);
+}
+
+struct DesiredState : ObjectEdits {
     Side main;
     // A second picture of the same view, for comparison. Size, samples, AOV and tone mapping follow `main`.
     std::optional<Side> other;
@@ -35,8 +49,6 @@ struct DesiredState {
     std::array<float, 3> background{}, ambient{};
     std::optional<SkyValues> sky;           // the edited sky; empty: that of the scene
     std::vector<MaterialValues> materials;  // the edited materials; empty: those of the scene
-    InstanceEdits instances;                // moved and hidden
-    MapEdits maps;                          // other textures of materials
     PoseTime pose;                    // when the scene is shown; its clip is the chosen one even while the scene is at rest
     CameraPath camera_path;           // the camera is there when the time changes
     std::array<double, 2> loop{};     // the seconds of the clip that are played, again and again

@@ -233,9 +233,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     auto ready = std::make_shared<Ready>();
     ready->request = request;
     ready->request.main.device = main_.choice;
-    ready->request.files = loaded_->files;
-    ready->request.pictures = loaded_->pictures;
-    ready->request.files_revision = loaded_->files_revision;
+    static_cast<SceneFiles&>(ready->request) = *loaded_;
     ready->request.instances = shown_.instances();
     ready->request.maps = shown_.maps();
     ready->request.apart = shown_.asked_apart();
@@ -368,9 +366,7 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     loaded->scene = std::make_shared<const Scene>(import::import_scene(plugins_, request.files, options, progress));
     loaded->import_ms = ms_since(begin);
     scene_edits(*loaded->scene, {});  // a file with an edit that cannot be made is not loaded
-    loaded->files = request.files;
-    loaded->pictures = request.pictures;
-    loaded->files_revision = request.files_revision;
+    static_cast<SceneFiles&>(*loaded) = request;
     loaded->bounds = loaded->scene->bounds();
     loaded->placed_triangles = loaded->scene->placed_triangle_count();
     const float aspect = static_cast<float>(request.main.settings.width) / static_cast<float>(request.main.settings.height);

@@ -15,16 +15,18 @@
 
 namespace clarity::ui {
 
-// Everything that a picture needs besides the view and the settings of a frame.
-struct PrepareRequest {
+// The files of a scene.
+struct SceneFiles {
     std::vector<std::string> files;
-    std::vector<PictureFile> pictures;  // that are read with them
+    std::vector<PictureFile> pictures;  // that are read with them: the user gave them to materials
     uint64_t files_revision = 0;        // the files are imported (again) when it changes
-    std::string camera, light;          // as on the command line; for the first view of newly imported files
+};
+
+// Everything that a picture needs besides the view and the settings of a frame.
+struct PrepareRequest : SceneFiles, ObjectEdits {
+    std::string camera, light;  // as on the command line; for the first view of newly imported files
     Side main;
     std::optional<Side> other;
-    InstanceEdits instances;       // moved and hidden
-    MapEdits maps;                 // other textures of materials
     std::vector<rt_u32> apart;     // instances that are about to be moved: ascending
     uint64_t kernel_revision = 0;  // the kernels are read (again) when it changes
     PoseTime pose;
@@ -34,11 +36,8 @@ struct PrepareRequest {
 };
 
 // An imported scene, with facts for the window. They are computed on the worker thread, so that the window does not wait.
-struct ImportedScene {
+struct ImportedScene : SceneFiles {
     std::shared_ptr<const Scene> scene;
-    std::vector<std::string> files;
-    std::vector<PictureFile> pictures;
-    uint64_t files_revision = 0;
     Bounds bounds;
     uint64_t placed_triangles = 0;
     double import_ms = 0;
