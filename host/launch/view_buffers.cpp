@@ -21,6 +21,46 @@ void check_materials(const Scene& scene, const std::vector<MaterialValues>& mate
                                           std::to_string(scene.textures.size()));
 }
 
+bool same(bool a, bool b) {
+    return a == b;
+}
+bool same(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+    return a == b;
+}
+bool same(const SkyValues& a, const SkyValues& b) {
+    return same_sky(a, b);
+}
+bool same(const SharedArray<float>& a, const SharedArray<float>& b) {
+    return a.shares(b);
+}
+bool same(const std::weak_ptr<const AccelData>& a, const std::shared_ptr<const AccelData>& b) {
+    return a.lock() == b;
+}
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
+}
+// Of each material the map of its emission.
+bool same(const std::vector<rt_u32>& a, const std::vector<Material>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](rt_u32 map, const Material& material) { return map == material.maps[RT_MAP_EMISSION]; });
+}
+template <class T, class Now>
+void assign(T& was, const Now& now) {
+    was = now;
+}
+void assign(std::vector<rt_u32>& was, const std::vector<Material>& now) {
+    was.clear();
+    for (const Material& material : now) was.push_back(material.maps[RT_MAP_EMISSION]);
+}
+// Whether `was` is as `now`, as which it is afterwards.
+template <class T, class Now>
+bool keep(T& was, const Now& now) {
+    if (same(was, now)) return true;
+    assign(was, now);
+    return false;
+}
+
 }  // namespace
 
 void ViewBuffers::write(Queue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
@@ -45,18 +85,16 @@ void ViewBuffers::write(Queue& queue, const Scene& scene, const DeviceScene& on_
 
 void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel,
                                  const View& view, const Settings& settings, const DeviceScene* moved) {
+    EmittersOf& of = emitters_of_;
+    static_assert(has_member_count<EmittersOf, 9>, "each is compared and kept here");
     const bool tree = has_light_tree(settings);
-    const auto same = [](const auto& a, const auto& b) {
-        return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
-    };
-    if (emitters_.get()() && emitters_of_.accel.lock() == accel && same(emitters_of_.lights, view.lights) &&
-        same(emitters_of_.materials, view.materials) && emitters_of_.background == view.background &&
-        same_sky(emitters_of_.sky, sky_of(scene, view)) && sky_of_.shares(scene.sky.texels) &&
-        same(emitters_of_.maps, scene.maps) && emitters_of_.tree == tree &&
-        std::equal(emitters_of_.emission_maps.begin(), emitters_of_.emission_maps.end(), scene.materials.begin(),
-                   scene.materials.end(),
-                   [](rt_u32 map, const Material& material) { return map == material.maps[RT_MAP_EMISSION]; }))
-        return;
+    // Without short cuts: all are kept.
+    const bool same = keep(of.accel, accel) & keep(of.lights, view.lights) & keep(of.materials, view.materials) &
+                      keep(of.background, view.background) & keep(of.sky, sky_of(scene, view)) &
+                      keep(of.sky_texels, scene.sky.texels) & keep(of.maps, scene.maps) &
+                      keep(of.emission_maps, scene.materials) & keep(of.tree, tree);
+    if (same && has_emitters_) return;
+    has_emitters_ = false;  // until it is made
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
         static const rt_emitter nothing{};  // kernels get no empty buffers
         if (from.empty())
@@ -87,8 +125,7 @@ void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::sh
     upload(emitter_runs_, table.runs);
     if (tree) upload(light_nodes_, table.nodes);
     lighting_.write(queue, &table.lighting, sizeof table.lighting);
-    emitters_of_ = {accel, view.lights, view.materials, view.background, sky_of(scene, view), scene.maps, {}, tree};
-    for (const Material& material : scene.materials) emitters_of_.emission_maps.push_back(material.maps[RT_MAP_EMISSION]);
+    has_emitters_ = true;
 }
 
 void UploadedBuffer::write(Queue& queue, const void* data, size_t bytes) {

@@ -42,19 +42,20 @@ class ViewBuffers {
     // whether there is a light tree.
     void write_emitters(Queue& queue, const Scene& scene, const std::shared_ptr<const AccelData>& accel, const View& view,
                         const Settings& settings, const DeviceScene* moved = nullptr);
-    void forget_emitters() { emitters_of_ = {}; }
+    void forget_emitters() { has_emitters_ = false; }
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets `frame` and the scene's arguments of the kernel.
     void bind(const DeviceScene& scene, KernelArguments& kernel) const;
 
  private:
-    // What the table of emitters was made from.
+    // What the table of emitters is made from.
     struct EmittersOf {
         std::weak_ptr<const AccelData> accel;
         std::vector<rt_light> lights;
         std::vector<MaterialValues> materials;
         std::array<float, 3> background{};
         SkyValues sky;
+        SharedArray<float> sky_texels;
         std::vector<rt_map> maps;           // an edit of textures keeps the structure
         std::vector<rt_u32> emission_maps;  // of each material
         bool tree = false;
@@ -64,6 +65,7 @@ class ViewBuffers {
     std::vector<rt_material> plain_materials_;  // these two are kept for their memory: frames allocate nothing
     std::vector<rt_layers> material_layers_;
     EmittersOf emitters_of_;
+    bool has_emitters_ = false;  // the table was made from these
     SharedArray<float> sky_of_;  // the picture that sky_ was made from
     SkyTable sky_;
     std::vector<unsigned char> frames_and_rows_;
