@@ -160,30 +160,56 @@ void note_used_materials(Scene& scene) {
     note(scene.spheres), note(scene.polygons), note(scene.planes), note(scene.shapes);
 }
 
-PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
-    if (prim < 0) return {};
-    uint64_t left = static_cast<uint64_t>(prim);
-    for (size_t i = 0; i < scene.instances.size(); ++i) {
-        const Instance& instance = scene.instances[i];
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        if (left < mesh.triangle_count) {
-            const rt_u32 triangle = mesh.first_triangle + static_cast<rt_u32>(left);
-            const rt_u32 material = instance.material == RT_NONE ? scene.triangle_materials[triangle] : instance.material;
-            return {PrimPlace::Kind::triangle, triangle, static_cast<rt_u32>(i), material};
-        }
-        left -= mesh.triangle_count;
-    }
-    const auto among = [&](const auto& all, PrimPlace::Kind kind, PrimPlace& place) {
-        if (left >= all.size()) {
-            left -= all.size();
-            return false;
-        }
-        place = {kind, static_cast<rt_u32>(left), RT_NONE, all[left].material};
-        return true;
+PrimNumbers::PrimNumbers(const Scene& scene) {
+    static_assert(slot(PrimPlace::Kind::shape) == kKinds - 1, "all kinds are added here");
+    uint64_t next = 0;
+    const auto add = [&](uint64_t count) {
+        first_.push_back(next);
+        next += count;
     };
+    first_.reserve(scene.instances.size() + kKinds + 1);
+    for (const Instance& instance : scene.instances) add(scene.meshes[instance.mesh].triangle_count);
+    for (const size_t count : {scene.spheres.size(), scene.polygons.size(), scene.planes.size(), scene.shapes.size()})
+        add(count);
+    first_.push_back(next);
+}
+
+PrimPlace PrimNumbers::place(rt_i32 prim) const {
+    if (prim < 0 || uint64_t(prim) >= count()) return {};
+    const size_t at = size_t(std::upper_bound(first_.begin(), first_.end(), uint64_t(prim)) - first_.begin()) - 1;
     PrimPlace place;
-    among(scene.spheres, PrimPlace::Kind::sphere, place) || among(scene.polygons, PrimPlace::Kind::polygon, place) ||
-        among(scene.planes, PrimPlace::Kind::plane, place) || among(scene.shapes, PrimPlace::Kind::shape, place);
+    place.index = static_cast<rt_u32>(uint64_t(prim) - first_[at]);
+    if (at < instance_count())
+        place.kind = PrimPlace::Kind::triangle, place.instance = static_cast<rt_u32>(at);
+    else
+        place.kind = PrimPlace::Kind(at - instance_count() + size_t(PrimPlace::Kind::sphere));
+    return place;
+}
+
+PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
+    PrimPlace place = PrimNumbers(scene).place(prim);
+    switch (place.kind) {
+        case PrimPlace::Kind::none:
+            break;
+        case PrimPlace::Kind::triangle: {
+            const Instance& instance = scene.instances[place.instance];
+            place.index += scene.meshes[instance.mesh].first_triangle;
+            place.material = instance.material == RT_NONE ? scene.triangle_materials[place.index] : instance.material;
+            break;
+        }
+        case PrimPlace::Kind::sphere:
+            place.material = scene.spheres[place.index].material;
+            break;
+        case PrimPlace::Kind::polygon:
+            place.material = scene.polygons[place.index].material;
+            break;
+        case PrimPlace::Kind::plane:
+            place.material = scene.planes[place.index].material;
+            break;
+        case PrimPlace::Kind::shape:
+            place.material = scene.shapes[place.index].material;
+            break;
+    }
     return place;
 }
 

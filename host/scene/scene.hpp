@@ -244,13 +244,31 @@ void note_used_materials(Scene& scene);
 // The next smaller picture of a texture's picture or of one of its smaller ones, which follows it in the texels.
 rt_texture smaller_picture(const rt_texture& picture);
 
-// The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres,
-// polygons, planes and shapes.
+// The object to which a number of `prim` belongs.
 struct PrimPlace {
     enum class Kind { none, triangle, sphere, polygon, plane, shape } kind = Kind::none;
     rt_u32 index = 0;           // within its kind; a triangle's index counts in Scene::triangles
     rt_u32 instance = RT_NONE;  // of a triangle; RT_NONE for other kinds
     rt_u32 material = RT_NONE;
+};
+// The numbers of a scene's primitives: those of the triangles of all instances in order, then of the other kinds in the order
+// of PrimPlace::Kind. All others ask here, so that the order stands nowhere else.
+class PrimNumbers {
+ public:
+    PrimNumbers() = default;
+    explicit PrimNumbers(const Scene& scene);
+    // That of the first triangle of an instance, and of the first primitive of another kind.
+    uint64_t first_of_instance(size_t instance) const { return first_[instance]; }
+    uint64_t first(PrimPlace::Kind kind) const { return first_[instance_count() + slot(kind)]; }
+    uint64_t count() const { return first_.back(); }
+    // Kind and index, and the instance of a triangle, whose index counts within the instance.
+    PrimPlace place(rt_i32 prim) const;
+
+ private:
+    static constexpr size_t kKinds = 4;  // with numbers behind those of the triangles
+    static constexpr size_t slot(PrimPlace::Kind kind) { return size_t(kind) - size_t(PrimPlace::Kind::sphere); }
+    size_t instance_count() const { return first_.size() - kKinds - 1; }
+    std::vector<uint64_t> first_;  // of instances, of kinds, and the number of all
 };
 PrimPlace place_of_prim(const Scene& scene, rt_i32 prim);
 

@@ -104,7 +104,7 @@ Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, 
     return bounds;
 }
 
-void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+void add_spheres(const Scene& scene, rt_u32 run, rt_u32 first_prim, uint64_t& at, BuildScene& out) {
     for (size_t i = 0; i < scene.spheres.size(); ++i) {
         const Sphere& sphere = scene.spheres[i];
         rt_packed_prim leaf{};
@@ -112,7 +112,7 @@ void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at
         std::memcpy(leaf.a, sphere.center.data(), sizeof leaf.a);
         leaf.b[0] = sphere.radius;
         leaf.material = sphere.material;
-        leaf.prim = next_prim++;
+        leaf.prim = first_prim + static_cast<rt_u32>(i);
         rt_prim prim = box_of(out, leaf);
         prim.mesh = run;
         grow(out.bounds, prim);
@@ -121,7 +121,7 @@ void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at
     }
 }
 
-void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+void add_polygons(const Scene& scene, rt_u32 run, rt_u32 first_prim, uint64_t& at, BuildScene& out) {
     for (size_t i = 0; i < scene.polygons.size(); ++i) {
         const Polygon& polygon = scene.polygons[i];
         const float* corners = &scene.polygon_corners[3 * size_t(polygon.first_corner)];
@@ -143,7 +143,7 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
         }
         leaf.ref = RT_REF_POLYGON | static_cast<rt_u32>(i);
         leaf.material = polygon.material;
-        leaf.prim = next_prim++;
+        leaf.prim = first_prim + static_cast<rt_u32>(i);
         out.polygon_table.push_back({static_cast<rt_u32>(out.polygon_corners.size() / 3), polygon.corner_count});
         out.polygon_corners.insert(out.polygon_corners.end(), corners, corners + 3 * size_t(polygon.corner_count));
         rt_prim prim = box_of(out, leaf);
@@ -202,8 +202,9 @@ Bounds bounds_of(const BuildScene& scene, rt_u32 group) {
 // Kernels of shapes compute a point's height above the surface with about this many roundings of numbers of the shape's size.
 constexpr float kShapeRoundings = 16;
 
-void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
-    for (const Shape& placed : scene.shapes) {
+void add_shapes(const Scene& scene, rt_u32 run, rt_u32 first_prim, uint64_t& at, BuildScene& out) {
+    for (size_t s = 0; s < scene.shapes.size(); ++s) {
+        const Shape& placed = scene.shapes[s];
         Affine inverse;
         if (!invert(placed.world_from_object, inverse)) throw Error(Exit::failed, "a shape is placed without volume");
         for (rt_u32 i = 0; i < placed.part_count; ++i) {
@@ -228,13 +229,12 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
             std::copy_n(prim.hi, 3, leaf.b);
             leaf.ref = prim.ref;
             leaf.material = placed.material;
-            leaf.prim = next_prim;
+            leaf.prim = first_prim + static_cast<rt_u32>(s);
             grow(out.bounds, prim);
             out.shape_leaves.push_back(leaf);
             out.shapes.push_back(shape);
             out.prims[at++] = prim;
         }
-        ++next_prim;
     }
 }
 
@@ -389,18 +389,19 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         }
     out.first_ref_of_group[0] = next_ref;
     uint64_t at = 0;
-    rt_u32 next_prim = 0;
+    const PrimNumbers numbers(scene);
     std::vector<rt_prim> instance_prims;
     std::vector<Bounds> group_boxes(grouping.group_count);
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
+        const auto first_prim = static_cast<rt_u32>(numbers.first_of_instance(i));
         if (!grouping.built[i]) {
             // It only keeps its range of primitive numbers.
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
             if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));
-            add(add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, next_prim,
+            add(add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, first_prim,
                               next_ref, static_cast<rt_u32>(i), at, out),
                 out.bounds);
             next_ref += mesh.triangle_count;
@@ -408,7 +409,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         } else {
             rt_instance placed{};
             std::memcpy(placed.object_from_world, inverse[i].data(), sizeof placed.object_from_world);
-            placed.first_prim = next_prim;
+            placed.first_prim = first_prim;
             placed.material = instance.material;
             placed.hidden = hidden_from(instance, instance.visible);
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
@@ -430,22 +431,23 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             out.group_of_instance.push_back(group);
             out.world_from_object.push_back(instance.world_from_object);
         }
-        next_prim += mesh.triangle_count;
         if (!progress.report(-1)) throw Cancelled();
     }
     for (const rt_prim& prim : instance_prims) out.prims[at++] = prim;
     const rt_u32 runs = static_cast<rt_u32>(scene.instances.size());
-    add_spheres(scene, runs, next_prim, at, out);
-    add_polygons(scene, runs + 1, next_prim, at, out);
-    for (const Plane& plane : scene.planes) {
+    const auto first = [&](PrimPlace::Kind kind) { return static_cast<rt_u32>(numbers.first(kind)); };
+    add_spheres(scene, runs, first(PrimPlace::Kind::sphere), at, out);
+    add_polygons(scene, runs + 1, first(PrimPlace::Kind::polygon), at, out);
+    for (size_t i = 0; i < scene.planes.size(); ++i) {
+        const Plane& plane = scene.planes[i];
         rt_plane p{};
         std::memcpy(p.normal, plane.normal.data(), sizeof p.normal);
         p.offset = plane.offset;
         p.material = plane.material;
-        p.prim = next_prim++;
+        p.prim = first(PrimPlace::Kind::plane) + static_cast<rt_u32>(i);
         out.planes.push_back(p);
     }
-    add_shapes(scene, runs + 2, next_prim, at, out);
+    add_shapes(scene, runs + 2, first(PrimPlace::Kind::shape), at, out);
     return out;
 }
 

@@ -83,7 +83,7 @@ double hit_triangle(const float* corners, const Ray& ray, double slack, double w
 }
 
 Primitives::Primitives(const Scene& scene)
-    : scene_(scene), corners_(world_corners(scene)), triangle_count_(static_cast<int>(corners_.size() / 9)) {}
+    : scene_(scene), numbers_(scene), corners_(world_corners(scene)), triangle_count_(static_cast<int>(corners_.size() / 9)) {}
 
 Vec Primitives::polygon_normal(const Polygon& polygon) const {
     const float* corners = &scene_.polygon_corners[3 * size_t(polygon.first_corner)];
@@ -115,10 +115,12 @@ double Primitives::hit_polygon(const Polygon& polygon, const Ray& ray) const {
 double Primitives::distance(int prim, const Ray& ray, double slack) const {
     if (prim < 0) return INFINITY;
     if (prim < triangle_count_) return hit_triangle(corners(prim), ray, slack);
-    auto i = static_cast<size_t>(prim - triangle_count_);
-    if (i < scene_.spheres.size()) return hit_sphere(to_vec(scene_.spheres[i].center), scene_.spheres[i].radius, ray);
-    if ((i -= scene_.spheres.size()) < scene_.polygons.size()) return hit_polygon(scene_.polygons[i], ray);
-    if ((i -= scene_.polygons.size()) >= scene_.planes.size()) return INFINITY;
+    const PrimPlace place = numbers_.place(prim);
+    const size_t i = place.index;
+    if (place.kind == PrimPlace::Kind::sphere)
+        return hit_sphere(to_vec(scene_.spheres[i].center), scene_.spheres[i].radius, ray);
+    if (place.kind == PrimPlace::Kind::polygon) return hit_polygon(scene_.polygons[i], ray);
+    if (place.kind != PrimPlace::Kind::plane) return INFINITY;
     const Plane& plane = scene_.planes[i];
     const Vec n = to_vec(plane.normal);
     const double t = (plane.offset - dot(n, ray.origin)) / dot(n, ray.direction);
@@ -126,7 +128,7 @@ double Primitives::distance(int prim, const Ray& ray, double slack) const {
 }
 
 Truth Primitives::nearest(const Ray& ray, int first) const {
-    const size_t end = size_t(triangle_count_) + scene_.spheres.size() + scene_.polygons.size() + scene_.planes.size();
+    const uint64_t end = numbers_.first(PrimPlace::Kind::shape);
     Truth best;
     for (int i = first; i < static_cast<int>(end); ++i) {
         const double t = distance(i, ray, 0);

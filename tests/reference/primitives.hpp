@@ -57,6 +57,7 @@ class Primitives {
     double hit_polygon(const Polygon& polygon, const Ray& ray) const;
 
     const Scene& scene_;
+    const PrimNumbers numbers_;
     std::vector<float> corners_;  // 9 floats per triangle
     int triangle_count_;
 };

@@ -291,7 +291,7 @@ TEST(SceneRows, ListOpenAndFoundScenes) {
     EXPECT_EQ(row_name(*scene, RowKind::instance, 0), "trunk");
     EXPECT_EQ(row_name(*scene, RowKind::sphere, 2), "sphere 2");
     EXPECT_TRUE(rows.update(scene, "nothing has this name", open).empty());
-    EXPECT_EQ(first_prims(*scene).back(), 18u * 2 + 2 * 5);
+    EXPECT_EQ(PrimNumbers(*scene).first(PrimPlace::Kind::sphere), 18u * 2 + 2 * 5);
     EXPECT_TRUE(rows.update(nullptr, "", open).empty());
 }
 
@@ -311,18 +311,18 @@ TEST(SceneRows, SpheresPolygonsPlanesAndShapesAreThePrimitivesThatRaysHit) {
     EXPECT_EQ(row_name(*scene, RowKind::shape, 1), "box 1");
     EXPECT_EQ(row_name(*scene, RowKind::shape, 2), "torus 2");
     EXPECT_EQ(row_material(*scene, RowKind::shape, 2), 11u);
-    const uint64_t triangles = first_prims(*scene).back();
+    const PrimNumbers numbers(*scene);
     const std::pair<RowKind, PrimPlace::Kind> kinds[] = {{RowKind::sphere, PrimPlace::Kind::sphere},
                                                          {RowKind::polygon, PrimPlace::Kind::polygon},
                                                          {RowKind::plane, PrimPlace::Kind::plane},
                                                          {RowKind::shape, PrimPlace::Kind::shape}};
     for (const auto& [row, place] : kinds)
         for (size_t i = 0; i < row_count(*scene, row); ++i) {
-            const PrimPlace found = place_of_prim(*scene, row_prim(*scene, triangles, row, i));
+            const PrimPlace found = place_of_prim(*scene, row_prim(numbers, row, i));
             EXPECT_EQ(found.kind, place) << kind_title(row) << ' ' << i;
             EXPECT_EQ(found.index, i) << kind_title(row);
         }
-    EXPECT_EQ(row_prim(*scene, triangles, RowKind::light, 0), -1);
+    EXPECT_EQ(row_prim(numbers, RowKind::light, 0), -1);
     SceneRows rows;
     std::array<bool, kRowKinds> open{};
     open[static_cast<size_t>(RowKind::shape)] = true;

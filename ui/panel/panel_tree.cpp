@@ -19,7 +19,7 @@ struct Tree {
     std::string filter;
     std::array<bool, kRowKinds> open{true, true, true, true, true, false, false, false, false};
     std::shared_ptr<const Scene> scene;
-    std::vector<uint64_t> first_prim;
+    PrimNumbers numbers;
     Selection shown;  // selection that the list was scrolled to last
 };
 Tree tree;
@@ -38,8 +38,8 @@ void title_row(const SceneRow& row, size_t total) {
 rt_u32 material_of(const Scene& scene, const SceneRow& row) {
     return row_material(scene, row.kind, static_cast<size_t>(row.index));
 }
-rt_i32 prim_of(const Scene& scene, const SceneRow& row) {
-    return row_prim(scene, tree.first_prim.back(), row.kind, static_cast<size_t>(row.index));
+rt_i32 prim_of(const SceneRow& row) {
+    return row_prim(tree.numbers, row.kind, static_cast<size_t>(row.index));
 }
 
 bool is_selected(const Session& session, const Scene& scene, const SceneRow& row) {
@@ -56,7 +56,7 @@ bool is_selected(const Session& session, const Scene& scene, const SceneRow& row
         case RowKind::camera:
             return false;
         default:
-            return s.instance < 0 && s.prim >= 0 && s.prim == prim_of(scene, row);
+            return s.instance < 0 && s.prim >= 0 && s.prim == prim_of(row);
     }
 }
 
@@ -71,7 +71,7 @@ void choose(Session& session, const Scene& scene, const SceneRow& row) {
         for (size_t i = 0; i < scene.instances.size(); ++i)
             if (scene.instances[i].mesh == index) return choose(session, scene, {RowKind::instance, static_cast<int>(i), 0});
     } else {
-        session.selection = {row.kind == RowKind::instance ? row.index : -1, prim_of(scene, row),
+        session.selection = {row.kind == RowKind::instance ? row.index : -1, prim_of(row),
                              material == RT_NONE ? -1 : static_cast<rt_i32>(material)};
     }
     tree.shown = session.selection;
@@ -162,7 +162,7 @@ void draw_scene_tree(Session& session, UiState&) {
     const std::shared_ptr<const Scene> scene = ready->loaded->scene;
     if (tree.scene != scene) {
         tree.scene = scene;
-        tree.first_prim = first_prims(*scene);
+        tree.numbers = PrimNumbers(*scene);
         tree.filter.clear();
     }
     const bool some_hidden = !session.desired.instances.hidden.empty();

@@ -67,13 +67,13 @@ rt_u32 row_material(const Scene& scene, RowKind kind, size_t index) {
     }
 }
 
-rt_i32 row_prim(const Scene& scene, uint64_t triangles, RowKind kind, size_t index) {
+rt_i32 row_prim(const PrimNumbers& numbers, RowKind kind, size_t index) {
+    using Kind = PrimPlace::Kind;
+    static_assert(int(RowKind::shape) - int(RowKind::sphere) == int(Kind::shape) - int(Kind::sphere),
+                  "the same kinds in one order");
     if (kind < RowKind::sphere || kind > RowKind::shape) return -1;
-    uint64_t prim = triangles + index;  // then kind after kind, in the order of RowKind
-    if (kind > RowKind::sphere) prim += scene.spheres.size();
-    if (kind > RowKind::polygon) prim += scene.polygons.size();
-    if (kind > RowKind::plane) prim += scene.planes.size();
-    return static_cast<rt_i32>(prim);
+    const auto prims = static_cast<Kind>(int(kind) - int(RowKind::sphere) + int(Kind::sphere));
+    return static_cast<rt_i32>(numbers.first(prims) + index);
 }
 
 rt_u32 instance_material(const Scene& scene, rt_u32 instance) {
@@ -81,13 +81,6 @@ rt_u32 instance_material(const Scene& scene, rt_u32 instance) {
     if (placed.material != RT_NONE) return placed.material;
     const Mesh& mesh = scene.meshes[placed.mesh];
     return mesh.triangle_count > 0 ? scene.triangle_materials[mesh.first_triangle] : RT_NONE;
-}
-
-std::vector<uint64_t> first_prims(const Scene& scene) {
-    std::vector<uint64_t> first(scene.instances.size() + 1);
-    for (size_t i = 0; i < scene.instances.size(); ++i)
-        first[i + 1] = first[i] + scene.meshes[scene.instances[i].mesh].triangle_count;
-    return first;
 }
 
 const std::vector<SceneRow>& SceneRows::update(const std::shared_ptr<const Scene>& scene, const std::string& filter,

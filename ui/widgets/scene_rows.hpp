@@ -24,13 +24,10 @@ const char* kind_title(RowKind kind);
 size_t row_count(const Scene& scene, RowKind kind);
 // The material of a row's object; RT_NONE if it has none.
 rt_u32 row_material(const Scene& scene, RowKind kind, size_t index);
-// The index of a sphere, polygon, plane or shape among all primitives of the scene; -1 for other rows. triangles: those of all
-// instances, first_prims().back().
-rt_i32 row_prim(const Scene& scene, uint64_t triangles, RowKind kind, size_t index);
+// The number of a sphere, polygon, plane or shape among all primitives of the scene; -1 for other rows.
+rt_i32 row_prim(const PrimNumbers& numbers, RowKind kind, size_t index);
 // The material of the instance's first triangle; RT_NONE if it has no triangle.
 rt_u32 instance_material(const Scene& scene, rt_u32 instance);
-// The index of each instance's first triangle among all primitives of the scene, followed by that of the first sphere.
-std::vector<uint64_t> first_prims(const Scene& scene);
 
 // A list of rows which is only made again when its inputs change.
 class SceneRows {

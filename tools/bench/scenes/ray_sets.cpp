@@ -101,48 +101,40 @@ RaySet camera_rays(const Camera& camera, int width, int height) {
     return set;
 }
 
-SurfaceNormals::SurfaceNormals(const Scene& scene) : scene_(scene) {
-    uint64_t at = 0;
-    for (const Instance& instance : scene.instances) {
-        first_prim_.push_back(at);
-        at += scene.meshes[instance.mesh].triangle_count;
-    }
-    first_prim_.push_back(at);
-}
-
 Vec3 SurfaceNormals::at(rt_i32 prim, const Vec3& point) const {
     const Vec3 otherwise{0, 1, 0};
-    uint64_t i = static_cast<uint64_t>(prim);
-    if (i < first_prim_.back()) {
-        const size_t place = std::upper_bound(first_prim_.begin(), first_prim_.end(), i) - first_prim_.begin() - 1;
-        const Instance& instance = scene_.instances[place];
-        const size_t triangle = scene_.meshes[instance.mesh].first_triangle + (i - first_prim_[place]);
-        Vec3 corners[3];
-        for (int c = 0; c < 3; ++c) {
-            const float* p = &scene_.positions[3 * size_t(scene_.triangles[3 * triangle + c])];
-            corners[c] = vec(transform_point(instance.world_from_object, p).data());
+    const PrimPlace place = numbers_.place(prim);
+    switch (place.kind) {
+        case PrimPlace::Kind::triangle: {
+            const Instance& instance = scene_.instances[place.instance];
+            const size_t triangle = scene_.meshes[instance.mesh].first_triangle + size_t(place.index);
+            Vec3 corners[3];
+            for (int c = 0; c < 3; ++c) {
+                const float* p = &scene_.positions[3 * size_t(scene_.triangles[3 * triangle + c])];
+                corners[c] = vec(transform_point(instance.world_from_object, p).data());
+            }
+            return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]), otherwise);
         }
-        return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]), otherwise);
+        case PrimPlace::Kind::sphere:
+            return normalized(point - vec(scene_.spheres[place.index].center.data()), otherwise);
+        case PrimPlace::Kind::polygon: {
+            const Polygon& polygon = scene_.polygons[place.index];
+            const float* corners = &scene_.polygon_corners[3 * size_t(polygon.first_corner)];
+            Vec3 sum{};
+            for (rt_u32 c = 0; c < polygon.corner_count; ++c)
+                sum = sum + cross(vec(corners + 3 * c) - vec(corners),
+                                  vec(corners + 3 * ((c + 1) % polygon.corner_count)) - vec(corners));
+            return normalized(sum, otherwise);
+        }
+        case PrimPlace::Kind::plane:
+            return normalized(vec(scene_.planes[place.index].normal.data()), otherwise);
+        default:
+            return otherwise;
     }
-    i -= first_prim_.back();
-    if (i < scene_.spheres.size()) return normalized(point - vec(scene_.spheres[i].center.data()), otherwise);
-    i -= scene_.spheres.size();
-    if (i < scene_.polygons.size()) {
-        const Polygon& polygon = scene_.polygons[i];
-        const float* corners = &scene_.polygon_corners[3 * size_t(polygon.first_corner)];
-        Vec3 sum{};
-        for (rt_u32 c = 0; c < polygon.corner_count; ++c)
-            sum = sum + cross(vec(corners + 3 * c) - vec(corners),
-                              vec(corners + 3 * ((c + 1) % polygon.corner_count)) - vec(corners));
-        return normalized(sum, otherwise);
-    }
-    i -= scene_.polygons.size();
-    return i < scene_.planes.size() ? normalized(vec(scene_.planes[i].normal.data()), otherwise) : otherwise;
 }
 
 bool SurfaceNormals::is_shape(rt_i32 prim) const {
-    const uint64_t others = first_prim_.back() + scene_.spheres.size() + scene_.polygons.size() + scene_.planes.size();
-    return prim >= 0 && static_cast<uint64_t>(prim) >= others;
+    return numbers_.place(prim).kind == PrimPlace::Kind::shape;
 }
 
 namespace {

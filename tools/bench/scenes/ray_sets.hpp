@@ -58,15 +58,15 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
 // a reference to the scene.
 class SurfaceNormals {
  public:
-    explicit SurfaceNormals(const Scene& scene);
+    explicit SurfaceNormals(const Scene& scene) : scene_(scene), numbers_(scene) {}
     // Unit normal at a point of the primitive, on either side of it; (0, 1, 0) for a primitive without area.
     Vec3 at(rt_i32 prim, const Vec3& point) const;
-    // Shapes come behind all others, and have no normal here.
+    // Shapes have no normal here.
     bool is_shape(rt_i32 prim) const;
 
  private:
     const Scene& scene_;
-    std::vector<uint64_t> first_prim_;  // index of the first triangle of each instance, then their total number
+    const PrimNumbers numbers_;
 };
 
 // 32-bit hash of low bias: Wellons 2018, "Prospecting for Hash Functions".
