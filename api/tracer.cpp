@@ -304,19 +304,19 @@ void clarity_tracer::trace_samples(const Prepared& prepared, const Settings& set
     constexpr double kSamplesMs = 100;
     const auto all = static_cast<unsigned>(settings.spp);
     double wall_ms = 0;
-    uint64_t not_finite = 0, dropped = 0;
+    RayCounts counts;
     for (unsigned done = 0, next = std::min(all, 2u); done < all;) {
         if (!progress.report(float(done) / float(all))) throw Cancelled();
         const FrameStats stats = frames_->trace(prepared, settings, view, Samples(done, next), true, progress);
         wall_ms += stats.wall_ms;
-        not_finite += stats.not_finite;
-        dropped += stats.dropped;
+        counts += stats;
         done += next;
         next =
             std::min(static_cast<unsigned>(std::clamp(kSamplesMs / std::max(wall_ms / done, 1e-3), 1.0, 1024.0)), all - done);
     }
-    if (not_finite > 0) log(LogLevel::error, not_finite_text(not_finite));
-    if (dropped > 0) log(LogLevel::warning, dropped_text(dropped, settings.tracer == "path" ? 0 : settings.ray_slots));
+    if (counts.not_finite > 0) log(LogLevel::error, not_finite_text(counts.not_finite));
+    if (counts.dropped > 0)
+        log(LogLevel::warning, dropped_text(counts.dropped, settings.tracer == "path" ? 0 : settings.ray_slots));
 }
 
 void clarity_tracer::render(const clarity_picture& asked, clarity_picture& picture, Progress& progress) {

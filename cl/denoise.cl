@@ -25,6 +25,9 @@
 /* How far away variances are averaged, in pixels. */
 #define RT_NEAR 2
 
+/* The pixel i of a plane of the film. */
+#define RT_OF_PLANE(plane) film[(plane) * (size_t)pixels + i]
+
 float rt_luminance(const float3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 bool rt_is_broken(const float x) { return (as_uint(x) & 0x7f800000u) == 0x7f800000u; }
 
@@ -73,8 +76,8 @@ kernel void split_light(const global float4 *film, const uint pixels, global flo
 {
     const uint i = (uint)get_global_id(0);
     if (i >= pixels) return;
-    const float4 sum = film[i], rest = film[pixels + i], own = film[2 * (size_t)pixels + i], albedo = film[3 * (size_t)pixels + i],
-                 normal = film[4 * (size_t)pixels + i];
+    const float4 sum = RT_OF_PLANE(RT_PLANE_SUM), rest = RT_OF_PLANE(RT_PLANE_REST), own = RT_OF_PLANE(RT_PLANE_OWN),
+                 albedo = RT_OF_PLANE(RT_PLANE_ALBEDO), normal = RT_OF_PLANE(RT_PLANE_NORMAL);
     const float count = max(sum.w, 1.0f);
     const float3 by = rt_divisor(albedo, count);
     const float3 scattered = (sum.xyz - own.xyz) / count / by;
@@ -169,9 +172,9 @@ kernel void join_light(const global float4 *film, const uint pixels, const globa
 {
     const uint i = (uint)get_global_id(0);
     if (i >= pixels) return;
-    const float4 sum = film[i], filtered = light[i];
+    const float4 sum = RT_OF_PLANE(RT_PLANE_SUM), filtered = light[i];
     const float count = max(sum.w, 1.0f);
-    const float3 own = film[2 * (size_t)pixels + i].xyz / count;
-    const float3 whole = rt_is_broken(filtered.w) ? sum.xyz / count : filtered.xyz * rt_divisor(film[3 * (size_t)pixels + i], count) + own;
+    const float3 own = RT_OF_PLANE(RT_PLANE_OWN).xyz / count;
+    const float3 whole = rt_is_broken(filtered.w) ? sum.xyz / count : filtered.xyz * rt_divisor(RT_OF_PLANE(RT_PLANE_ALBEDO), count) + own;
     out[i] = (float4)(whole, 1.0f);
 }

@@ -297,6 +297,44 @@ typedef struct rt_hit {
     rt_u32 lane_steps; /* sum over the nodes visited: rays that enter the node */
 } rt_hit;
 #define RT_RAY_FIELDS 8u
+
+/* What programs with RT_COUNT_STEPS count, a row each: its name, and what becomes of two counts of one ray.
+ *   MEAN      they are added; a packet whose rays are traced one by one has their mean, rounded up
+ *   SUM       they are added, over the rays of a packet, too
+ *   GREATEST  the greater one stays
+ * The host's helpers count the first ones for a query (RT_HOST_COUNT), for the counter of the hit that stands behind. `own`: as the
+ * structure's traversal reports it. */
+#define RT_HELPER_COUNTERS(ROW) ROW(nodes, MEAN, steps) ROW(boxes, MEAN, boxes) ROW(tests, MEAN, leaf_tests)
+#define RT_HIT_COUNTERS(ROW)                                                                                                   \
+    ROW(steps, MEAN, )     /* nodes visited: by the helpers, else by the traversal */                                          \
+    ROW(leaf_tests, MEAN, )                                                                                                    \
+    ROW(lane_steps, SUM, ) /* rays that enter a node */                                                                        \
+    ROW(boxes, MEAN, )                                                                                                         \
+    ROW(own_steps, MEAN, ) /* of `steps` */                                                                                    \
+    ROW(own_boxes, MEAN, ) /* beside `boxes` */                                                                                \
+    ROW(own_tests, MEAN, ) /* beside `leaf_tests` */                                                                           \
+    ROW(visits, MEAN, )    /* nodes, by the traversal */
+#define RT_COUNTER_MEMBER(name, how, of_hit) rt_u32 name;
+#define RT_COUNTER_ONE(name, how, of_hit) +1u
+#define RT_HIT_COUNTER_COUNT (0u RT_HIT_COUNTERS(RT_COUNTER_ONE))
+
+/* Planes of a film of colours, of a float4 a pixel. All films have the first one, those of `path` the first two (tracers/path/sum.h), and
+ * those with the denoiser's guides all (tracers/path/guides.h). */
+#define RT_PLANE_SUM 0u
+#define RT_PLANE_REST 1u
+#define RT_PLANE_OWN 2u
+#define RT_PLANE_ALBEDO 3u
+#define RT_PLANE_NORMAL 4u
+#define RT_FILM_PLANES 5u
+
+/* Generations of rays that a picture may have. */
+#define RT_MOST_DEPTH 128u
+/* Of the tracer `wavefront`: 32-bit numbers that control a level (a generation, and one that is never traced), and that hold the light
+ * which deferred paths add to a pixel. */
+#define RT_CONTROL 2u
+#define RT_CONTROLS ((RT_MOST_DEPTH + 1u) * RT_CONTROL)
+#define RT_SHARE 6u
+
 /* Numbers of fields of an answer: see ray_blocks.h. */
 #define RT_ANSWER_OCCLUSION 1u
 #define RT_ANSWER_NEAREST 2u

@@ -12,7 +12,7 @@
 #ifdef RT_COUNT_STEPS
 /* What the host's helpers count for a ray, or for a packet. Queries keep it out of the reach of traversals (cl/primitives/query.h). */
 typedef struct rt_counts {
-    uint nodes, boxes, tests;
+    RT_HELPER_COUNTERS(RT_COUNTER_MEMBER)
 } rt_counts;
 #endif
 
@@ -55,9 +55,7 @@ typedef struct rt_hits {
     rt_hit_list *list; /* takes all hits; u to instance have no value */
 #endif
 #ifdef RT_COUNT_STEPS
-    uint steps, leaf_tests, boxes;               /* by the host's helpers; see rt_hit and RayWork */
-    uint lane_steps, visits, own_boxes, own_tests; /* as the traversal reports them */
-    uint own_steps;                              /* of `steps` */
+    RT_HIT_COUNTERS(RT_COUNTER_MEMBER)
 #endif
 #ifdef RT_DEBUG
     uint overflow;
@@ -91,9 +89,42 @@ typedef struct rt_visit {
 #define RT_SEEN_BY(ray, kind)
 #endif
 
+#ifdef RT_COUNT_STEPS
+#define RT_COUNTED_MEAN(a, b) ((a) + (b))
+#define RT_COUNTED_SUM(a, b) ((a) + (b))
+#define RT_COUNTED_GREATEST(a, b) max(a, b)
+#define RT_PACKET_MEAN(before, sum, rays) ((before) + ((sum) - (before) + (rays) - 1u) / (rays))
+#define RT_PACKET_SUM(before, sum, rays) (sum)
+#define RT_PACKET_GREATEST(before, greatest, rays) (greatest)
+/* rt_count_nodes(counts, n) and the like. */
+#define RT_COUNTER_FUNCTION(name, how, of_hit)                                                                                 \
+    RT_INLINE void rt_count_##name(rt_counts *counts, uint n) { counts->name = RT_COUNTED_##how(counts->name, n); }
+RT_HELPER_COUNTERS(RT_COUNTER_FUNCTION)
+#undef RT_COUNTER_FUNCTION
+#define RT_COUNTER_CLEAR(name, how, of_hit) to->name = 0u;
+#define RT_COUNTER_ADD(name, how, of_hit) to->name = RT_COUNTED_##how(to->name, from->name);
+#define RT_COUNTER_OF_PACKET(name, how, of_hit) to->name = RT_PACKET_##how(before->name, to->name, rays);
+RT_INLINE RT_OVERLOADED void rt_clear_counters(rt_hits *to) { RT_HIT_COUNTERS(RT_COUNTER_CLEAR) }
+RT_INLINE RT_OVERLOADED void rt_add_counters(rt_hits *to, const rt_hits *from) { RT_HIT_COUNTERS(RT_COUNTER_ADD) }
+/* The host's counts of a query are in a variable of the query's own, and go to the hit in the end. So they do not depend on what a
+ * traversal writes to the hit. Where none of the host's helpers counted a node, the traversal's own count is taken. */
+#define RT_COUNTER_FINISH(name, how, of_hit) hit->of_hit = RT_COUNTED_##how(before->of_hit, counted->name);
+RT_INLINE void rt_finish_counters(const rt_rays *ray, rt_hits *hit, const rt_hits *before, const rt_counts *counted)
+{
+    RT_HELPER_COUNTERS(RT_COUNTER_FINISH)
+    const uint own = counted->nodes != 0u ? 0u : hit->visits - before->visits;
+    hit->steps += own;
+    hit->own_steps = before->own_steps + own;
+    ((rt_rays *)ray)->counts = 0;
+}
+#else
+#define rt_clear_counters(to) ((void)0)
+#define rt_add_counters(to, from) ((void)0)
+#endif
+
 /* For programs that count; see CONTRACT.md. Other programs do not pay: code that only feeds these macros is dead there. */
 #ifdef RT_COUNT_STEPS
-#define RT_HOST_COUNT(ray, what, n) ((ray)->counts ? (void)((ray)->counts->what += (n)) : (void)0)
+#define RT_HOST_COUNT(ray, what, n) ((ray)->counts ? rt_count_##what((ray)->counts, n) : (void)0)
 #define RT_NODE(ray, node) (RT_HOST_COUNT(ray, nodes, 1u), (node))
 #define RT_COUNT_VISIT(hit, inside) ((hit)->visits++, (hit)->lane_steps += popcount(inside))
 #define RT_COUNT_BOXES(hit, n) ((hit)->own_boxes += (n))

@@ -30,12 +30,20 @@ typedef struct rt_single_hit {
     rt_hits *packet;
     rt_single_hits *lanes;
 #ifdef RT_COUNT_STEPS
-    uint lane_steps, visits, own_boxes, own_tests;
+    RT_HIT_COUNTERS(RT_COUNTER_MEMBER)
 #endif
 #ifdef RT_DEBUG
     uint overflow;
 #endif
 } rt_single_hit;
+
+#ifdef RT_COUNT_STEPS
+RT_INLINE RT_OVERLOADED void rt_clear_counters(rt_single_hit *to) { RT_HIT_COUNTERS(RT_COUNTER_CLEAR) }
+RT_INLINE RT_OVERLOADED void rt_add_counters(rt_hits *to, const rt_single_hit *from) { RT_HIT_COUNTERS(RT_COUNTER_ADD) }
+/* Makes the counts of a packet of those of its rays, which were traced one by one. before: its own, before them. */
+RT_INLINE void rt_finish_packet(rt_hits *to, const rt_hits *before, uint rays) { RT_HIT_COUNTERS(RT_COUNTER_OF_PACKET) }
+RT_INLINE void rt_finish_packet_counts(rt_counts *to, const rt_counts *before, uint rays) { RT_HELPER_COUNTERS(RT_COUNTER_OF_PACKET) }
+#endif
 
 RT_INLINE RT_OVERLOADED int rt_enter_exit(const global float *box, const rt_single_ray *r, const rt_single_hit *h, float *entry,
                                           float *exit)

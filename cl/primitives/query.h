@@ -1,18 +1,4 @@
 /* query.h -- a query of the whole scene: planes first, then the tree of group 0. A template, see CONTRACT.md. */
-/* Programs that count: the host's counts of a query are in a variable of the query's own, and go to the hit in the end. So they do not
- * depend on what a traversal writes to the hit. Where none of the host's helpers counted a node, the traversal's own count is taken. */
-#if defined(RT_COUNT_STEPS) && !defined(RT_FINISH_COUNTS)
-#define RT_FINISH_COUNTS(ray, hit, before, counted)                                                                            \
-    {                                                                                                                          \
-        const uint visits = (hit)->visits - (before).visits;                                                                   \
-        (hit)->steps = (before).steps + ((counted).nodes != 0u ? (counted).nodes : visits);                                    \
-        (hit)->own_steps = (before).own_steps + ((counted).nodes != 0u ? 0u : visits);                                         \
-        (hit)->leaf_tests = (before).leaf_tests + (counted).tests;                                                             \
-        (hit)->boxes = (before).boxes + (counted).boxes;                                                                       \
-        ((rt_rays *)(ray))->counts = 0;                                                                                        \
-    }
-#endif
-
 RT_TRAVERSAL void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_HAS_PLANES
@@ -23,12 +9,12 @@ RT_TRAVERSAL void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *fr
 #endif
 #ifdef RT_COUNT_STEPS
     const rt_hits before = *hit;
-    rt_counts counted = {0u, 0u, 0u};
+    rt_counts counted = {0u};
     ((rt_rays *)ray)->counts = &counted;
 #endif
     RT_FN(rt_scene)(ctx, frame->root, ray, hit);
 #ifdef RT_COUNT_STEPS
-    RT_FINISH_COUNTS(ray, hit, before, counted)
+    rt_finish_counters(ray, hit, &before, &counted);
 #endif
 }
 
@@ -52,7 +38,7 @@ void RT_FN(rt_trace_stream)(const rt_ctx *ctx, const constant rt_frame *frame, c
     rt_counts counted[RT_STREAM];
     rt_hits before[RT_STREAM];
     for (uint b = 0; b < count; ++b) {
-        const rt_counts none = {0u, 0u, 0u};
+        const rt_counts none = {0u};
         before[b] = hits[b];
         counted[b] = none;
         ((rt_rays *)rays)[b].counts = counted + b;
@@ -60,7 +46,7 @@ void RT_FN(rt_trace_stream)(const rt_ctx *ctx, const constant rt_frame *frame, c
 #endif
     RT_FN(rt_scene_stream)(ctx, frame->root, rays, hits, count);
 #ifdef RT_COUNT_STEPS
-    for (uint b = 0; b < count; ++b) RT_FINISH_COUNTS(rays + b, hits + b, before[b], counted[b])
+    for (uint b = 0; b < count; ++b) rt_finish_counters(rays + b, hits + b, before + b, counted + b);
 #endif
 #endif
 }

@@ -12,9 +12,8 @@ RT_INLINE void RT_TRAVERSE_PACKET(const rt_ctx *ctx, uint root, const rt_rays *r
     uint active = rt_bits(RT_MASK(hits->t >= rt_vfloat(0.0f)));
 #ifdef RT_COUNT_STEPS
     const uint count = max(popcount(active), 1u);
-    rt_counts sums = {0u, 0u, 0u}, *const counts = rays->counts;
+    const rt_counts counts_before = *rays->counts;
     const rt_hits before = *hits;
-    ((rt_rays *)rays)->counts = &sums;
 #endif
     for (; active != 0u; active &= active - 1u) {
         const uint l = rt_lowest(active);
@@ -33,30 +32,18 @@ RT_INLINE void RT_TRAVERSE_PACKET(const rt_ctx *ctx, uint root, const rt_rays *r
         hit.packet = hits;
         hit.lanes = &hit_lanes;
 #ifdef RT_COUNT_STEPS
-        ray.counts = &sums;
-        hit.visits = hit.lane_steps = hit.own_boxes = hit.own_tests = 0u;
+        ray.counts = rays->counts;
 #endif
+        rt_clear_counters(&hit);
         RT_CLEAR_OVERFLOW(&hit)
         RT_TRAVERSE(ctx, root, &ray, &hit);
-#ifdef RT_COUNT_STEPS
-        hits->visits += hit.visits;
-        hits->lane_steps += hit.lane_steps;
-        hits->own_boxes += hit.own_boxes;
-        hits->own_tests += hit.own_tests;
-#endif
+        rt_add_counters(hits, &hit);
         RT_TALLY_OVERFLOW(hits, &hit)
     }
 #ifdef RT_COUNT_STEPS
-    /* What a packet visits and tests is the mean over its rays, rounded up: then it compares with packets that stay together. */
-#define RT_MEAN(sum) (((sum) + count - 1u) / count)
-    counts->nodes += RT_MEAN(sums.nodes);
-    counts->boxes += RT_MEAN(sums.boxes);
-    counts->tests += RT_MEAN(sums.tests);
-    hits->visits = before.visits + RT_MEAN(hits->visits - before.visits);
-    hits->own_boxes = before.own_boxes + RT_MEAN(hits->own_boxes - before.own_boxes);
-    hits->own_tests = before.own_tests + RT_MEAN(hits->own_tests - before.own_tests);
-#undef RT_MEAN
-    ((rt_rays *)rays)->counts = counts;
+    /* What a packet visits and tests is the mean over its rays: then it compares with packets that stay together. */
+    rt_finish_packet_counts(rays->counts, &counts_before, count);
+    rt_finish_packet(hits, &before, count);
 #endif
     rt_gather_hits(&hit_lanes, hits);
 }

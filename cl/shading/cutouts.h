@@ -65,13 +65,7 @@ RT_CALLED void rt_pass_cutouts(const rt_ctx *ctx, const constant rt_frame *frame
         hit->leaf = rt_select(left, found.leaf, hit->leaf);
         hit->prim = rt_select(left, found.prim, hit->prim);
         hit->instance = rt_select(left, found.instance, hit->instance);
-#ifdef RT_COUNT_STEPS
-        hit->steps += found.steps;
-        hit->leaf_tests += found.leaf_tests;
-        hit->lane_steps += found.lane_steps;
-        hit->boxes += found.boxes;
-        hit->own_boxes += found.own_boxes;
-#endif
+        rt_add_counters(hit, &found);
 #ifdef RT_DEBUG
         hit->overflow += found.overflow;
 #endif

@@ -202,9 +202,7 @@ RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
     h->u = h->v = h->nx = h->ny = h->nz = rt_vfloat(0.0f);
     h->leaf = h->instance = rt_vint(-1);
     h->prim = rt_vint(-1); /* less than all numbers of primitives, so that a primitive exactly at t_max is no hit */
-#ifdef RT_COUNT_STEPS
-    h->steps = h->leaf_tests = h->boxes = h->lane_steps = h->visits = h->own_boxes = h->own_tests = h->own_steps = 0u;
-#endif
+    rt_clear_counters(h);
 #ifdef RT_DEBUG
     h->overflow = 0;
 #endif

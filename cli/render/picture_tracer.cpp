@@ -36,8 +36,8 @@ FrameStats PictureTracer::trace_samples(const Picture& picture, unsigned first, 
 }
 
 PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& pass, Progress& progress) {
-    if (pass.counts)
-        stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.not_finite = stats_.overflowed = 0;
+    RayCounts& counts = stats_;
+    if (pass.counts) counts = {};
     const auto all = unsigned(settings_.spp);
     double device_ms = 0, wall_ms = 0;
     std::vector<DeviceShare> devices;
@@ -60,14 +60,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         device_ms += frame.device_ms;
         wall_ms += frame.wall_ms;
         add_shares(devices, frame.devices);
-        if (pass.counts) {
-            stats_.primary += frame.primary;
-            stats_.shadow += frame.shadow;
-            stats_.secondary += frame.secondary;
-            stats_.dropped += frame.dropped;
-            stats_.not_finite += frame.not_finite;
-            stats_.overflowed += frame.overflowed;
-        }
+        if (pass.counts) counts += frame;
         sample += next;
         if (pass.between && sample < all) pass.between(sample);
         next = batch(wall_ms, sample - pass.first, all - sample);
@@ -83,7 +76,7 @@ PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& p
         }
     }
     stats_.shares = devices;
-    if (pass.counts && stats_.not_finite > 0) log(LogLevel::error, not_finite_text(stats_.not_finite));
+    if (pass.counts && counts.not_finite > 0) log(LogLevel::error, not_finite_text(counts.not_finite));
     if (pass.timed) {
         stats_.frame_ms.push_back(device_ms);
         stats_.wall_ms.push_back(wall_ms);

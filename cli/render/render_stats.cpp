@@ -88,12 +88,11 @@ void gather_frame_times(RenderStats& stats, Ranks& ranks) {
         stats.ranks[r].frame_ms = device_ms[r];
         stats.ranks[r].wall_ms = wall_ms[r];
     }
-    for (uint64_t* const count :
-         {&stats.primary, &stats.shadow, &stats.secondary, &stats.dropped, &stats.not_finite, &stats.overflowed}) {
+    for_each_member(static_cast<RayCounts&>(stats), [&](uint64_t& count) {
         double sum = 0;
-        for (const double of_rank : ranks.gather(double(*count))) sum += of_rank;
-        *count = static_cast<uint64_t>(sum);
-    }
+        for (const double of_rank : ranks.gather(double(count))) sum += of_rank;
+        count = static_cast<uint64_t>(sum);
+    });
 }
 
 namespace {

@@ -53,7 +53,7 @@ struct PictureCost {
     double mean = 0, greatest = 0;
 };
 
-struct RenderStats {
+struct RenderStats : RayCounts {  // of one frame
     std::vector<std::string> files;
     std::vector<DeviceInfo> devices;
     std::vector<DeviceShare> shares;  // of the last frame, if several devices shared it
@@ -72,7 +72,6 @@ struct RenderStats {
     unsigned samples = 0;                     // of a pixel of the last picture
     std::optional<FilmNoise> noise;           // of the last picture, if `path` has traced it
     std::optional<PictureCost> cost;          // of the last picture, if it shows that
-    uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, not_finite = 0, overflowed = 0;  // of one frame
 };
 
 // Waits until all ranks can trace, so that this wait is no part of a picture's time, and fills in stats.ranks.

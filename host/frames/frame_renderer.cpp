@@ -213,7 +213,7 @@ struct FrameRenderer::Impl {
         finish(*device, device->queue(), "reading the film");
         for (const Band& band : group_rows().bands())
             for (size_t i = band.first * size_t(width), end = i + band.count * size_t(width); i < end; ++i)
-                image.pixels[i] = aov->statistic(&scratch[4 * i], &scratch[plane + 4 * i]);
+                image.pixels[i] = aov->statistic(&scratch[4 * i], &scratch[RT_PLANE_REST * plane + 4 * i]);
     }
     // Rows of a plane, counted from the film's first row on.
     std::vector<Band> in_plane(unsigned plane, std::vector<Band> bands) const {
@@ -234,24 +234,16 @@ struct FrameRenderer::Impl {
         for (const rt_u32 row : written.rows) {
             const size_t from = size_t(row) * written.row_pixels(),
                          end = std::min(from + written.row_pixels(), size_t(width) * height);
-            const float* const deviations = sums.pixels.data() + size_t(width) * height * 4;
+            const float* const deviations = sums.pixels.data() + RT_PLANE_REST * size_t(width) * height * 4;
             resting[row] = 0;
             for (size_t i = from; i < end; ++i) resting[row] += is_resting(deviations[4 * i + 3]);
         }
     }
     void end_sum(FrameStats& stats) {
         stats.kernels.emplace_back();
-        const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
-        stats.shadow = counts.shadow;
-        stats.secondary = counts.secondary;
-        if (!sums_samples) {
-            stats.dropped = counts.dropped;
-            stats.overflowed = counts.overflowed;
-            return;
-        }
-        // cl/tracers/path/path.cl has four counters for five numbers.
-        stats.not_finite = counts.dropped;
-        (debug ? stats.overflowed : stats.dropped) = counts.overflowed;
+        RayCounts counts = tracer->end_count(film_kernels, stats.kernels.back(), debug);
+        counts.primary = stats.primary;
+        static_cast<RayCounts&>(stats) = counts;
     }
     // Debug programs that trace only camera rays have no ray counters, so they count full stacks separately.
     bool counts_overflows() const { return debug && !tracer->counts_rays(); }

@@ -31,16 +31,12 @@ std::string dropped_text(uint64_t rays, int ray_slots) {
 }
 
 void add_rays(FrameStats& sum, const FrameStats& more) {
-    sum.primary += more.primary;
-    sum.shadow += more.shadow;
-    sum.secondary += more.secondary;
-    sum.dropped += more.dropped;
-    sum.not_finite += more.not_finite;
-    sum.overflowed += more.overflowed;
+    static_cast<RayCounts&>(sum) += more;
     sum.launches += more.launches;
 }
 
 void add_stats(FrameStats& sum, const FrameStats& more) {
+    static_assert(has_member_count<FrameStats, 7>, "a new member has to be summed here, or by add_shares()");
     add_rays(sum, more);
     sum.device_ms += more.device_ms;
     sum.wall_ms += more.wall_ms;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "device/kernel_time.hpp"
+#include "picture/ray_counts.hpp"
 
 namespace clarity {
 
@@ -18,15 +19,11 @@ struct DeviceShare {
 };
 
 // Times and ray counts of the samples that one call has traced.
-struct FrameStats {
-    double device_ms = 0;  // kernels of these samples, by the device's clock
-    double wall_ms = 0;    // the same by the host's clock, including waiting
-    uint64_t primary = 0, shadow = 0, secondary = 0,
-             dropped = 0;     // rays of these samples; all but primary are 0 unless counted
-    uint64_t not_finite = 0;  // samples of `path` that are no number or infinite, unless not counted
-    uint64_t overflowed = 0;  // traversal stacks that were full (debug programs only)
-    unsigned samples = 0;     // in the film now
-    unsigned launches = 0;    // launches that traced these samples
+struct FrameStats : RayCounts {
+    double device_ms = 0;   // kernels of these samples, by the device's clock
+    double wall_ms = 0;     // the same by the host's clock, including waiting
+    unsigned samples = 0;   // in the film now
+    unsigned launches = 0;  // launches that traced these samples
     // The steps: trace, counters, adding samples. read_display() appends tone mapping and read-back.
     std::vector<KernelTime> kernels;
     // One for each device if several share the picture. The times above are then those of the slowest device.

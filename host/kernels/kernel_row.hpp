@@ -76,7 +76,7 @@ inline const std::vector<const char*>& surface_headers() {
 
 // Planes of the film of colours that a kernel traces into.
 inline unsigned film_planes(const KernelRow& row) {
-    return row.has(kGuides) ? 5 : row.has(kSumsSamples) ? 2 : 1;
+    return row.has(kGuides) ? RT_FILM_PLANES : row.has(kSumsSamples) ? RT_PLANE_REST + 1 : RT_PLANE_SUM + 1;
 }
 
 }  // namespace clarity

@@ -10,6 +10,7 @@
 #include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
+#include "rt_types.h"
 
 namespace clarity {
 namespace {
@@ -19,7 +20,6 @@ using CheckpointJson = nlohmann::ordered_json;
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are written as they are in memory");
 constexpr char kCheckpointMagic[9] = "ClCheck1";
 constexpr uint64_t kMostHeadBytes = 1 << 20, kDigestBytes = 32;
-constexpr unsigned kMostPlanes = 16;
 
 // A file that ends with the digest of all its bytes.
 class CheckedWriter {
@@ -96,7 +96,7 @@ Checkpoint load_checkpoint(const std::string& path) {
         checkpoint.of = json.at("of").get<unsigned>();
         sums.width = json.at("width").get<unsigned>();
         checkpoint.planes = json.value("planes", 1u);
-        if (checkpoint.planes < 1 || checkpoint.planes > kMostPlanes) refuse_checkpoint(path, "its head is damaged");
+        if (checkpoint.planes < 1 || checkpoint.planes > RT_FILM_PLANES) refuse_checkpoint(path, "its head is damaged");
         sums.height = json.at("height").get<unsigned>() * checkpoint.planes;
     } catch (const CheckpointJson::exception&) {
         refuse_checkpoint(path, "its head is damaged");

@@ -16,7 +16,8 @@ constexpr size_t kLocalSize = 64;
 }  // namespace
 
 CompileRequest denoiser_program() {
-    return {"#line 1 \"cl/denoise.cl\"\n" + kernel_text("denoise.cl"), "-cl-std=CL1.2", "denoiser"};
+    return {kernel_text("rt_shared.h") + kernel_text("rt_types.h") + "#line 1 \"cl/denoise.cl\"\n" + kernel_text("denoise.cl"),
+            "-cl-std=CL1.2", "denoiser"};
 }
 
 Denoiser::Denoiser(std::shared_ptr<Device> device) : device_(std::move(device)) {

@@ -16,7 +16,7 @@ class Denoiser {
  public:
     // Throws Error(kernel_build_failed).
     explicit Denoiser(std::shared_ptr<Device> device);
-    // Enqueues the filter. film: five planes (film_planes()) of the whole picture. `first` and `last` become the events of its
+    // Enqueues the filter. film: RT_FILM_PLANES planes of the whole picture. `first` and `last` become the events of its
     // first and last command. Returns a film of colours, of one sample, which is overwritten by the next call.
     const cl::Buffer& run(const cl::Buffer& film, unsigned width, unsigned height, cl::Event& first, cl::Event& last);
 

@@ -82,7 +82,7 @@ cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned count, Cou
     return sums_read_;
 }
 
-RayCounts FilmKernels::end_sum(KernelTime& time) {
+std::array<uint64_t, 4> FilmKernels::end_sum(KernelTime& time) {
     wait_for(*device_, sums_read_, "the kernel sum_counters");
     time = {"counters", event_ms(summed_)};
     cl_uint halves[8];

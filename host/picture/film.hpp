@@ -1,5 +1,6 @@
 // film.hpp -- kernels that run after tracing: sums of ray counters, tone mapping, sums of layers.
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 
@@ -33,11 +34,6 @@ struct Tones {
     }
 };
 
-// Sums over all work-items.
-struct RayCounts {
-    uint64_t shadow = 0, secondary = 0, dropped = 0, overflowed = 0;
-};
-
 // The program of these kernels, for compile_ahead().
 CompileRequest film_program();
 
@@ -57,7 +53,7 @@ class FilmKernels {
     // Enqueues 64-bit sums over `count` counters of four numbers each. Returns the last event.
     cl::Event begin_sum(const cl::Buffer& counters, unsigned count, CounterWidth width);
     // Waits for the sums and returns them; `time` becomes that of the kernel.
-    RayCounts end_sum(KernelTime& time);
+    std::array<uint64_t, 4> end_sum(KernelTime& time);
     // Enqueues tone mapping of a film (room(pixels) float4, sums of samples) into a display of room(pixels) * 4 bytes.
     cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
     // Enqueues adding `count` layers (rt_types.h) to these rows of the film. adds: false replaces what is in the film.

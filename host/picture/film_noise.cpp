@@ -7,6 +7,7 @@
 
 #include "base/parallel_for.hpp"
 #include "base/pictures/srgb.hpp"
+#include "rt_types.h"
 #include "view/settings/aov.hpp"
 
 namespace clarity {
@@ -21,7 +22,7 @@ struct Film {
         : width(sums.width),
           height(sums.height / planes),
           light(sums.pixels.data()),
-          rest(light + size_t(width) * height * 4) {}
+          rest(light + RT_PLANE_REST * size_t(width) * height * 4) {}
     size_t width, height;
     const float *light, *rest;
 

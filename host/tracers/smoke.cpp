@@ -91,7 +91,7 @@ void smoke_frames(const Tracer& tracer, const Smoke& smoke) {
         if (frame.tracer->counts_rays()) {
             KernelTime time;
             frame.tracer->begin_count(film);
-            overflowed = film.end_sum(time).overflowed;
+            overflowed = frame.tracer->end_count(film, time, true).overflowed;
         } else {
             overflowed = frame.tracer->overflows(frame.queue);
         }

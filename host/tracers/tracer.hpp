@@ -14,6 +14,7 @@
 #include "launch/view_buffers.hpp"
 #include "picture/film.hpp"
 #include "picture/overflow_counter.hpp"
+#include "picture/ray_counts.hpp"
 #include "view/settings/tracer_choice.hpp"
 #include "view/view.hpp"
 
@@ -43,8 +44,10 @@ class FrameTracer {
     // Whether a launch may trace several samples, each into a layer of its own.
     virtual bool takes_layers(const Prepared&, const View&) const { return program_->row.has(kLayers); }
     bool counts_rays() const { return program_->row.has(kCountsRays); }
-    // Enqueues the sum of the last launch's ray counters; FilmKernels::end_sum() returns it. Only if counts_rays().
+    // Enqueues the sum of the last launch's ray counters, which end_count() waits for. Only if counts_rays().
     virtual cl::Event begin_count(FilmKernels& film) const = 0;
+    // debug: the program checks its stacks. time: becomes that of the kernel. The result has no primary rays.
+    RayCounts end_count(FilmKernels& film, KernelTime& time, bool debug) const;
     // How many traversal stacks of a debug program were full since the launch of work-group 0. Only if not counts_rays().
     virtual uint64_t overflows(Queue& queue) const = 0;
 

@@ -44,6 +44,18 @@ class OneKernel : public FrameTracer {
 
 }  // namespace
 
+RayCounts FrameTracer::end_count(FilmKernels& film, KernelTime& time, bool debug) const {
+    // The order of the kernels' counters. Those of `path` are four for five numbers: cl/tracers/path/path.cl.
+    using Of = uint64_t RayCounts::*;
+    const bool path = program_->row.has(kSumsSamples);
+    const Of third = path ? &RayCounts::not_finite : &RayCounts::dropped;
+    const Of fourth = path && !debug ? &RayCounts::dropped : &RayCounts::overflowed;
+    const std::array<uint64_t, 4> sums = film.end_sum(time);
+    RayCounts counts;
+    counts.shadow = sums[0], counts.secondary = sums[1], counts.*third = sums[2], counts.*fourth = sums[3];
+    return counts;
+}
+
 #define ROW(id) const Tracer& id##_tracer();
 #include "tracers/tracers.inl"
 #undef ROW

@@ -1,10 +1,10 @@
 /* guides.h -- what the denoiser (cl/denoise.cl) has to know of a pixel besides its light: what its camera rays meet first. Only programs
  * with RT_GUIDES have it.
  *
- * They are sums over the samples of the pixel, in three more planes of the film:
- *   light that comes to the camera without scattering (emission, lamps, the sky), and 1 / depth
- *   albedo, by which the denoiser divides the rest of the light
- *   normal on the side of the camera; reversed where the surface does not scatter diffusely, so that mirrors and walls differ
+ * They are sums over the samples of the pixel, in more planes of the film, from RT_PLANE_OWN on:
+ *   OWN     light that comes to the camera without scattering (emission, lamps, the sky), and 1 / depth
+ *   ALBEDO  by which the denoiser divides the rest of the light
+ *   NORMAL  on the side of the camera; reversed where the surface does not scatter diffusely, so that mirrors and walls differ
  * What scatters no light adds 0 to all but the first three. The depth is along the camera's axis: its inverse changes linearly over a
  * plane in the picture. */
 #ifndef RT_PATH_GUIDES_H
@@ -28,12 +28,12 @@ RT_PART void rt_add_guides(const constant rt_frame *frame, const rt_path *p, vma
     const uint bits = rt_bits(lanes & RT_MASK(p->event == rt_vint(0)));
     if (bits == 0u) return;
     const size_t pixels = (size_t)frame->width * frame->height;
-    float4 of_lanes[3][RT_LANES];
+    float4 of_lanes[RT_FILM_PLANES - RT_PLANE_OWN][RT_LANES];
     float depths[RT_LANES];
     int pixel[RT_LANES], sample[RT_LANES];
     rt_store_lanes(p->light, 0.0f, of_lanes[0]);
-    rt_store_lanes(albedo, 0.0f, of_lanes[1]);
-    rt_store_lanes(normal, 0.0f, of_lanes[2]);
+    rt_store_lanes(albedo, 0.0f, of_lanes[RT_PLANE_ALBEDO - RT_PLANE_OWN]);
+    rt_store_lanes(normal, 0.0f, of_lanes[RT_PLANE_NORMAL - RT_PLANE_OWN]);
     rt_store(inverse_depth, depths);
     rt_store(p->pixel, pixel);
     rt_store(p->sample, sample);
@@ -42,7 +42,7 @@ RT_PART void rt_add_guides(const constant rt_frame *frame, const rt_path *p, vma
         of_lanes[0][l].w = depths[l];
         const bool is_first = frame->adds == 0u && sample[l] == (int)frame->sample;
         global float4 *at = p->guides + rt_film_place(frame, (uint)pixel[l]);
-        for (uint plane = 0; plane < 3u; ++plane, at += pixels) *at = is_first ? of_lanes[plane][l] : *at + of_lanes[plane][l];
+        for (uint plane = 0; plane < RT_FILM_PLANES - RT_PLANE_OWN; ++plane, at += pixels) *at = is_first ? of_lanes[plane][l] : *at + of_lanes[plane][l];
     }
 }
 

@@ -17,7 +17,7 @@ RT_GROUP_WORK void rt_path_group(const rt_ctx *scene, const constant rt_frame *f
         rt_tally tally = {0, 0, 0, 0};
         uint not_finite = 0;
         rt_path paths = rt_no_paths(frame);
-        RT_GUIDE(paths.guides = film + 2 * (size_t)frame->width * frame->height)
+        RT_GUIDE(paths.guides = film + RT_PLANE_OWN * (size_t)frame->width * frame->height)
         for (uint next = 0;;) {
             rt_refill(frame, film, origin, &paths, &next);
             if (!rt_any(paths.alive)) break;

@@ -10,7 +10,7 @@
  *   RT_ANSWER_NEAREST    t, prim
  *   RT_ANSWER_HIT        t, prim, and u and v of each ray side by side, which take two places
  *   RT_ANSWER_PLACED     these, and instance
- *   programs that count: these, steps, leaf_tests, lane_steps, and the members of a RayWork
+ *   programs that count: these, and RT_HIT_COUNTERS
  * The host fills the last block up with inactive rays. It packs rays and unpacks answers in
  * host/tracers/rays/ray_blocks.cpp.
  *
@@ -154,8 +154,10 @@ RT_INLINE void rt_store_hit_block(global float *answers, uint block, uint fields
     if (fields == RT_ANSWER_HIT) return;
     RT_STORE_NONTEMPORAL(RT_ANSWER_OF(4u), rt_as_vfloat(hit->instance));
 #ifdef RT_COUNT_STEPS
-    const uint counts[7] = {hit->steps, hit->leaf_tests, hit->lane_steps, hit->boxes, hit->own_steps, hit->own_boxes, hit->own_tests};
-    for (uint i = 0; i < 7u; ++i) *RT_ANSWER_OF(5u + i) = rt_as_vfloat(rt_vint((int)counts[i]));
+#define RT_COUNTER_OF_HIT(name, how, of_hit) hit->name,
+    const uint counts[RT_HIT_COUNTER_COUNT] = {RT_HIT_COUNTERS(RT_COUNTER_OF_HIT)};
+#undef RT_COUNTER_OF_HIT
+    for (uint i = 0; i < RT_HIT_COUNTER_COUNT; ++i) *RT_ANSWER_OF(RT_ANSWER_PLACED + i) = rt_as_vfloat(rt_vint((int)counts[i]));
 #endif
 #undef RT_ANSWER_OF
 }

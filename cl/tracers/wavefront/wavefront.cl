@@ -17,11 +17,8 @@
 
 /* control: RT_CONTROL uints for each level: the number of rays, which may exceed `room`, and the tickets claimed. Zero at the
  * start. */
-#define RT_CONTROL 2u
-#define RT_CONTROLS (129u * RT_CONTROL) /* 128 generations, and one that is never traced */
 
-/* The light of deferred paths, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
-#define RT_SHARE 6u
+/* The light of deferred paths, RT_SHARE uints a pixel: for each channel 64 bits in two's complement, low half first, in units of 2^-36. */
 #define RT_SHARE_UNIT 68719476736.0f
 #define RT_SHARE_MOST 1e8f
 

@@ -27,6 +27,15 @@ void read_number(const float* from, Number& to) {
     std::memcpy(&to, from, sizeof to);
 }
 
+RayWork work_at(const float* answers, size_t ray, size_t stride) {
+    RayWork work;
+    const float* from = answers + RT_ANSWER_PLACED * stride + ray;
+#define READ_COUNTER(name, how, of_hit) read_number(from, work.name), from += stride;
+    RT_HIT_COUNTERS(READ_COUNTER)
+#undef READ_COUNTER
+    return work;
+}
+
 }  // namespace
 
 uint64_t new_packing() {
@@ -69,9 +78,8 @@ void unpack_hits(const float* answers, size_t ray_count, size_t stride, rt_u32 f
             if (fields >= RT_ANSWER_HIT) hit.u = answers[2 * stride + 2 * i], hit.v = answers[2 * stride + 2 * i + 1];
             if (fields >= RT_ANSWER_PLACED) read_number(answers + 4 * stride + i, hit.instance);
             if (fields < kAnswerCounted) continue;
-            read_number(answers + 5 * stride + i, hit.steps);
-            read_number(answers + 6 * stride + i, hit.leaf_tests);
-            read_number(answers + 7 * stride + i, hit.lane_steps);
+            const RayWork work = work_at(answers, i, stride);
+            hit.steps = work.steps, hit.leaf_tests = work.leaf_tests, hit.lane_steps = work.lane_steps;
         }
         take(first, end - first, hits);
     });
@@ -79,12 +87,7 @@ void unpack_hits(const float* answers, size_t ray_count, size_t stride, rt_u32 f
 
 std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, size_t stride) {
     std::vector<RayWork> work(ray_count);
-    for (size_t i = 0; i < ray_count; ++i) {
-        read_number(answers + 8 * stride + i, work[i].boxes);
-        read_number(answers + 9 * stride + i, work[i].own_steps);
-        read_number(answers + 10 * stride + i, work[i].own_boxes);
-        read_number(answers + 11 * stride + i, work[i].own_tests);
-    }
+    for (size_t i = 0; i < ray_count; ++i) work[i] = work_at(answers, i, stride);
     return work;
 }
 

@@ -45,15 +45,15 @@ class RayBlocks {
     std::vector<float> floats_;
 };
 
-// Numbers of an answer, beside RT_ANSWER_*: with counters, those of an rt_hit and a RayWork.
-constexpr rt_u32 kAnswerCounted = 12;
+// Numbers of an answer, beside RT_ANSWER_*: with counters.
+constexpr rt_u32 kAnswerCounted = RT_ANSWER_PLACED + RT_HIT_COUNTER_COUNT;
 // How far the arrays of answers lie apart: they begin at cache lines, and have room for the last block of any number of lanes.
 inline size_t answer_stride(size_t ray_count) {
     return (ray_count + 63) / 64 * 64;
 }
 // Reads answers on all threads. Members of rt_hit that they do not contain become 0, and -1 for numbers.
 void unpack_hits(const float* answers, size_t ray_count, size_t stride, rt_u32 fields, const TakeHits& take);
-// The rest of answers of kAnswerCounted numbers.
+// The counters of answers of kAnswerCounted numbers.
 std::vector<RayWork> unpack_work(const float* answers, size_t ray_count, size_t stride);
 
 }  // namespace clarity

@@ -9,13 +9,10 @@
 
 namespace clarity {
 
-// More counts of a ray, beside rt_hit::steps, leaf_tests and lane_steps; each ray has those of its packet. What begins with
-// `own` is what the structure's traversal reports, and not what the host's helpers counted (cl/CONTRACT.md).
+// All that is counted of a ray; each ray has the counts of its packet. What begins with `own` is what the structure's traversal
+// reports, and not what the host's helpers counted (cl/CONTRACT.md).
 struct RayWork {
-    rt_u32 boxes = 0;      // boxes tested by the host's helpers
-    rt_u32 own_steps = 0;  // of rt_hit::steps
-    rt_u32 own_boxes = 0;  // tested by the traversal itself, beside `boxes`
-    rt_u32 own_tests = 0;  // primitives, beside rt_hit::leaf_tests
+    RT_HIT_COUNTERS(RT_COUNTER_MEMBER)
 };
 
 // What RayQueries::trace() computes.

@@ -7,9 +7,8 @@
 namespace clarity {
 namespace {
 
-// Sizes as wavefront.cl defines them.
-constexpr size_t kRayBytes = 48, kShareBytes = 24;
-constexpr size_t kControlBytes = (kMostDepth + 1) * 2 * sizeof(cl_uint);
+constexpr size_t kRayBytes = 48;  // as in wavefront.cl
+constexpr size_t kShareBytes = RT_SHARE * sizeof(cl_uint), kControlBytes = RT_CONTROLS * sizeof(cl_uint);
 // Work-groups that a compute unit of a GPU runs or keeps ready: 32 warps of 32.
 constexpr unsigned kGroupsPerUnit = 16;
 // Queues may take 1 / kQueueShare of a device's memory. On a CPU they should stay in its caches.

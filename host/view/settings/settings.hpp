@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "rt_types.h"
 #include "view/settings/crop.hpp"
 #include "view/settings/optics.hpp"
 
@@ -20,7 +21,7 @@ enum class Effect { display, samples, frame, recompile, rebuild };
 enum class SettingGroup { more, tracing, paths, picture };
 
 // The greatest `depth`.
-constexpr int kMostDepth = 128;
+constexpr int kMostDepth = RT_MOST_DEPTH;
 
 // The values of all settings.
 struct Settings {

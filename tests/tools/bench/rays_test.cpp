@@ -235,7 +235,7 @@ TEST(Analysis, TwoPacketsMatchFiguresComputedByHand) {
         hits[i].lane_steps = i < 4 ? 30 : 4;
     }
     std::vector<RayWork> work(8);
-    for (size_t i = 0; i < 8; ++i) work[i] = {i < 4 ? 20u : 6u, 0, i < 4 ? 0u : 4u, 0};
+    for (size_t i = 0; i < 8; ++i) work[i].boxes = i < 4 ? 20 : 6, work[i].own_boxes = i < 4 ? 0 : 4;
     const Analysis a = analyze(rays, hits, work, 4, 64);
     EXPECT_DOUBLE_EQ(a.boxes_per_ray, (4 * 20 + 10) / 5.0);
     EXPECT_EQ(a.reported, "boxes");

@@ -251,7 +251,7 @@ void compare_with_one_by_one(std::vector<BenchRecord>& rows) {
 Analysis analyze(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hits, const std::vector<RayWork>& work,
                  unsigned lanes, unsigned node_bytes) {
     double active = 0, nodes = 0, leaves = 0, own = 0, nodes_sat = 0, leaves_sat = 0, boxes_sat = 0;
-    RayWork reported;  // not 0: a packet has some
+    RayWork reported{};  // not 0: a packet has some
     for (size_t first = 0; first < rays.size(); first += lanes) {
         double in_packet = 0;
         for (size_t i = first; i < std::min(first + lanes, rays.size()); ++i) in_packet += is_active(rays[i]);
