@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "base/error.hpp"
 #include "launch/emitters/emitter_table.hpp"
@@ -21,44 +22,35 @@ void check_materials(const Scene& scene, const std::vector<MaterialValues>& mate
                                           std::to_string(scene.textures.size()));
 }
 
-bool same(bool a, bool b) {
+template <class T>
+bool is_as(const T& a, const T& b) {
     return a == b;
 }
-bool same(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-    return a == b;
-}
-bool same(const SkyValues& a, const SkyValues& b) {
+bool is_as(const SkyValues& a, const SkyValues& b) {
     return same_sky(a, b);
 }
-bool same(const SharedArray<float>& a, const SharedArray<float>& b) {
+bool is_as(const SharedArray<float>& a, const SharedArray<float>& b) {
     return a.shares(b);
 }
-bool same(const std::weak_ptr<const AccelData>& a, const std::shared_ptr<const AccelData>& b) {
+bool is_as(const std::weak_ptr<const AccelData>& a, const std::shared_ptr<const AccelData>& b) {
     return a.lock() == b;
 }
 template <class T>
-bool same(const std::vector<T>& a, const std::vector<T>& b) {
+bool is_as(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
 }
 // Of each material the map of its emission.
-bool same(const std::vector<rt_u32>& a, const std::vector<Material>& b) {
+bool is_as(const std::vector<rt_u32>& a, const std::vector<Material>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](rt_u32 map, const Material& material) { return map == material.maps[RT_MAP_EMISSION]; });
 }
 template <class T, class Now>
-void assign(T& was, const Now& now) {
+void take(T& was, const Now& now) {
     was = now;
 }
-void assign(std::vector<rt_u32>& was, const std::vector<Material>& now) {
+void take(std::vector<rt_u32>& was, const std::vector<Material>& now) {
     was.clear();
     for (const Material& material : now) was.push_back(material.maps[RT_MAP_EMISSION]);
-}
-// Whether `was` is as `now`, as which it is afterwards.
-template <class T, class Now>
-bool keep(T& was, const Now& now) {
-    if (same(was, now)) return true;
-    assign(was, now);
-    return false;
 }
 
 }  // namespace
@@ -88,13 +80,19 @@ void ViewBuffers::write_emitters(Queue& queue, const Scene& scene, const std::sh
     EmittersOf& of = emitters_of_;
     static_assert(has_member_count<EmittersOf, 9>, "each is compared and kept here");
     const bool tree = has_light_tree(settings);
-    // Without short cuts: all are kept.
-    const bool same = keep(of.accel, accel) & keep(of.lights, view.lights) & keep(of.materials, view.materials) &
-                      keep(of.background, view.background) & keep(of.sky, sky_of(scene, view)) &
-                      keep(of.sky_texels, scene.sky.texels) & keep(of.maps, scene.maps) &
-                      keep(of.emission_maps, scene.materials) & keep(of.tree, tree);
-    if (same && has_emitters_) return;
-    has_emitters_ = false;  // until it is made
+    bool same = std::exchange(has_emitters_, false);
+    const auto keep = [&](auto& was, const auto& now) {
+        if (is_as(was, now)) return;
+        take(was, now);
+        same = false;
+    };
+    keep(of.accel, accel), keep(of.lights, view.lights), keep(of.materials, view.materials);
+    keep(of.background, view.background), keep(of.sky, sky_of(scene, view)), keep(of.sky_texels, scene.sky.texels);
+    keep(of.maps, scene.maps), keep(of.emission_maps, scene.materials), keep(of.tree, tree);
+    if (same) {
+        has_emitters_ = true;
+        return;
+    }
     const auto upload = [&](UploadedBuffer& to, const auto& from) {
         static const rt_emitter nothing{};  // kernels get no empty buffers
         if (from.empty())

@@ -13,10 +13,16 @@ const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) 
 }
 
 // Members one after the other: plugins by their ids, memory as it is. The reader borrows the latter of the parcel.
+template <class How, class T>
+void visit(const How& how, T& value);
 struct Write {
     ParcelWriter& parcel;
     void operator()(const rt_plugin* plugin) const { parcel(std::string(plugin->id)); }
     void operator()(const AlignedBytes& memory) const { parcel.bytes(memory.data(), memory.bytes()); }
+    void operator()(const std::vector<AccelData::Slot>& slots) const {
+        parcel(uint64_t{slots.size()});
+        for (const AccelData::Slot& slot : slots) visit(*this, slot);
+    }
 };
 struct Read {
     ParcelReader& parcel;
@@ -29,6 +35,10 @@ struct Read {
     void operator()(AlignedBytes& memory) const {
         const uint64_t bytes = parcel.begin_array();
         memory = AlignedBytes::borrow(const_cast<char*>(parcel.borrow(bytes)), bytes);
+    }
+    void operator()(std::vector<AccelData::Slot>& slots) const {
+        uint64_t count = 0;
+        for (parcel(count); count > 0; --count) visit(*this, slots.emplace_back());
     }
 };
 template <class How, class T>
