@@ -1,11 +1,19 @@
 // members.hpp -- structs that list their members once, for all that writes, reads, compares or copies them:
-//     template <class Self> static auto members(Self& self) { return std::tie(self.name, self.numbers); }
-// What goes through members_of() does not compile while the list lacks a member.
+//     CLARITY_MEMBERS(name, numbers);
+// It names all members in their order. While it lacks one, what goes through members_of() does not compile.
 #pragma once
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>
+
+#define CLARITY_MEMBERS(...)          \
+    template <class Self>             \
+    static auto members(Self& self) { \
+        auto& [__VA_ARGS__] = self;   \
+        return std::tie(__VA_ARGS__); \
+    }                                 \
+    static_assert(true, "for a semicolon")
 
 namespace clarity {
 namespace detail {
@@ -42,7 +50,6 @@ template <class T>
 auto members_of(T& self) {
     using Struct = std::remove_const_t<T>;
     using Tuple = decltype(Struct::members(self));
-    static_assert(std::is_aggregate_v<Struct>, "members can only be counted without constructors and private members");
     static_assert(has_member_count<Struct, std::tuple_size_v<Tuple>>, "members() has to list each member of the struct once");
     return Struct::members(self);
 }

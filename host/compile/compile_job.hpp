@@ -14,11 +14,7 @@ struct CompileJob {
     std::string device, name, driver;  // id as `--device` takes it; the worker refuses a device of another name or driver
     std::string pocl_cache;            // an empty folder that PoCL compiles into; empty: its usual one
     std::string work_group_method;     // POCL_WORK_GROUP_METHOD; empty: as the user has it
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.source, self.options, self.device, self.name, self.driver, self.pocl_cache,
-                        self.work_group_method);
-    }
+    CLARITY_MEMBERS(source, options, device, name, driver, pocl_cache, work_group_method);
 };
 
 // Worker to program.
@@ -28,10 +24,7 @@ struct CompileOutcome {
     int32_t error = 0;         // OpenCL's, if failed
     std::string log;           // the compiler's; why, if there is no device
     std::vector<char> binary;  // empty: the driver gives none
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.state, self.error, self.log, self.binary);
-    }
+    CLARITY_MEMBERS(state, error, log, binary);
 };
 
 // The work of kCompileJob.

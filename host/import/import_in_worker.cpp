@@ -33,10 +33,7 @@ struct ImportJob {
     worker::WorkerLimits limits;
     std::vector<std::string> plugins, surfaces, search_paths, importers, files;
     std::vector<PictureFile> pictures;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.limits, self.plugins, self.surfaces, self.search_paths, self.importers, self.files, self.pictures);
-    }
+    CLARITY_MEMBERS(limits, plugins, surfaces, search_paths, importers, files, pictures);
 };
 
 using worker::MessageKind;

@@ -12,10 +12,7 @@ namespace clarity {
 struct PictureFile {
     std::string path;
     rt_u32 space = RT_SPACE_SRGB;  // RT_SPACE_
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.path, self.space);
-    }
+    CLARITY_MEMBERS(path, space);
     bool operator==(const PictureFile& b) const { return members_of(*this) == members_of(b); }
 };
 

@@ -32,11 +32,7 @@ struct Mesh {
     rt_u32 first_vertex = 0, vertex_count = 0;
     rt_u32 first_triangle = 0, triangle_count = 0;
     rt_u32 polygon_count = 0;  // faces in the file, before triangulation
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.first_vertex, self.vertex_count, self.first_triangle, self.triangle_count,
-                        self.polygon_count);
-    }
+    CLARITY_MEMBERS(name, first_vertex, vertex_count, first_triangle, triangle_count, polygon_count);
 };
 
 // What a user does to an instance, on top of where its file or its pose has it. It is scaled along the world's axes, then
@@ -66,12 +62,8 @@ struct Instance {
     std::array<float, 3> pivot{};
     std::array<double, 3> rounded_off{};  // for the import only: what rounding took from world_from_object's translation
     rt_u32 mask = RT_SEEN_BY_ALL;         // kinds of rays that hit it
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.mesh, self.material, self.world_from_object, self.visible, self.node, self.root,
-                        self.moving_mesh, self.node_from_object, self.apart, self.hidden, self.shift, self.pivot,
-                        self.rounded_off, self.mask);
-    }
+    CLARITY_MEMBERS(name, mesh, material, world_from_object, visible, node, root, moving_mesh, node_from_object, apart, hidden,
+                    shift, pivot, rounded_off, mask);
 };
 
 struct Sphere {
@@ -132,10 +124,7 @@ struct Material {
     MaterialValues values{};
     MaterialMaps maps = no_maps();
     bool used = true;  // false: no primitive of the scene has it, so that kernels need not know it; by note_used_materials()
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.values, self.maps, self.used);
-    }
+    CLARITY_MEMBERS(name, values, maps, used);
 };
 struct Light {
     std::string name;
@@ -143,10 +132,7 @@ struct Light {
     rt_u32 node = RT_NONE;  // that moves it
     rt_light at_node{};     // in the node's space
     rt_u32 source = 0;      // for the import only: by which channels name it
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.values, self.node, self.at_node, self.source);
-    }
+    CLARITY_MEMBERS(name, values, node, at_node, source);
 };
 struct Camera {
     std::string name;
@@ -157,21 +143,14 @@ struct Camera {
     rt_u32 node = RT_NONE;  // that moves it
     std::array<float, 3> node_eye{}, node_target{}, node_up{};  // in the node's space
     rt_u32 source = 0;                                          // for the import only: by which channels name it
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.eye, self.target, self.up, self.fov_y_rad, self.aperture, self.focus, self.node,
-                        self.node_eye, self.node_target, self.node_up, self.source);
-    }
+    CLARITY_MEMBERS(name, eye, target, up, fov_y_rad, aperture, focus, node, node_eye, node_target, node_up, source);
 };
 
 // A change that a file makes to what it and the files that it loads hold: words of host/view/edit/edit.hpp.
 struct SceneEdit {
     std::string key, value;
     std::string where;  // "FILE:LINE:COLUMN"
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.key, self.value, self.where);
-    }
+    CLARITY_MEMBERS(key, value, where);
 };
 
 // A scene is valid once validate() has accepted it: every index is in range, every number is finite, and materials[0] is the
@@ -226,15 +205,10 @@ struct Scene {
     Bounds bounds() const;
     // World-space area of the triangles of all instances, the polygons and the spheres. That of shapes is not known.
     double surface_area() const;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.positions, self.normals, self.uvs, self.uvs2, self.colors, self.tangents, self.triangles,
-                        self.triangle_materials, self.meshes, self.instances, self.spheres, self.planes, self.polygons,
-                        self.polygon_corners, self.shape_kinds, self.shapes, self.shape_parts, self.shape_numbers,
-                        self.materials, self.maps, self.textures, self.texture_names, self.texels, self.lights, self.cameras,
-                        self.sky, self.background, self.ambient, self.up_axis, self.unit_scale, self.origin, self.warnings,
-                        self.edits, self.sources, self.motion);
-    }
+    CLARITY_MEMBERS(positions, normals, uvs, uvs2, colors, tangents, triangles, triangle_materials, meshes, instances, spheres,
+                    planes, polygons, polygon_corners, shape_kinds, shapes, shape_parts, shape_numbers, materials, maps,
+                    textures, texture_names, texels, lights, cameras, sky, background, ambient, up_axis, unit_scale, origin,
+                    warnings, edits, sources, motion);
 };
 
 // Notes which materials primitives have, those of hidden objects included. Files name many that none has: those of a model that

@@ -24,10 +24,7 @@ struct Sky {
     SkyValues values;
     std::string file;           // of the picture, as the scene's file names it
     SharedArray<float> texels;  // of the picture: linear RGB, radiance, top row first
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.values, self.file, self.texels);
-    }
+    CLARITY_MEMBERS(values, file, texels);
 };
 
 }  // namespace clarity

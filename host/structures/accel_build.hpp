@@ -33,11 +33,7 @@ struct AccelFacts {
     double build_ms = 0;  // time of the plugin's build() alone, or of topology() and the layout's pack()
     double pack_ms = 0;   // time of the conversion before and of checks and packing after it
     uint64_t bytes = 0;   // size of slots, leaves and instances
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.plugin, self.layout, self.params, self.roots, self.defines, self.stats, self.build_ms,
-                        self.pack_ms, self.bytes);
-    }
+    CLARITY_MEMBERS(plugin, layout, params, roots, defines, stats, build_ms, pack_ms, bytes);
     // The plugin's statistic of that label, or `otherwise`.
     double stat(const std::string& label, double otherwise = 0) const;
 };
@@ -47,10 +43,7 @@ struct AccelData : AccelFacts {
     struct Slot {
         AlignedBytes memory;
         uint64_t count = 0;
-        template <class Self>
-        static auto members(Self& self) {
-            return std::tie(self.memory, self.count);
-        }
+        CLARITY_MEMBERS(memory, count);
     };
     std::vector<Slot> slots;
     AlignedBytes leaves;  // rt_packed_prim in leaf order, then kLeafPadding zeroed ones

@@ -40,11 +40,7 @@ struct BuildJob {
     SharedArray<rt_topology_node> nodes;
     SharedArray<rt_u32> refs, roots;
 
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.library, self.memory_bytes, self.cpu_s, self.device, self.params, self.prims, self.groups,
-                        self.triangles, self.nodes, self.refs, self.roots);
-    }
+    CLARITY_MEMBERS(library, memory_bytes, cpu_s, device, params, prims, groups, triangles, nodes, refs, roots);
 };
 
 // What a builder wrote, in the worker; in the program it calls the functions of `out` as the builder did. The worker is not

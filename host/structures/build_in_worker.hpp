@@ -29,10 +29,7 @@ struct ClosedBuilder {
     std::string table;
     double limit_s = 10;  // processor time of a build
     uint64_t memory_bytes = uint64_t(1) << 30;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.library, self.id, self.layout, self.table, self.limit_s, self.memory_bytes);
-    }
+    CLARITY_MEMBERS(library, id, layout, table, limit_s, memory_bytes);
 };
 // The plugin that stands for it in this process, also if this is a worker. One a process.
 const rt_plugin* take_closed_builder(const ClosedBuilder& builder);

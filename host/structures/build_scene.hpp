@@ -34,13 +34,9 @@ struct BuildScene {
     std::vector<rt_u32> group_of_mesh;       // 0: its triangles are in the world's group, or nowhere
     std::vector<rt_u32> first_ref_of_group;  // ref of the group's first triangle; the others follow
     std::vector<rt_u32> number_of_instance;  // in `instances`; RT_NONE: flattened, or not visible
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.prims, self.groups, self.triangles, self.instances, self.group_of_instance, self.world_from_object,
-                        self.attribute_triangle, self.flattened, self.instance_leaves, self.spheres, self.polygons,
-                        self.shape_leaves, self.shapes, self.polygon_table, self.polygon_corners, self.planes, self.bounds,
-                        self.object_bounds, self.group_of_mesh, self.first_ref_of_group, self.number_of_instance);
-    }
+    CLARITY_MEMBERS(prims, groups, triangles, instances, group_of_instance, world_from_object, attribute_triangle, flattened,
+                    instance_leaves, spheres, polygons, shape_leaves, shapes, polygon_table, polygon_corners, planes, bounds,
+                    object_bounds, group_of_mesh, first_ref_of_group, number_of_instance);
 };
 // True if a builder of that scene was given such a ref.
 inline bool is_known_ref(rt_u32 ref, const BuildScene& scene) {

@@ -21,16 +21,10 @@ struct TrialShape {
     struct Part {
         ShapePart part;
         std::vector<float> more;  // its range of Scene::shape_numbers
-        template <class Self>
-        static auto members(Self& self) {
-            return std::tie(self.part, self.more);
-        }
+        CLARITY_MEMBERS(part, more);
     };
     std::vector<Part> parts;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.id, self.parts);
-    }
+    CLARITY_MEMBERS(id, parts);
 };
 
 // Up to three shapes of each kind, with up to four parts each; fewer if they have very many numbers. A shape may lose parts.
@@ -66,11 +60,7 @@ struct TrialJob {
     std::map<std::string, rt_u32> defines;
     SentSettings settings;
 
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.kernels, self.libraries, self.device, self.device_name, self.surfaces, self.features, self.shapes,
-                        self.defines, self.settings);
-    }
+    CLARITY_MEMBERS(kernels, libraries, device, device_name, surfaces, features, shapes, defines, settings);
 };
 
 }  // namespace clarity

@@ -3,10 +3,7 @@
 
 struct Part {
     int listed = 0, forgotten = 0;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.listed);
-    }
+    CLARITY_MEMBERS(listed);
 };
 bool same(const Part& a, const Part& b) {
     return clarity::members_of(a) == clarity::members_of(b);

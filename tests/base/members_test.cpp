@@ -38,10 +38,7 @@ struct Part {
     std::string name;
     int number = 0;
     std::vector<double> more;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.number, self.more);
-    }
+    CLARITY_MEMBERS(name, number, more);
 };
 static_assert(has_members<Part> && has_members<const Part> && !has_members<Many>);
 

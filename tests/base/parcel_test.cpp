@@ -14,10 +14,7 @@ namespace {
 struct Part {
     std::string name;
     std::vector<double> numbers;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.numbers);
-    }
+    CLARITY_MEMBERS(name, numbers);
     bool operator==(const Part& b) const { return name == b.name && numbers == b.numbers; }
 };
 
@@ -33,11 +30,7 @@ struct All {
     std::vector<Part> parts;
     std::vector<char> bytes;
     SharedArray<uint32_t> large;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.number, self.flag, self.text, self.texts, self.flags, self.set, self.map, self.pairs, self.parts,
-                        self.bytes, self.large);
-    }
+    CLARITY_MEMBERS(number, flag, text, texts, flags, set, map, pairs, parts, bytes, large);
 };
 
 All sample() {

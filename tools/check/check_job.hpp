@@ -24,12 +24,8 @@ struct CheckJob {
     uint64_t seed = 0;
     std::vector<import::SentScene> scene;  // to `rays`; none or one
     std::vector<ClosedBuilder> closed;     // instead of `library`: one that only workers of its own open; none or one
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.library, self.phase, self.device, self.report, self.truth, self.scratch, self.rays, self.beside,
-                        self.samples, self.only, self.done, self.lanes, self.quick, self.large, self.list, self.stop_at_first,
-                        self.seed, self.scene, self.closed);
-    }
+    CLARITY_MEMBERS(library, phase, device, report, truth, scratch, rays, beside, samples, only, done, lanes, quick, large,
+                    list, stop_at_first, seed, scene, closed);
 };
 
 struct CheckResult {

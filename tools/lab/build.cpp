@@ -35,10 +35,7 @@ struct Tools {
     std::string work, path;
     std::string bubblewrap;  // the program; "": not used
     uint64_t cpu_s = 0;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.commands, self.folders, self.work, self.path, self.bubblewrap, self.cpu_s);
-    }
+    CLARITY_MEMBERS(commands, folders, work, path, bubblewrap, cpu_s);
 };
 
 std::vector<std::string> in_bubblewrap(const Tools& tools) {

@@ -24,11 +24,7 @@ struct Case {
     // the light that is sent back.
     double reference = 0;
     std::vector<double> truth;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.scene, self.triangles, self.rays, self.poses, self.seed, self.hidden, self.color,
-                        self.keys, self.reference, self.truth);
-    }
+    CLARITY_MEMBERS(name, scene, triangles, rays, seed, poses, hidden, color, keys, reference, truth);
 };
 
 struct Lab {

@@ -24,11 +24,7 @@ struct MeasureJob {
     std::vector<std::vector<rt_ray>> rays;  // of each scene
     std::vector<unsigned> poses;
     std::vector<Case> materials;  // of a model of surfaces, in the place of scenes
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.library, self.closed, self.reference, self.layout, self.device, self.lanes, self.times,
-                        self.limit_s, self.scenes, self.rays, self.poses, self.materials);
-    }
+    CLARITY_MEMBERS(library, closed, reference, layout, device, lanes, times, limit_s, scenes, rays, poses, materials);
 };
 
 // What a ray costs on the average of a case, counted by the host.

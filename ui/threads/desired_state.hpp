@@ -31,10 +31,7 @@ struct Side {
 struct ObjectEdits {
     InstanceEdits instances;  // moved and hidden
     MapEdits maps;            // other textures of materials
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.instances, self.maps);
-    }
+    CLARITY_MEMBERS(instances, maps);
 };
 inline bool same_edits(const ObjectEdits& a, const ObjectEdits& b) {
     return members_of(a) == members_of(b);

@@ -27,10 +27,7 @@ struct Clip {
     rt_u32 rig = 0;  // the placed file that it moves
     rt_u32 first_layer = 0, layer_count = 0;
     double begin_s = 0, end_s = 0, fps = 0;
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.rig, self.first_layer, self.layer_count, self.begin_s, self.end_s, self.fps);
-    }
+    CLARITY_MEMBERS(name, rig, first_layer, layer_count, begin_s, end_s, fps);
 };
 
 // Keys of one component or of a quaternion: ranges of the arrays of Motion.
@@ -62,10 +59,7 @@ struct Morph {
     rt_u32 mesh = 0;
     rt_u32 first_target = 0, target_count = 0;
     double weight = 0;  // at rest
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.name, self.mesh, self.first_target, self.target_count, self.weight);
-    }
+    CLARITY_MEMBERS(name, mesh, first_target, target_count, weight);
 };
 struct MorphTarget {
     double weight = 1;
@@ -92,10 +86,7 @@ struct FileSequence {
     rt_u32 first_mesh = 0, mesh_count = 0;
     rt_u32 first_number = 0, number_count = 0;  // in sequence_numbers
     double fps = 24;                            // file n is at n / fps
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.pattern, self.first_mesh, self.mesh_count, self.first_number, self.number_count, self.fps);
-    }
+    CLARITY_MEMBERS(pattern, first_mesh, mesh_count, first_number, number_count, fps);
 };
 
 struct Motion {
@@ -122,14 +113,9 @@ struct Motion {
     std::vector<rt_u32> sequence_numbers;
 
     bool empty() const { return nodes.empty() && morphs.empty() && frames.empty() && sequences.empty(); }
-    template <class Self>
-    static auto members(Self& self) {
-        return std::tie(self.nodes, self.clips, self.layers, self.channels, self.key_times, self.key_values, self.key_handles,
-                        self.key_spans, self.skins, self.bones, self.weights, self.shares, self.morphs, self.morph_targets,
-                        self.morph_vertices, self.morph_positions, self.morph_normals, self.frames, self.frame_times,
-                        self.frame_positions, self.stored, self.stored_positions, self.stored_normals, self.sequences,
-                        self.sequence_numbers);
-    }
+    CLARITY_MEMBERS(nodes, clips, layers, channels, key_times, key_values, key_handles, key_spans, skins, bones, weights,
+                    shares, morphs, morph_targets, morph_vertices, morph_positions, morph_normals, frames, frame_times,
+                    frame_positions, stored, stored_positions, stored_normals, sequences, sequence_numbers);
 };
 
 }  // namespace clarity
