@@ -187,29 +187,17 @@ PrimPlace PrimNumbers::place(rt_i32 prim) const {
 }
 
 PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
+    using Kind = PrimPlace::Kind;
     PrimPlace place = PrimNumbers(scene).place(prim);
-    switch (place.kind) {
-        case PrimPlace::Kind::none:
-            break;
-        case PrimPlace::Kind::triangle: {
-            const Instance& instance = scene.instances[place.instance];
-            place.index += scene.meshes[instance.mesh].first_triangle;
-            place.material = instance.material == RT_NONE ? scene.triangle_materials[place.index] : instance.material;
-            break;
-        }
-        case PrimPlace::Kind::sphere:
-            place.material = scene.spheres[place.index].material;
-            break;
-        case PrimPlace::Kind::polygon:
-            place.material = scene.polygons[place.index].material;
-            break;
-        case PrimPlace::Kind::plane:
-            place.material = scene.planes[place.index].material;
-            break;
-        case PrimPlace::Kind::shape:
-            place.material = scene.shapes[place.index].material;
-            break;
+    if (place.kind == Kind::triangle) {
+        const Instance& instance = scene.instances[place.instance];
+        place.index += scene.meshes[instance.mesh].first_triangle;
+        place.material = instance.material == RT_NONE ? scene.triangle_materials[place.index] : instance.material;
     }
+    if (place.kind == Kind::sphere) place.material = scene.spheres[place.index].material;
+    if (place.kind == Kind::polygon) place.material = scene.polygons[place.index].material;
+    if (place.kind == Kind::plane) place.material = scene.planes[place.index].material;
+    if (place.kind == Kind::shape) place.material = scene.shapes[place.index].material;
     return place;
 }
 
