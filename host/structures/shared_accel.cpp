@@ -14,14 +14,14 @@ const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id) 
 
 // Members one after the other: plugins by their ids, memory as it is. The reader borrows the latter of the parcel.
 template <class How, class T>
-void visit(const How& how, T& value);
+void transfer(const How& how, T& value);
 struct Write {
     ParcelWriter& parcel;
     void operator()(const rt_plugin* plugin) const { parcel(std::string(plugin->id)); }
     void operator()(const AlignedBytes& memory) const { parcel.bytes(memory.data(), memory.bytes()); }
     void operator()(const std::vector<AccelData::Slot>& slots) const {
         parcel(uint64_t{slots.size()});
-        for (const AccelData::Slot& slot : slots) visit(*this, slot);
+        for (const AccelData::Slot& slot : slots) transfer(*this, slot);
     }
 };
 struct Read {
@@ -38,13 +38,13 @@ struct Read {
     }
     void operator()(std::vector<AccelData::Slot>& slots) const {
         uint64_t count = 0;
-        for (parcel(count); count > 0; --count) visit(*this, slots.emplace_back());
+        for (parcel(count); count > 0; --count) transfer(*this, slots.emplace_back());
     }
 };
 template <class How, class T>
-void visit(const How& how, T& value) {
+void transfer(const How& how, T& value) {
     if constexpr (has_members<T>)
-        for_each_member(value, [&](auto& member) { visit(how, member); });
+        for_each_member(value, [&](auto& member) { transfer(how, member); });
     else if constexpr (std::is_invocable_v<const How&, T&>)
         how(value);
     else
@@ -55,7 +55,7 @@ void visit(const How& how, T& value) {
 
 void write_accel(MemoryFile& file, const AccelData& accel) {
     ParcelWriter parcel(file);
-    visit(Write{parcel}, accel);
+    transfer(Write{parcel}, accel);
     parcel.finish();
     file.seal();
 }
@@ -69,7 +69,7 @@ std::shared_ptr<const AccelData> map_accel(const MemoryFile& file, const PluginR
     AccelData& accel = mapped->accel;
     ParcelReader parcel(file, ParcelReader::How::mapped);
     mapped->memory = parcel.memory();
-    visit(Read{parcel, plugins}, accel);
+    transfer(Read{parcel, plugins}, accel);
     parcel.end();
     return {mapped, &accel};
 } catch (const ParcelDamaged&) {
