@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/angle.hpp"
+#include "base/lowbias32.hpp"
 #include "base/pictures/srgb.hpp"
 #include "view/settings/aov.hpp"
 
@@ -66,18 +67,10 @@ const Table& entries(FalseColorScale::Map map) {
     return map == FalseColorScale::Map::gray ? gray : heat;
 }
 
-// lowbias32 (Wellons 2018): adjacent numbers get different colours.
-uint32_t hash(uint32_t x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ x >> 16;
-}
-
+// Adjacent numbers get different colours.
 Rgb color_of_number(float number) {
     if (!(number >= 0)) return {0, 0, 0};
-    const uint32_t h = hash(static_cast<uint32_t>(number) + 1);
+    const uint32_t h = lowbias32(static_cast<uint32_t>(number) + 1);
     Rgb color;
     for (int k = 0; k < 3; ++k) color[k] = static_cast<uint8_t>(64 + (h >> (8 * k) & 255) * 191 / 255);
     return color;

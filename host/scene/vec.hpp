@@ -13,6 +13,12 @@ inline Vec operator-(const Vec& a, const Vec& b) {
 inline Vec operator+(const Vec& a, const Vec& b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
+inline Vec operator-(const Vec& a) {
+    return {-a[0], -a[1], -a[2]};
+}
+inline Vec& operator+=(Vec& a, const Vec& b) {
+    return a = a + b;
+}
 inline Vec operator*(double s, const Vec& a) {
     return {s * a[0], s * a[1], s * a[2]};
 }
@@ -24,6 +30,10 @@ inline double length(const Vec& a) {
 }
 inline Vec normalized(const Vec& a) {
     return (1 / length(a)) * a;
+}
+// `otherwise`: of the zero vector.
+inline Vec normalized(const Vec& a, const Vec& otherwise) {
+    return length(a) > 0 ? normalized(a) : otherwise;
 }
 inline Vec to_vec(const float* three) {
     return {three[0], three[1], three[2]};

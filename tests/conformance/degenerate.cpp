@@ -27,10 +27,8 @@ Scene degenerate_scene() {
     // A wall of axis-parallel squares. Their corners are powers of two, so that the central rays run along their edges.
     for (int x = -4; x < 4; ++x)
         for (int y = -4; y < 4; ++y) {
-            const rt_u32 a = mesh.add_vertex(x, y, -4), b = mesh.add_vertex(x + 1, y, -4),
-                         c = mesh.add_vertex(x + 1, y + 1, -4), d = mesh.add_vertex(x, y + 1, -4);
-            mesh.add_triangle(a, b, c);
-            mesh.add_triangle(a, c, d);
+            const double left = x, low = y;
+            mesh.add_quad(Vec{left, low, -4}, {left + 1, low, -4}, {left + 1, low + 1, -4}, {left, low + 1, -4});
         }
 
     // Tiny triangles, and a floor that extends far beyond everything else.

@@ -13,6 +13,7 @@
 
 #include "conformance/compare.hpp"
 #include "conformance/degenerate.hpp"
+#include "stand/ray_sets.hpp"
 #include "support/scenes.hpp"
 
 using namespace clarity;
@@ -27,32 +28,6 @@ Settings settings_of(const std::string& accel, int lanes) {
     settings.accel = accel;
     settings.lanes = lanes;
     return settings;
-}
-
-rt_ray ray_of(const Point& origin, const Point& direction, float t_min = 0, float t_max = kInf) {
-    return {{origin[0], origin[1], origin[2]}, t_min, {direction[0], direction[1], direction[2]}, t_max};
-}
-
-// Origins in and around the scene's box, and directions all over the sphere; some directions are not unit vectors.
-std::vector<rt_ray> random_rays(const Scene& scene, size_t count, unsigned seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> at(-0.3f, 1.3f), any(0, 1);
-    std::normal_distribution<float> normal;
-    const Bounds box = scene.bounds();
-    std::vector<rt_ray> rays(count);
-    for (rt_ray& ray : rays) {
-        float length = 0;
-        for (int k = 0; k < 3; ++k) {
-            ray.origin[k] = box.min[k] + at(random) * (box.max[k] - box.min[k]);
-            ray.direction[k] = normal(random);
-            length += ray.direction[k] * ray.direction[k];
-        }
-        const float scale = (any(random) < 0.5f ? 1 : 1 + 9 * any(random)) / std::sqrt(length);
-        for (float& d : ray.direction) d *= scale;
-        ray.t_min = 0;
-        ray.t_max = kInf;
-    }
-    return rays;
 }
 
 void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, const std::string& accel,
@@ -106,7 +81,7 @@ ScenePtr shapes() {
 
 TEST(Rays, RandomRaysOnShapes) {
     const Oracle oracle(shapes());
-    expect_everywhere(shapes(), oracle, random_rays(*shapes(), 20000, 1), 0);
+    expect_everywhere(shapes(), oracle, random_rays(shapes()->bounds(), 20000, 1), 0);
 }
 
 #ifdef __SSE__
@@ -132,7 +107,7 @@ TEST(Rays, OneLaneAndPortable) {
     for (const ScenePtr& scene : {shapes(), geometry_of(load_scene(source_file("scenes/primitives.scene")))}) {
         const Oracle oracle(scene);
         for (const std::string& accel : bench().accels())
-            expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 9), accel, 1, 0, true);
+            expect_as_oracle(scene, oracle, random_rays(scene->bounds(), 20000, 9), accel, 1, 0, true);
     }
 }
 
@@ -140,7 +115,7 @@ TEST(Rays, RandomRaysOnEveryPrimitive) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Oracle oracle(scene);
     for (const std::string& accel : bench().accels())
-        expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 2), accel, 16, 0);
+        expect_as_oracle(scene, oracle, random_rays(scene->bounds(), 20000, 2), accel, 16, 0);
 }
 
 TEST(Rays, RandomRaysOnTheBunny) {
@@ -149,11 +124,12 @@ TEST(Rays, RandomRaysOnTheBunny) {
     const Oracle oracle(scene);
     for (const std::string& accel : bench().fast_accels())
         for (const int lanes : {1, 16})
-            expect_as_oracle(scene, oracle, random_rays(*scene, quick() ? 50000 : 200000, 3), accel, lanes, quick() ? 1 : 2);
+            expect_as_oracle(scene, oracle, random_rays(scene->bounds(), quick() ? 50000 : 200000, 3), accel, lanes,
+                             quick() ? 1 : 2);
 }
 
 TEST(Rays, HitsAreWithinTheirInterval) {
-    std::vector<rt_ray> rays = random_rays(*shapes(), 20000, 4);
+    std::vector<rt_ray> rays = random_rays(shapes()->bounds(), 20000, 4);
     std::mt19937 random(5);
     std::uniform_real_distribution<float> t(0, 4);
     for (rt_ray& ray : rays) {
@@ -169,7 +145,7 @@ TEST(Rays, HitsAreWithinTheirInterval) {
 TEST(Rays, FromFarAway) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Oracle oracle(scene);
-    std::vector<rt_ray> rays = random_rays(*scene, 20000, 9);
+    std::vector<rt_ray> rays = random_rays(scene->bounds(), 20000, 9);
     std::mt19937 random(10);
     std::uniform_real_distribution<float> decades(1, 5), one(-1, 1);
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -252,7 +228,7 @@ ScenePtr shapes_at_zero(double scale) {
 }
 
 std::vector<rt_ray> rays_at_zero() {
-    std::vector<rt_ray> rays = random_rays(*shapes_at_zero(1), 300, 21);
+    std::vector<rt_ray> rays = random_rays(shapes_at_zero(1)->bounds(), 300, 21);
     for (const float zero : {0.f, -0.f})
         for (const float other : {0.f, -0.f})
             for (const float sign : {1.f, -1.f})
@@ -354,7 +330,7 @@ TEST(Rays, ZeroNanAndInfiniteDirectionsDoNotDisturbOtherRays) {
         ray_of({0, 0, 5}, {0, 0, -1}, 10, 1),
         ray_of({0, 0, 5}, {0, 0, -1}, 0, -1),
     };
-    const std::vector<rt_ray> sane = random_rays(*shapes(), 16 * strange.size(), 7);
+    const std::vector<rt_ray> sane = random_rays(shapes()->bounds(), 16 * strange.size(), 7);
     std::vector<rt_ray> mixed;
     for (size_t i = 0; i < sane.size(); ++i) mixed.push_back(i % 5 == 2 ? strange[i / 5 % strange.size()] : sane[i]);
     const int triangles = static_cast<int>(shapes()->triangle_count());
@@ -406,7 +382,8 @@ TEST(Rays, AnEmptySceneHasNoHits) {
     const ScenePtr empty = shared_scene(scene_of(TriangleMesh()));
     for (const std::string& accel : bench().accels())
         for (const bool any : {false, true})
-            for (const rt_hit& hit : bench().rays(empty, settings_of(accel, 16), random_rays(*shapes(), 100, 8), any)) {
+            for (const rt_hit& hit :
+                 bench().rays(empty, settings_of(accel, 16), random_rays(shapes()->bounds(), 100, 8), any)) {
                 EXPECT_EQ(hit.t, kInf) << accel;
                 EXPECT_EQ(hit.prim, -1) << accel;
             }

@@ -115,11 +115,8 @@ ScenePtr scene_of(const Faces& faces, size_t nth) {
             polygons.push_back(&loop);
             continue;
         }
-        rt_u32 v[4];
-        for (int i = 0; i < 4; ++i)
-            v[i] = mesh.add_vertex(faces.corners[loop[i]][0], faces.corners[loop[i]][1], faces.corners[loop[i]][2]);
-        mesh.add_triangle(v[0], v[1], v[2]);
-        mesh.add_triangle(v[0], v[2], v[3]);
+        const auto corner = [&](size_t i) { return faces.corners[loop[i]]; };
+        mesh.add_quad(corner(0), corner(1), corner(2), corner(3));
     }
     Scene scene = test::scene_of(mesh);
     if (mesh.triangles.empty()) {

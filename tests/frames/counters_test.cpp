@@ -9,6 +9,7 @@
 
 #include "picture/film.hpp"
 #include "plugin/parameters.hpp"
+#include "stand/ray_sets.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -31,10 +32,6 @@ std::vector<rt_hit> traced(const ScenePtr& scene, const std::string& accel, int 
 std::vector<rt_hit> counted(const ScenePtr& scene, const std::string& accel, int lanes, const std::vector<rt_ray>& rays,
                             bool any = false) {
     return traced(scene, accel, lanes, rays, {any, true});
-}
-
-rt_ray ray_of(const Point& origin, const Point& direction, float t_max = INFINITY) {
-    return {{origin[0], origin[1], origin[2]}, 0, {direction[0], direction[1], direction[2]}, t_max};
 }
 
 std::vector<rt_ray> rays_at(double spread, size_t count) {
@@ -129,7 +126,7 @@ TEST(Counters, CountActiveLanesPerNode) {
             EXPECT_EQ(hit.lane_steps, 16 * alone.lane_steps) << accel;
         }
         // One active ray, and fifteen with an empty interval.
-        std::vector<rt_ray> lonely(16, ray_of({0.1f, 0.2f, 5}, {0, 0, -1}, -1));
+        std::vector<rt_ray> lonely(16, ray_of({0.1f, 0.2f, 5}, {0, 0, -1}, 0, -1));
         lonely[5] = straight;
         for (const rt_hit& hit : counted(ball(), accel, 16, lonely)) {
             EXPECT_EQ(hit.steps, alone.steps) << accel;

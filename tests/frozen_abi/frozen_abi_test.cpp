@@ -6,6 +6,7 @@
 #include <random>
 
 #include "import/import.hpp"
+#include "stand/ray_sets.hpp"
 #include "structures/accel_volumes.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
@@ -39,26 +40,6 @@ TEST(FrozenAbi, FieldsAreReadFromTheirPlaces) {
     EXPECT_STREQ(grid->extensions[0].name, "org.example.nothing");
 }
 
-// Rays between points around and in the scene.
-std::vector<rt_ray> rays_through(const Scene& scene, size_t count) {
-    const Bounds bounds = scene.bounds();
-    std::mt19937 random(7);
-    const auto coordinate = [&](int k, float size) {
-        const float middle = 0.5f * (bounds.min[k] + bounds.max[k]), half = 0.5f * size * (bounds.max[k] - bounds.min[k]);
-        return middle + half * (static_cast<float>(random()) / 2147483648.0f - 1);
-    };
-    std::vector<rt_ray> rays(count);
-    for (rt_ray& ray : rays) {
-        for (int k = 0; k < 3; ++k) {
-            ray.origin[k] = coordinate(k, 2);
-            ray.direction[k] = coordinate(k, 1) - ray.origin[k];
-        }
-        ray.t_min = 0;
-        ray.t_max = INFINITY;
-    }
-    return rays;
-}
-
 class FrozenAccel : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(FrozenAccel, HitsWhatLinearHits) {
@@ -69,7 +50,7 @@ TEST_P(FrozenAccel, HitsWhatLinearHits) {
         for (const bool any_hit : {false, true}) {
             if (few_ways() && any_hit != (lanes == std::string("1"))) continue;
             SCOPED_TRACE(GetParam() + ", " + lanes + " lanes, " + (any_hit ? "any" : "nearest"));
-            const std::vector<rt_ray> rays = rays_through(*scene, 4096);
+            const std::vector<rt_ray> rays = random_rays(scene->bounds(), 4096, 7);
             const auto expected =
                 Workbench::get().rays(scene, make_settings({{"accel", "linear"}, {"lanes", lanes}}), rays, any_hit);
             const auto found =

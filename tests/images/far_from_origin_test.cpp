@@ -22,27 +22,8 @@ const char* name_of(Kind kind) {
     return kind == Kind::triangles ? "triangles" : kind == Kind::polygon ? "polygon" : "instance";
 }
 
-rt_u32 add_mesh(Scene& scene, const TriangleMesh& mesh, rt_u32 material) {
-    Mesh m;
-    m.first_vertex = scene.vertex_count();
-    m.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
-    m.first_triangle = scene.triangle_count();
-    m.triangle_count = m.polygon_count = static_cast<rt_u32>(mesh.triangles.size() / 3);
-    scene.positions.append(mesh.positions.begin(), mesh.positions.end());
-    for (const rt_u32 v : mesh.triangles) scene.triangles.push_back(m.first_vertex + v);
-    scene.triangle_materials.resize(scene.triangle_count(), material);
-    scene.meshes.push_back(m);
-    return static_cast<rt_u32>(scene.meshes.size() - 1);
-}
-
-void add_instance(Scene& scene, rt_u32 mesh, const Point& place, float scale = 1) {
-    Instance instance;
-    instance.mesh = mesh;
-    for (int k = 0; k < 3; ++k) {
-        instance.world_from_object[5 * k] = scale;
-        instance.world_from_object[4 * k + 3] = place[k];
-    }
-    scene.instances.push_back(instance);
+void add_instance(Scene& scene, rt_u32 mesh, const Point& at, float scale = 1) {
+    place(scene, mesh, {scale, 0, 0, at[0], 0, scale, 0, at[1], 0, 0, scale, at[2]});
 }
 
 void add_rectangle(Scene& scene, Kind kind, const Point& center, float half, rt_u32 material) {
@@ -61,10 +42,8 @@ void add_rectangle(Scene& scene, Kind kind, const Point& center, float half, rt_
     const bool moved = kind == Kind::instance;
     const Point at = moved ? Point{0, 0, 0} : center;
     TriangleMesh mesh;
-    for (const auto& [sx, sy] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
-        mesh.add_vertex(at[0] + sx * half, at[1] + sy * half, at[2]);
-    mesh.add_triangle(0, 1, 2);
-    mesh.add_triangle(0, 2, 3);
+    const auto corner = [&](float sx, float sy) { return Point{at[0] + sx * half, at[1] + sy * half, at[2]}; };
+    mesh.add_quad(corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1));
     const rt_u32 number = add_mesh(scene, mesh, material);
     add_instance(scene, number, moved ? center : Point{0, 0, 0});
     if (moved) add_instance(scene, number, {x, y, z - 100});  // a mesh that is placed once would be flattened
@@ -114,9 +93,7 @@ Scene room(const Point& by) {
                  crystal = add_material(scene, glass(1.5f));
     add_rectangle(scene, Kind::triangles, at(0, 0, 0), 1, white);
     TriangleMesh wall;
-    for (const Point& p : {at(-1, 1, 0), at(1, 1, 0), at(1, 1, 1), at(-1, 1, 1)}) wall.add_vertex(p[0], p[1], p[2]);
-    wall.add_triangle(0, 1, 2);
-    wall.add_triangle(0, 2, 3);
+    wall.add_quad(at(-1, 1, 0), at(1, 1, 0), at(1, 1, 1), at(-1, 1, 1));
     add_instance(scene, add_mesh(scene, wall, mirrors), {0, 0, 0});
     const rt_u32 cube = add_mesh(scene, box(0.125), white);
     add_instance(scene, cube, at(.5f, .25f, .125f));

@@ -50,10 +50,8 @@ inline void expect_color(const FloatImage& image, int x, int y, const std::array
 // A floor, and above it a lamp that faces it, 2 x 2, with its own coordinates.
 inline Scene lamp(const Texels& texels, rt_u32 flags = RT_TEXTURE_NEAREST) {
     TriangleMesh mesh;
-    const auto add = [&](double x, double y, double z) { return mesh.add_vertex(x, y, z); };
-    const rt_u32 a = add(-1, 1, -1), b = add(1, 1, -1), c = add(1, 1, 1), d = add(-1, 1, 1);
-    const rt_u32 e = add(-9, 0, -9), f = add(-9, 0, 9), g = add(9, 0, 9), h = add(9, 0, -9);
-    mesh.add_triangle(a, b, c), mesh.add_triangle(a, c, d), mesh.add_triangle(e, f, g), mesh.add_triangle(e, g, h);
+    mesh.add_quad(Vec{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1});
+    mesh.add_quad(Vec{-9, 0, -9}, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9});
     Scene scene = scene_of(mesh);
     scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0};
     scene.materials[0].values = diffuse(0, 0, 0);

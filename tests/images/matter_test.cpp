@@ -15,20 +15,9 @@ namespace {
 
 // A square with corners at (-1,-1) and (1,1) at a depth z.
 void add_square(Scene& scene, float z, rt_u32 material) {
-    const rt_u32 first = scene.vertex_count();
-    for (const auto& [x, y] : {std::pair(-1.f, -1.f), std::pair(1.f, -1.f), std::pair(1.f, 1.f), std::pair(-1.f, 1.f)})
-        for (const float p : {x, y, z}) scene.positions.push_back(p);
-    Mesh mesh;
-    mesh.first_vertex = first;
-    mesh.vertex_count = 4;
-    mesh.first_triangle = scene.triangle_count();
-    mesh.triangle_count = mesh.polygon_count = 2;
-    for (const rt_u32 corner : {0u, 1u, 2u, 0u, 2u, 3u}) scene.triangles.push_back(first + corner);
-    scene.triangle_materials.resize(scene.triangle_count(), material);
-    Instance instance;
-    instance.mesh = static_cast<rt_u32>(scene.meshes.size());
-    scene.instances.push_back(instance);
-    scene.meshes.push_back(mesh);
+    TriangleMesh mesh;
+    mesh.add_quad(Point{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z});
+    place(scene, add_mesh(scene, mesh, material));
 }
 
 // Whitted's ambient light of 1, and for `path` a sky of 1: a diffuse surface shows its colour. The picture is the square at z =

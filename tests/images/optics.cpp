@@ -54,10 +54,7 @@ void expect_picture(const Picture& picture, const View& view, const std::functio
 
 Scene white_square(const Affine& placed) {
     TriangleMesh mesh;
-    const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0),
-                 d = mesh.add_vertex(0, 2, 0);
-    mesh.add_triangle(a, b, c);
-    mesh.add_triangle(a, c, d);
+    mesh.add_quad(Vec{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0});
     Scene scene = scene_of(mesh);
     scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
     scene.instances[0].world_from_object = placed;

@@ -109,10 +109,7 @@ TEST(Path, SumsOfManySamplesAreExact) {
 // A half-plane x > 0 that glows, seen from (0, 0, 4), 0.8 wide. Returns the mean of each column.
 std::vector<double> glowing_half(const Pairs& settings, float aperture, float focus) {
     TriangleMesh mesh;
-    const rt_u32 a = mesh.add_vertex(0, -9, 0), b = mesh.add_vertex(9, -9, 0), c = mesh.add_vertex(9, 9, 0),
-                 d = mesh.add_vertex(0, 9, 0);
-    mesh.add_triangle(a, b, c);
-    mesh.add_triangle(a, c, d);
+    mesh.add_quad(Vec{0, -9, 0}, {9, -9, 0}, {9, 9, 0}, {0, 9, 0});
     Scene scene = scene_of(mesh);
     scene.materials[0].values = diffuse(0, 0, 0);
     for (float& e : scene.materials[0].values.emission) e = 1;

@@ -1,10 +1,10 @@
 // moving_scenes.hpp -- a scene that moves, its poses and its structures, for tests of refits.
 #pragma once
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include "scene/motion/pose.hpp"
+#include "stand/ray_sets.hpp"
 #include "structures/accel_build.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
@@ -13,26 +13,6 @@ namespace clarity::test {
 
 inline Affine moved_to(float x, float y, float z) {
     return {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z};
-}
-
-inline rt_u32 add_mesh(Scene& scene, const TriangleMesh& mesh) {
-    Mesh range;
-    range.first_vertex = scene.vertex_count();
-    range.first_triangle = scene.triangle_count();
-    range.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
-    range.triangle_count = range.polygon_count = static_cast<rt_u32>(mesh.triangles.size() / 3);
-    scene.positions.append(mesh.positions.begin(), mesh.positions.end());
-    for (const rt_u32 v : mesh.triangles) scene.triangles.push_back(range.first_vertex + v);
-    scene.triangle_materials.resize(scene.triangles.size() / 3, 0);
-    scene.meshes.push_back(range);
-    return static_cast<rt_u32>(scene.meshes.size() - 1);
-}
-inline void place(Scene& scene, rt_u32 mesh, const Affine& world_from_object) {
-    Instance instance;
-    instance.mesh = mesh;
-    instance.world_from_object = world_from_object;
-    instance.name = "placed " + std::to_string(scene.instances.size());
-    scene.instances.push_back(instance);
 }
 
 // A ring that is placed once where it is, a ball that is placed once elsewhere, a box that is placed many times, and a sphere.
@@ -50,16 +30,9 @@ inline ScenePtr rings() {
 
 // Rays from far around towards the middle.
 inline std::vector<rt_ray> rays_at_rings(int count) {
-    std::mt19937 random(3);
-    std::normal_distribution<float> any;
+    RayMaker make(3, 0);
     std::vector<rt_ray> rays;
-    for (int i = 0; i < count; ++i) {
-        rt_ray ray{{8 * any(random), 8 * any(random), 8 * any(random)}, 0, {}, INFINITY};
-        float length = 0;
-        for (int k = 0; k < 3; ++k) length += std::pow(ray.direction[k] = 2 * any(random) - ray.origin[k], 2.0f);
-        for (float& d : ray.direction) d /= std::sqrt(length);
-        rays.push_back(ray);
-    }
+    for (int i = 0; i < count; ++i) rays.push_back(make.into({"the middle", {0, 0, 0}, 4}, 3));
     return rays;
 }
 

@@ -8,7 +8,6 @@
 namespace clarity::reference::parts {
 
 using test::add_material;
-using test::TriangleMesh;
 
 rt_material material(rt_u32 model, float color, float roughness, rt_u32 flags) {
     rt_material m = default_material();
@@ -95,11 +94,7 @@ Scene ball(const rt_material& m) {
     return scene;
 }
 void add_quad(TriangleMesh& mesh, const Vec& corner, const Vec& a, const Vec& b) {
-    rt_u32 v[4];
-    const Vec at[4] = {corner, corner + a, corner + a + b, corner + b};
-    for (int k = 0; k < 4; ++k) v[k] = mesh.add_vertex(at[k][0], at[k][1], at[k][2]);
-    mesh.add_triangle(v[0], v[1], v[2]);
-    mesh.add_triangle(v[0], v[2], v[3]);
+    mesh.add_quad(corner, corner + a, corner + a + b, corner + b);
 }
 Scene of_mesh(const TriangleMesh& mesh, const rt_material& m) {
     Scene scene = test::scene_of(mesh);

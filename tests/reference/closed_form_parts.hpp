@@ -30,8 +30,8 @@ Vec slanted(double deg);
 Scene empty();
 Scene ground(const rt_material& m);
 Scene ball(const rt_material& m);
-void add_quad(test::TriangleMesh& mesh, const Vec& corner, const Vec& a, const Vec& b);
-Scene of_mesh(const test::TriangleMesh& mesh, const rt_material& m);
+void add_quad(TriangleMesh& mesh, const Vec& corner, const Vec& a, const Vec& b);
+Scene of_mesh(const TriangleMesh& mesh, const rt_material& m);
 // The unit cube without its ceiling, which is a light.
 Scene room(const rt_material& m);
 // All of a face of it, in pixels of equal area.

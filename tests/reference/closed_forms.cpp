@@ -11,7 +11,6 @@ namespace {
 
 using namespace parts;
 using test::add_material;
-using test::TriangleMesh;
 
 class List {
  public:

@@ -1,32 +1,9 @@
 // generated.hpp -- scenes made by formula, so that the expected results need no file.
 #pragma once
-#include <array>
-#include <vector>
-
+#include "stand/triangle_mesh.hpp"
 #include "support/workbench.hpp"
 
 namespace clarity::test {
-
-using Point = std::array<float, 3>;
-
-// A mesh of triangles that share corners, as in a file.
-struct TriangleMesh {
-    std::vector<float> positions;
-    std::vector<rt_u32> triangles;
-
-    rt_u32 add_vertex(double x, double y, double z);
-    void add_triangle(rt_u32 a, rt_u32 b, rt_u32 c);
-    void add(const TriangleMesh& other);
-    void transform(double scale, const std::array<double, 3>& offset);
-    Point vertex(rt_u32 i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
-    // Whether every edge belongs to exactly two triangles, which traverse it in opposite directions.
-    bool is_closed() const;
-};
-
-// Closed meshes. Segments go around the axis, rings from pole to pole. `positions` has every corner once.
-TriangleMesh uv_sphere(double radius, unsigned segments, unsigned rings);
-TriangleMesh torus(double major, double minor, unsigned segments, unsigned sides);
-TriangleMesh box(double half_size);
 
 // A scene with one mesh, one instance of it and the default material.
 Scene scene_of(const TriangleMesh& mesh);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/check/scene_maker.hpp"
-
 namespace clarity::check {
 namespace {
 
@@ -14,7 +12,7 @@ constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{
 
 // Flat faces in front of slanted ones, nearer by a share of 4e-4 of the distance: a traversal that culls a little too much
 // loses them. The slanted faces' boxes begin well before.
-void add_faces(Maker& make) {
+void add_faces(SceneMaker& make) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto turned = [&](float a, float b, float c) {
             Point p = kFaces;
@@ -25,28 +23,28 @@ void add_faces(Maker& make) {
         };
         // A pair of slanted faces, a = b / 2, 6 from the centre on either side.
         for (const float side : {-6.0f, 6.0f}) {
-            make.quad(turned(side - 1, -2, -2), turned(side + 1, 2, -2), turned(side + 1, 2, 2), turned(side - 1, -2, 2));
+            make.add_quad(turned(side - 1, -2, -2), turned(side + 1, 2, -2), turned(side + 1, 2, 2), turned(side - 1, -2, 2));
             for (int i = 0; i < 60; ++i) {
                 const float b = 3.6f * make.random() - 1.8f, c = 3.6f * make.random() - 1.8f, s = 0.004f;
                 for (const float off : {-0.004f, 0.004f}) {
                     const float a = side + b / 2 + off;
-                    make.triangle(turned(a, b - s, c - s), turned(a, b + s, c - s), turned(a, b, c + s));
+                    make.add_triangle(turned(a, b - s, c - s), turned(a, b + s, c - s), turned(a, b, c + s));
                 }
             }
         }
     }
 }
 
-void add_degenerate(Maker& make) {
+void add_degenerate(SceneMaker& make) {
     const Point& o = kDegenerate;
     const auto at = [&](float x, float y, float z) { return Point{o[0] + x, o[1] + y, o[2] + z}; };
     for (int i = 0; i < 24; ++i) {
         const float x = -3 + 0.25f * float(i);
-        make.triangle(at(x, 1, 0), at(x, 1, 0), at(x, 1, 0));                   // a point
-        make.triangle(at(x, -1, 0), at(x, 0, 0), at(x, 1, 0));                  // a line
-        make.triangle(at(x, -2, 1), at(x + 1e-4f, -2, 1), at(x, 3, 1));         // a needle
-        make.triangle(at(x, 0, -1), at(x + 0.2f, 0, -1), at(x, 0.2f, -1));      // sound, among them
-        make.triangle(at(x, -3, 2), at(x + 0.2f, -3, 2), at(x + 0.1f, -3, 2));  // no area
+        make.add_triangle(at(x, 1, 0), at(x, 1, 0), at(x, 1, 0));                   // a point
+        make.add_triangle(at(x, -1, 0), at(x, 0, 0), at(x, 1, 0));                  // a line
+        make.add_triangle(at(x, -2, 1), at(x + 1e-4f, -2, 1), at(x, 3, 1));         // a needle
+        make.add_triangle(at(x, 0, -1), at(x + 0.2f, 0, -1), at(x, 0.2f, -1));      // sound, among them
+        make.add_triangle(at(x, -3, 2), at(x + 0.2f, -3, 2), at(x + 0.1f, -3, 2));  // no area
     }
 }
 
@@ -73,39 +71,39 @@ const std::vector<Region>& mixed_regions() {
 }
 
 Scene mixed_scene(uint64_t seed) {
-    Maker make(seed);
-    make.soup(kSoup, 4, 0.9f, 700);
-    make.place(make.mesh());
+    SceneMaker make(seed);
+    make.add_soup(kSoup, 4, 0.9f, 700);
+    make.place_mesh();
     for (int i = 0; i < 27; ++i) {
         const int x = i % 3, y = i / 3 % 3, z = i / 9;
         const Point lo{kBoxes[0] - 3 + 2 * float(x), kBoxes[1] - 3 + 2 * float(y), kBoxes[2] - 3 + 2 * float(z)};
-        make.box(lo, {lo[0] + 2 - 1.5f * float(i % 2), lo[1] + 2, lo[2] + 2});
+        make.add_box(to_vec(lo), {lo[0] + 2 - 1.5f * float(i % 2), lo[1] + 2, lo[2] + 2});
     }
     add_faces(make);
-    make.place(make.mesh());
+    make.place_mesh();
     add_degenerate(make);
-    make.soup(kTiny, 0.015f, 0.004f, 150);
-    make.soup(kFar, 9, 4, 150);
+    make.add_soup(kTiny, 0.015f, 0.004f, 150);
+    make.add_soup(kFar, 9, 4, 150);
     for (int i = 0; i < 20; ++i)
-        make.triangle({kCopies[0] - 1, kCopies[1] - 1, kCopies[2]}, {kCopies[0] + 1, kCopies[1] - 1, kCopies[2]},
-                      {kCopies[0], kCopies[1] + 1, kCopies[2]});
-    make.soup(kCopies, 1.5f, 0.5f, 40);
+        make.add_triangle({kCopies[0] - 1, kCopies[1] - 1, kCopies[2]}, {kCopies[0] + 1, kCopies[1] - 1, kCopies[2]},
+                          {kCopies[0], kCopies[1] + 1, kCopies[2]});
+    make.add_soup(kCopies, 1.5f, 0.5f, 40);
     // Huge: a floor far below and a wall far behind.
-    make.quad({-2e5f, -300, -2e5f}, {2e5f, -300, -2e5f}, {2e5f, -300, 2e5f}, {-2e5f, -300, 2e5f});
-    make.triangle({-1e5f, -1e5f, -2e4f}, {1e5f, -1e5f, -2e4f}, {0, 1e5f, -2e4f});
+    make.add_quad(Point{-2e5f, -300, -2e5f}, {2e5f, -300, -2e5f}, {2e5f, -300, 2e5f}, {-2e5f, -300, 2e5f});
+    make.add_triangle({-1e5f, -1e5f, -2e4f}, {1e5f, -1e5f, -2e4f}, {0, 1e5f, -2e4f});
     for (int i = 0; i < 30; ++i) {  // shells around one centre: a ray through it enters all boxes
         const float r = 0.02f * std::pow(1.22f, float(i));
-        make.box({kShells[0] - r, kShells[1] - r, kShells[2] - r}, {kShells[0] + r, kShells[1] + r, kShells[2] + r});
+        make.add_box({kShells[0] - r, kShells[1] - r, kShells[2] - r}, {kShells[0] + r, kShells[1] + r, kShells[2] + r});
     }
-    make.place(make.mesh());
+    make.place_mesh();
 
-    make.ball({0, 0, 0}, 1, 10, 6);
-    make.soup({0.4f, 0.2f, 0}, 1.2f, 0.5f, 40);
-    const rt_u32 ball = make.mesh();
-    make.soup({500, -200, 100}, 1, 0.7f, 80);  // far from its own origin: matrices must bring it back
-    const rt_u32 cloud = make.mesh();
-    make.triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
-    const rt_u32 single = make.mesh();
+    make.add_ball({0, 0, 0}, 1, 10, 6);
+    make.add_soup({0.4f, 0.2f, 0}, 1.2f, 0.5f, 40);
+    const rt_u32 ball = make.end_mesh();
+    make.add_soup({500, -200, 100}, 1, 0.7f, 80);  // far from its own origin: matrices must bring it back
+    const rt_u32 cloud = make.end_mesh();
+    make.add_triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+    const rt_u32 single = make.end_mesh();
     const Point& i = kInstances;
     make.place(ball, placed(i, 0.4f, {1.5f, 1.5f, 1.5f}));
     make.place(ball, placed({i[0] + 4, i[1], i[2]}, 1.9f, {1, 2, 0.5f}));
@@ -129,16 +127,16 @@ Scene mixed_scene(uint64_t seed) {
 
     place_shells(make, placed(kShellsInstanced, 0, {1, 1, 1}));
 
-    for (int k = 0; k < 12; ++k) make.sphere(make.around(kSpheres, 3), 0.05f + make.random());
-    make.sphere(kSpheres, 3.5f);  // around most of them
-    make.sphere({kSpheres[0], kSpheres[1], kSpheres[2] + 3.8f}, 1e-3f);
+    for (int k = 0; k < 12; ++k) make.add_sphere(make.around(kSpheres, 3), 0.05f + make.random());
+    make.add_sphere(kSpheres, 3.5f);  // around most of them
+    make.add_sphere({kSpheres[0], kSpheres[1], kSpheres[2] + 3.8f}, 1e-3f);
     for (int k = 0; k < 6; ++k) {
         const float z = kPolygons[2] - 3 + float(k), t = 0.1f * float(k);
         const auto at = [&](float x, float y) { return Point{kPolygons[0] + x, kPolygons[1] + y, z + t * x}; };
         if (k % 2)
-            make.polygon({at(-2, -2), at(2, -2), at(3, 1), at(0, 3), at(-3, 1)});
+            make.add_polygon({at(-2, -2), at(2, -2), at(3, 1), at(0, 3), at(-3, 1)});
         else
-            make.polygon({at(-2, -2), at(0, -0.5f), at(2, -2), at(0, 3)});  // concave
+            make.add_polygon({at(-2, -2), at(0, -0.5f), at(2, -2), at(0, 3)});  // concave
     }
     return std::move(make.scene);
 }
@@ -181,95 +179,111 @@ Scene rippled(Scene mixed) {
     return mixed;
 }
 
+Instance& place_shells(SceneMaker& make, const Affine& world_from_object) {
+    for (int i = 0; i < 100; ++i) {
+        const float s = 8 * std::pow(1.2f, -float(i));
+        make.add_box({-s, -s, -s}, {s, s, s});
+    }
+    Instance& shells = make.place_mesh(world_from_object);
+    shells.apart = true;
+    return shells;
+}
+
+void add_common_part(SceneMaker& make, const Point& at) {
+    place_shells(make, placed(at, 0, {1e-7f, 1e-7f, 1e-7f})).visible = false;
+    make.add_sphere(at, 1e-7f);
+    make.add_polygon({at, {at[0] + 1e-4f, at[1], at[2]}, {at[0], at[1], at[2] + 1e-4f}});
+}
+
 std::vector<NamedScene> small_scenes(uint64_t seed) {
     std::vector<NamedScene> scenes;
     const auto add = [&](const char* name, auto fill) {
-        Maker make(seed);
+        SceneMaker make(seed);
         fill(make);
         scenes.push_back({name, std::move(make.scene)});
     };
-    add("empty", [](Maker&) {});
-    add("one triangle", [](Maker& make) {
-        make.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-        make.place(make.mesh());
+    add("empty", [](SceneMaker&) {});
+    add("one triangle", [](SceneMaker& make) {
+        make.add_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        make.place_mesh();
     });
     for (const int count : {2, 3, 5, 9, 17})
-        add(count == 2 ? "two triangles" : "a few triangles", [count](Maker& make) {
-            make.soup({0, 0, 0}, 3, 1, unsigned(count));
-            make.place(make.mesh());
+        add(count == 2 ? "two triangles" : "a few triangles", [count](SceneMaker& make) {
+            make.add_soup({0, 0, 0}, 3, 1, unsigned(count));
+            make.place_mesh();
         });
-    add("one sphere", [](Maker& make) { make.sphere({1, 2, 3}, 0.5f); });
-    add("only instances", [](Maker& make) {
-        make.soup({0, 0, 0}, 1, 1, 20);
-        const rt_u32 mesh = make.mesh();
+    add("one sphere", [](SceneMaker& make) { make.add_sphere({1, 2, 3}, 0.5f); });
+    add("only instances", [](SceneMaker& make) {
+        make.add_soup({0, 0, 0}, 1, 1, 20);
+        const rt_u32 mesh = make.end_mesh();
         for (int i = 0; i < 30; ++i) make.place(mesh, placed({3 * float(i), 0, 0}, float(i), {1, 1, 1}));
     });
-    add("two instances of one triangle", [](Maker& make) {
-        make.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-        const rt_u32 mesh = make.mesh();
+    add("two instances of one triangle", [](SceneMaker& make) {
+        make.add_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        const rt_u32 mesh = make.end_mesh();
         make.place(mesh);
         make.place(mesh, placed({3, 0, 0}, 0, {1, 1, 1}));
     });
-    add("300 times the same triangle", [](Maker& make) {
-        for (int i = 0; i < 300; ++i) make.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-        make.place(make.mesh());
+    add("300 times the same triangle", [](SceneMaker& make) {
+        for (int i = 0; i < 300; ++i) make.add_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        make.place_mesh();
     });
-    add("300 times the same point", [](Maker& make) {
-        for (int i = 0; i < 300; ++i) make.triangle({5, 5, 5}, {5, 5, 5}, {5, 5, 5});
-        make.place(make.mesh());
+    add("300 times the same point", [](SceneMaker& make) {
+        for (int i = 0; i < 300; ++i) make.add_triangle({5, 5, 5}, {5, 5, 5}, {5, 5, 5});
+        make.place_mesh();
     });
-    add("sizes that double", [](Maker& make) {  // unbalanced: deep trees
+    add("sizes that double", [](SceneMaker& make) {  // unbalanced: deep trees
         for (int i = 0; i < 60; ++i) {
             const float s = std::pow(2.0f, float(i) - 30);
-            make.triangle({s, 0, 0}, {2 * s, 0, 0}, {s, s, s});
+            make.add_triangle({s, 0, 0}, {2 * s, 0, 0}, {s, s, s});
         }
-        make.place(make.mesh());
+        make.place_mesh();
     });
-    add("in one plane", [](Maker& make) {
+    add("in one plane", [](SceneMaker& make) {
         for (int y = 0; y < 20; ++y)
             for (int x = 0; x < 20; ++x)
-                make.triangle({float(x), float(y), 0}, {float(x) + 1, float(y), 0}, {float(x), float(y) + 1, 0});
-        make.place(make.mesh());
+                make.add_triangle({float(x), float(y), 0}, {float(x) + 1, float(y), 0}, {float(x), float(y) + 1, 0});
+        make.place_mesh();
     });
-    add("coordinates up to 1e18", [](Maker& make) {
-        make.soup({1e18f, -1e18f, 1e18f}, 1e18f, 1e17f, 200);
-        make.soup({0, 0, 0}, 1, 0.1f, 100);
-        make.place(make.mesh());
+    add("coordinates up to 1e18", [](SceneMaker& make) {
+        make.add_soup({1e18f, -1e18f, 1e18f}, 1e18f, 1e17f, 200);
+        make.add_soup({0, 0, 0}, 1, 0.1f, 100);
+        make.place_mesh();
     });
-    add("coordinates below 1e-30", [](Maker& make) {
-        make.soup({0, 0, 0}, 1e-30f, 1e-31f, 200);
-        make.place(make.mesh());
+    add("coordinates below 1e-30", [](SceneMaker& make) {
+        make.add_soup({0, 0, 0}, 1e-30f, 1e-31f, 200);
+        make.place_mesh();
     });
     scenes.push_back({"mixed", mixed_scene(seed)});
     return scenes;
 }
 
 Scene sparse_scene(unsigned count, uint64_t seed) {
-    Maker make(seed);
+    SceneMaker make(seed);
     const int side = static_cast<int>(std::ceil(std::cbrt(double(count))));
     for (unsigned i = 0; i < count; ++i) {
         const int n = static_cast<int>(i);
         const int x = n % side, y = n / side % side, z = n / side / side;
         const Point cell{float(x), float(y), float(z)};
         const Point p = make.around({3.1f * cell[0] - 7.3f, 2.9f * cell[1] + 1.7f, 3.3f * cell[2] - 2.9f}, 0.6f);
-        make.triangle(make.around(p, 0.6f), make.around(p, 0.6f), make.around(p, 0.6f));
+        make.add_triangle(make.around(p, 0.6f), make.around(p, 0.6f), make.around(p, 0.6f));
     }
-    make.place(make.mesh());
+    make.place_mesh();
     return std::move(make.scene);
 }
 
 Scene soup_scene(unsigned count, uint64_t seed) {
-    Maker make(seed);
-    make.soup({0, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);
-    make.place(make.mesh());
+    SceneMaker make(seed);
+    make.add_soup({0, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);
+    make.place_mesh();
     return std::move(make.scene);
 }
 
 Scene large_scene(unsigned count, uint64_t seed) {
-    Maker make(seed);
+    SceneMaker make(seed);
     add_faces(make);
-    make.soup({200, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);  // besides the faces, so that rays reach these
-    make.place(make.mesh());
+    make.add_soup({200, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);  // besides the faces, so that rays reach these
+    make.place_mesh();
     return std::move(make.scene);
 }
 

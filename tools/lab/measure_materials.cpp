@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 #include "tools/check/surfaces/hemisphere.hpp"
 #include "tools/check/surfaces/model_checks.hpp"
 #include "worker/child.hpp"
@@ -75,7 +75,7 @@ struct View {
     }
 };
 std::vector<View> views_of(const Case& one) {
-    std::mt19937 random = check::random_of(97, one.seed);
+    std::mt19937 random = random_of(97, one.seed);
     const auto number = [&] { return double(random() >> 8) * 0x1p-24; };
     std::vector<View> views(kViews);
     for (int i = 0; i < kViews; ++i) {
@@ -175,7 +175,7 @@ void measure_materials(const MeasureJob& job, const std::function<void(const nlo
         const std::vector<View> views = views_of(one);
         const size_t draws = one.rays;
         const auto first_draws = [&](SurfaceProbe& probe, const SurfaceSubject& subject, const View& view) {
-            std::mt19937 random = check::random_of(98, one.seed);
+            std::mt19937 random = random_of(98, one.seed);
             return probe.ask(subject, check::random_draws(view.wo, draws, random));
         };
         // Adds the draws that it takes until the standard error is kGoodError of the mean, at least one.
@@ -207,7 +207,7 @@ void measure_materials(const MeasureJob& job, const std::function<void(const nlo
             worker::say_step("compiling", kAsking_s);
             if (!own) own = std::make_unique<SurfaceProbe>(*student, device);
             const SurfaceSubject subject = subject_of(*student, one);
-            std::mt19937 random = check::random_of(99, one.seed);
+            std::mt19937 random = random_of(99, one.seed);
             std::string wrong;
             work = 0;
             for (size_t i = 0; i < views.size() && wrong.empty(); ++i) {

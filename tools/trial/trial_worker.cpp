@@ -25,6 +25,7 @@
 #include "scene/scene.hpp"
 #include "scene/surface_models.hpp"
 #include "scene/tangents.hpp"
+#include "stand/triangle_mesh.hpp"
 #include "structures/accel_copy.hpp"
 #include "structures/guarded_memory.hpp"
 #include "tracers/rays/query_scene.hpp"
@@ -45,62 +46,27 @@ using TrialSteps = std::function<void(const std::string& step, double limit_s)>;
 // The small scene on which kernels are tried. It is made by formula.
 enum : rt_u32 { kMatt, kGlass, kMirror, kTextured };
 
-// A sphere with bumps: rows x columns pairs of triangles.
-void add_bumps(Scene& scene, rt_u32 material) {
+// A sphere with bumps. The last vertices of a row lie where its first ones do, with other coordinates of textures.
+TriangleMesh bumps() {
     constexpr rt_u32 kRows = 16, kColumns = 32;
     constexpr auto pi = static_cast<float>(kPi);
-    Mesh mesh;
-    mesh.name = "bumps";
-    mesh.first_vertex = scene.vertex_count();
-    mesh.first_triangle = scene.triangle_count();
-    for (rt_u32 row = 0; row <= kRows; ++row)
-        for (rt_u32 column = 0; column <= kColumns; ++column) {
-            const float v = float(row) / kRows, u = float(column) / kColumns;
-            const float up = v * pi, round = u * 2 * pi, radius = 1 + 0.1f * std::sin(5 * up) * std::cos(4 * round);
-            const float direction[3] = {std::sin(up) * std::cos(round), std::cos(up), std::sin(up) * std::sin(round)};
-            for (const float d : direction) scene.positions.push_back(radius * d);
-            for (const float d : direction) scene.normals.push_back(d);
-            scene.uvs.push_back(u);
-            scene.uvs.push_back(v);
-        }
-    for (rt_u32 row = 0; row < kRows; ++row)
-        for (rt_u32 column = 0; column < kColumns; ++column) {
-            const rt_u32 a = mesh.first_vertex + row * (kColumns + 1) + column, b = a + kColumns + 1;
-            for (const rt_u32 corner : {a, b, a + 1, a + 1, b, b + 1}) scene.triangles.push_back(corner);
-        }
-    mesh.vertex_count = scene.vertex_count() - mesh.first_vertex;
-    mesh.triangle_count = scene.triangle_count() - mesh.first_triangle;
-    mesh.polygon_count = mesh.triangle_count;
-    scene.triangle_materials.resize(scene.triangle_count(), material);
-    scene.meshes.push_back(mesh);
+    TriangleMesh mesh;
+    mesh.add_grid({kRows, kColumns, {{{0, 2, 1}, {1, 2, 3}}}}, [&](rt_u32 row, rt_u32 column) {
+        const float v = float(row) / kRows, u = float(column) / kColumns;
+        const float up = v * pi, round = u * 2 * pi, radius = 1 + 0.1f * std::sin(5 * up) * std::cos(4 * round);
+        const Vec direction = to_vec(Point{std::sin(up) * std::cos(round), std::cos(up), std::sin(up) * std::sin(round)});
+        mesh.add_vertex(double(radius) * direction, direction, u, v);
+    });
+    return mesh;
 }
 
-void add_floor(Scene& scene, rt_u32 material) {
-    Mesh mesh;
-    mesh.name = "floor";
-    mesh.first_vertex = scene.vertex_count();
-    mesh.first_triangle = scene.triangle_count();
-    for (const float x : {-6.0f, 6.0f})
-        for (const float z : {-6.0f, 6.0f}) {
-            for (const float p : {x, -1.2f, z}) scene.positions.push_back(p);
-            for (const float n : {0.0f, 1.0f, 0.0f}) scene.normals.push_back(n);
-            scene.uvs.push_back(x);
-            scene.uvs.push_back(z);
-        }
-    for (const rt_u32 corner : {0u, 1u, 2u, 2u, 1u, 3u}) scene.triangles.push_back(mesh.first_vertex + corner);
-    mesh.vertex_count = 4;
-    mesh.triangle_count = mesh.polygon_count = 2;
-    scene.triangle_materials.resize(scene.triangle_count(), material);
-    scene.meshes.push_back(mesh);
-}
-
-void place(Scene& scene, rt_u32 mesh, rt_u32 material, const Affine& where) {
-    Instance instance;
-    instance.name = scene.meshes[mesh].name;
-    instance.mesh = mesh;
-    instance.material = material;
-    instance.world_from_object = where;
-    scene.instances.push_back(instance);
+TriangleMesh trial_floor() {
+    TriangleMesh mesh;
+    mesh.add_grid({1, 1, {{{0, 1, 2}, {2, 1, 3}}}}, [&](rt_u32 row, rt_u32 column) {
+        const double x = row ? 6 : -6, z = column ? 6 : -6;
+        mesh.add_vertex({x, -1.2f, z}, {0, 1, 0}, x, z);
+    });
+    return mesh;
 }
 
 void add_materials(Scene& scene, bool textures) {
@@ -163,8 +129,8 @@ void add_shapes(Scene& scene, const std::vector<TrialShape>& shapes) {
 Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& kinds, const std::vector<TrialShape>& shapes) {
     Scene scene;
     add_materials(scene, features.textures);
-    add_bumps(scene, kGlass);
-    add_floor(scene, kTextured);
+    add_mesh(scene, bumps(), kGlass, "bumps");
+    add_mesh(scene, trial_floor(), kTextured, "floor");
     add_surfaces(scene, features.optics.lobes);
     if (!features.normals) scene.normals = {};
     if (!features.uvs && !features.textures) scene.uvs = {};
@@ -177,11 +143,11 @@ Scene trial_scene(const SceneFeatures& features, const std::vector<ShapeKind>& k
     if (features.colors)  // dim towards the last vertex
         for (rt_u32 v = 0; v < scene.vertex_count(); ++v)
             for (const float c : {1.0f, 1.0f - float(v) / scene.vertex_count(), 0.5f, 1.0f}) scene.colors.push_back(c);
-    place(scene, 0, RT_NONE, kIdentity);
-    place(scene, 1, RT_NONE, kIdentity);
+    place(scene, 0);
+    place(scene, 1);
     if (features.instances) {  // turned, stretched and mirrored
-        place(scene, 0, kMirror, {0.6f, 0, 0.8f, -2.5f, 0, 0.7f, 0, 0, -0.8f, 0, 0.6f, -1});
-        place(scene, 0, kMatt, {-0.8f, 0, 0, 2.4f, 0, 1.1f, 0, 0.2f, 0, 0, 0.5f, -1});
+        place(scene, 0, {0.6f, 0, 0.8f, -2.5f, 0, 0.7f, 0, 0, -0.8f, 0, 0.6f, -1}, kMirror);
+        place(scene, 0, {-0.8f, 0, 0, 2.4f, 0, 1.1f, 0, 0.2f, 0, 0, 0.5f, -1}, kMatt);
     }
     if (features.spheres) {
         scene.spheres.push_back({{-1.2f, -0.7f, 1.5f}, 0.5f, kMirror});

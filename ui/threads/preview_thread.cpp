@@ -11,6 +11,7 @@
 #include "scene/light_kinds.hpp"
 #include "scene/scene.hpp"
 #include "scene/tangents.hpp"
+#include "stand/triangle_mesh.hpp"
 #include "ui/threads/thread_priority.hpp"
 #include "view/settings/accel_choice.hpp"
 #include "view/view.hpp"
@@ -25,35 +26,15 @@ constexpr rt_u32 kMostTexels = 512;  // along a side of a texture
 
 // A unit ball on the floor, of triangles: spheres have no tangents. A texture goes around it twice, so that it is not
 // stretched.
-void add_ball(Scene& scene) {
+TriangleMesh unit_ball() {
     constexpr rt_u32 kAround = 64, kUp = 32;
-    for (rt_u32 j = 0; j <= kUp; ++j)
-        for (rt_u32 i = 0; i <= kAround; ++i) {
-            const double up = double(j) / kUp, around = double(i) / kAround, theta = kPi * (up - 0.5), phi = 2 * kPi * around;
-            const double n[3] = {std::cos(theta) * std::sin(phi), std::sin(theta), std::cos(theta) * std::cos(phi)};
-            for (int k = 0; k < 3; ++k) {
-                scene.positions.push_back(static_cast<float>(n[k] + (k == 1 ? 1 : 0)));
-                scene.normals.push_back(static_cast<float>(n[k]));
-            }
-            scene.uvs.push_back(static_cast<float>(2 * around));
-            scene.uvs.push_back(static_cast<float>(up));
-        }
-    for (rt_u32 j = 0; j < kUp; ++j)
-        for (rt_u32 i = 0; i < kAround; ++i) {
-            const rt_u32 at = j * (kAround + 1) + i, above = at + kAround + 1;
-            const rt_u32 lower[] = {at, at + 1, above + 1}, upper[] = {at, above + 1, above};
-            if (j > 0) scene.triangles.append(std::begin(lower), std::end(lower));
-            if (j + 1 < kUp) scene.triangles.append(std::begin(upper), std::end(upper));
-        }
-    Mesh mesh;
-    mesh.name = "ball";
-    mesh.vertex_count = scene.vertex_count();
-    mesh.triangle_count = mesh.polygon_count = scene.triangle_count();
-    scene.triangle_materials.resize(scene.triangle_count(), kPreviewMaterial);
-    scene.meshes.push_back(mesh);
-    Instance instance;
-    instance.name = mesh.name;
-    scene.instances.push_back(instance);
+    TriangleMesh mesh;
+    mesh.add_grid({kUp, kAround, kCut013, false, false, true, true}, [&](rt_u32 j, rt_u32 i) {
+        const double up = double(j) / kUp, around = double(i) / kAround, theta = kPi * (up - 0.5), phi = 2 * kPi * around;
+        const Vec n{std::cos(theta) * std::sin(phi), std::sin(theta), std::cos(theta) * std::cos(phi)};
+        mesh.add_vertex(n + Vec{0, 1, 0}, n, 2 * around, up);
+    });
+    return mesh;
 }
 
 // Copies textures of another scene, each once.
@@ -116,7 +97,7 @@ Scene preview_scene(const Scene& of, rt_u32 number) {
         scene.maps.push_back(own);
     }
     scene.materials = {Material{"", default_material()}, material, floor};
-    add_ball(scene);
+    place(scene, add_mesh(scene, unit_ball(), kPreviewMaterial, "ball"));
     make_tangents(scene);
     scene.planes.push_back({{0, 1, 0}, 0, 2});
     scene.lights.push_back({"lamp", lamp()});

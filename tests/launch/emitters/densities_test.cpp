@@ -24,10 +24,7 @@ rt_material emitting(float radiance, rt_u32 flags = 0) {
 
 TriangleMesh square() {
     TriangleMesh mesh;
-    const rt_u32 a = mesh.add_vertex(-1, 0, -1), b = mesh.add_vertex(1, 0, -1), c = mesh.add_vertex(1, 0, 1),
-                 d = mesh.add_vertex(-1, 0, 1);
-    mesh.add_triangle(a, b, c);
-    mesh.add_triangle(a, c, d);
+    mesh.add_quad(Vec{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1});
     return mesh;
 }
 

@@ -80,9 +80,7 @@ TEST(Irradiance, UnitSquareAboveAFloor) {
     one.emission[0] = 1;
     one.flags = RT_MATERIAL_ONE_SIDED;
     TriangleMesh mesh;  // half as large, twice as long; seen from below it goes around counter-clockwise
-    for (const auto& [x, z] : {std::pair(-1, -0.25), {1, -0.25}, {1, 0.25}, {-1, 0.25}}) mesh.add_vertex(x, 0, z);
-    mesh.add_triangle(0, 1, 2);
-    mesh.add_triangle(0, 2, 3);
+    mesh.add_quad(Vec{-1, 0, -0.25}, {1, 0, -0.25}, {1, 0, 0.25}, {-1, 0, 0.25});
     Scene two_instances = scene_of(mesh);
     const rt_u32 material = add_material(two_instances, one);
     two_instances.instances[0].world_from_object = {0.5f, 0, 0, 0, 0, 3, 0, 1, 0, 0, 2, 0};

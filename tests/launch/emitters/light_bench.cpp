@@ -136,25 +136,13 @@ Scene with_all_kinds(Scene scene) {
     polygon.first_corner = rt_u32(scene.polygon_corners.size() / 3);
     polygon.corner_count = 3;
     scene.polygons.push_back(polygon);
-    Mesh mesh;
-    mesh.first_vertex = scene.vertex_count();
-    mesh.vertex_count = 3;
-    mesh.first_triangle = scene.triangle_count();
-    mesh.triangle_count = mesh.polygon_count = 1;
-    for (const Point& corner : {Point{0, kAway, 0}, Point{kSize, kAway, 0}, Point{0, kAway, kSize}}) {
-        scene.polygon_corners.insert(scene.polygon_corners.end(), corner.begin(), corner.end());
-        for (const float x : corner) scene.positions.push_back(x);
-    }
-    for (const rt_u32 v : {0u, 1u, 2u}) scene.triangles.push_back(mesh.first_vertex + v);
-    scene.triangle_materials.push_back(add_material(scene, diffuse(0, 0, 0)));
-    scene.spheres.back().material = scene.polygons.back().material = scene.triangle_materials[scene.triangle_count() - 1];
-    Instance instance;
-    instance.mesh = rt_u32(scene.meshes.size());
-    scene.meshes.push_back(mesh);
-    for (const float x : {0.0f, 1.0f}) {
-        instance.world_from_object[3] = x;
-        scene.instances.push_back(instance);
-    }
+    const Point corners[] = {{0, kAway, 0}, {kSize, kAway, 0}, {0, kAway, kSize}};
+    for (const Point& corner : corners) scene.polygon_corners.insert(scene.polygon_corners.end(), corner.begin(), corner.end());
+    TriangleMesh mesh;
+    mesh.add_triangle(corners[0], corners[1], corners[2]);
+    const rt_u32 dark = add_material(scene, diffuse(0, 0, 0)), number = add_mesh(scene, mesh, dark);
+    scene.spheres.back().material = scene.polygons.back().material = dark;
+    for (const float x : {0.0f, 1.0f}) place(scene, number, {1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0});
     return scene;
 }
 

@@ -279,20 +279,10 @@ ScenePtr fine_mesh() {
     constexpr int kAround = 256, kAlong = 96;
     TriangleMesh mesh;
     for (const PlacedShape& placed : placed_shapes())
-        for (const Face& face : placed.shape->faces) {
-            const auto first = static_cast<rt_u32>(mesh.positions.size() / 3);
-            for (int j = 0; j <= kAlong; ++j)
-                for (int i = 0; i <= kAround; ++i) {
-                    const Vec p = transformed(placed.world, face(double(i) / kAround, double(j) / kAlong));
-                    mesh.add_vertex(p[0], p[1], p[2]);
-                }
-            for (rt_u32 j = 0; j < kAlong; ++j)
-                for (rt_u32 i = 0; i < kAround; ++i) {
-                    const rt_u32 a = first + j * (kAround + 1) + i, b = a + kAround + 1;
-                    mesh.add_triangle(a, a + 1, b + 1);
-                    mesh.add_triangle(a, b + 1, b);
-                }
-        }
+        for (const Face& face : placed.shape->faces)
+            mesh.add_grid({kAlong, kAround, kCut013}, [&](rt_u32 j, rt_u32 i) {
+                mesh.add_vertex(transformed(placed.world, face(double(i) / kAround, double(j) / kAlong)));
+            });
     return shared_scene(scene_of(mesh));
 }
 

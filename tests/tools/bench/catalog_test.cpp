@@ -7,9 +7,9 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "stand/ray_sets.hpp"
 #include "support/scenes.hpp"
 #include "tools/bench/run/bench.hpp"
-#include "tools/bench/scenes/ray_sets.hpp"
 #include "tools/bench/scenes/zoo_scenes.hpp"
 
 namespace {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <set>
 
+#include "base/lowbias32.hpp"
+#include "stand/ray_sets.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 #include "tools/bench/baselines/baseline.hpp"
 #include "tools/bench/cases/own_entries.hpp"
-#include "tools/bench/scenes/ray_sets.hpp"
 #include "view/settings/accel_choice.hpp"
 
 namespace {
@@ -16,14 +17,6 @@ namespace {
 using namespace clarity;
 using namespace clarity::bench;
 using namespace clarity::test;
-using Vec = Vec3;
-
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec of(const float* p) {
-    return {p[0], p[1], p[2]};
-}
 
 TEST(RayOrder, CoversEveryPixelOnceInBlocksOfPackets) {
     const int w = 37, h = 21;
@@ -100,10 +93,7 @@ struct Floor {
 
     Floor() {
         TriangleMesh mesh;
-        for (const auto& p : {Point{-9, 1, -9}, Point{9, 1, -9}, Point{9, 1, 9}, Point{-9, 1, 9}})
-            mesh.add_vertex(p[0], p[1], p[2]);
-        mesh.add_triangle(0, 1, 2);
-        mesh.add_triangle(0, 2, 3);
+        mesh.add_quad(Point{-9, 1, -9}, {9, 1, -9}, {9, 1, 9}, {-9, 1, 9});
         scene = scene_of(mesh);
         Camera camera;
         camera.eye = {0, 4, 6};
@@ -141,10 +131,10 @@ TEST(SecondaryRays, StartAboveTheSurfaceInTheRightDirection) {
     for (size_t i = 0; i < floor.primary.rays.size(); ++i) {
         for (const RaySet& set : sets) ASSERT_EQ(is_active(set.rays[i]), floor.hits[i].prim >= 0) << set.kind;
         if (floor.hits[i].prim < 0) continue;
-        const Vec in = of(floor.primary.rays[i].direction);
+        const Vec in = to_vec(floor.primary.rays[i].direction);
         for (const RaySet& set : sets) {
             EXPECT_NEAR(set.rays[i].origin[1], 1 + eps, 2e-6) << set.kind;
-            EXPECT_NEAR(dot(of(set.rays[i].direction), of(set.rays[i].direction)), 1, 1e-5) << set.kind;
+            EXPECT_NEAR(dot(to_vec(set.rays[i].direction), to_vec(set.rays[i].direction)), 1, 1e-5) << set.kind;
         }
         const rt_ray &shadow = sets[0].rays[i], &mirror = sets[1].rays[i], &diffuse = sets[2].rays[i];
         for (int k = 0; k < 3; ++k)
@@ -193,12 +183,12 @@ TEST(SurfaceNormals, FaceTheRayOnEveryKindOfPrimitive) {
     size_t compared = 0, wrong = 0;
     for (size_t i = 0; i < order.size(); ++i) {
         if (order[i] == RT_NONE || hits[i].prim < 0) continue;
-        const Vec direction = of(primary.rays[i].direction), origin = of(primary.rays[i].origin);
+        const Vec direction = to_vec(primary.rays[i].direction), origin = to_vec(primary.rays[i].origin);
         const double t = hits[i].t;
         const Vec n = normals.at(hits[i].prim,
                                  {origin[0] + t * direction[0], origin[1] + t * direction[1], origin[2] + t * direction[2]});
         ++compared;
-        if (std::fabs(std::fabs(dot(n, of(&truth.pixels[3 * order[i]]))) - 1) > 1e-3) ++wrong;
+        if (std::fabs(std::fabs(dot(n, to_vec(&truth.pixels[3 * order[i]]))) - 1) > 1e-3) ++wrong;
     }
     EXPECT_GT(compared, 5000u);
     EXPECT_LE(wrong, compared / 1000);  // silhouettes

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "reference/primitives.hpp"
+#include "stand/ray_sets.hpp"
 #include "support/generated.hpp"
 #include "support/planted_faults.hpp"
 #include "support/scenes.hpp"
@@ -39,10 +40,6 @@ AllHits hits_of(const ScenePtr& scene, const std::vector<rt_ray>& rays, const st
     Progress progress;
     return Workbench::get().queries().trace_all(*Workbench::get().prepare(scene, settings), rays, {count_only, false},
                                                 progress);
-}
-
-rt_ray ray_of(const Point& origin, const Point& direction, float t_min = 0, float t_max = INFINITY) {
-    return {{origin[0], origin[1], origin[2]}, t_min, {direction[0], direction[1], direction[2]}, t_max};
 }
 
 // Rays with origins in and around the box of half `size`, from all directions; every third has a limited interval.
@@ -82,10 +79,7 @@ TriangleMesh plates(unsigned count, unsigned copies) {
     TriangleMesh mesh;
     for (unsigned i = 0; i < count * copies; ++i) {
         const double z = -double(i / copies);
-        const rt_u32 a = mesh.add_vertex(-1, -1, z), b = mesh.add_vertex(1, -1, z), c = mesh.add_vertex(1, 1, z),
-                     d = mesh.add_vertex(-1, 1, z);
-        mesh.add_triangle(a, b, c);
-        mesh.add_triangle(a, c, d);
+        mesh.add_quad(Vec{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z});
     }
     return mesh;
 }

@@ -15,28 +15,15 @@ namespace {
 
 // Boxes beside each other, of one mesh and of meshes of their own, with masks; and a sphere, which has none.
 Scene row_of_boxes() {
-    TriangleMesh mesh;
-    for (int m = 0; m < 3; ++m) mesh.add(box(0.4));
-    Scene scene = scene_of(mesh);
-    Mesh one = scene.meshes[0];
-    one.vertex_count /= 3;
-    one.triangle_count = one.polygon_count = one.triangle_count / 3;
-    scene.meshes.clear();
-    for (rt_u32 m = 0; m < 3; ++m) {
-        scene.meshes.push_back(one);
-        one.first_vertex += one.vertex_count;
-        one.first_triangle += one.triangle_count;
-    }
+    Scene scene;
+    for (int m = 0; m < 3; ++m) add_mesh(scene, box(0.4));
     const rt_u32 masks[] = {RT_SEEN_BY_CAMERA, RT_SEEN_BY_SHADOW | RT_SEEN_BY_MIRROR, 8, RT_SEEN_BY_ALL, 0};
-    scene.instances.clear();
     for (rt_u32 i = 0; i < 5; ++i) {
-        Instance instance;
-        instance.mesh = i < 3 ? 0 : i - 2;
+        Instance& instance = place(scene, i < 3 ? 0 : i - 2);
         instance.world_from_object[3] = float(i) - 2;
         instance.world_from_object[11] = 0.25f * float(i % 2);
         instance.mask = masks[i];
         instance.apart = true;
-        scene.instances.push_back(instance);
     }
     scene.spheres.push_back({{0, 1.2f, 0}, 0.5f, 0});
     return scene;

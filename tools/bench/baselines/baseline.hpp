@@ -6,8 +6,8 @@
 
 #include "base/aligned_bytes.hpp"
 #include "base/problem.hpp"
+#include "stand/ray_sets.hpp"
 #include "tools/bench/baselines/whitted.hpp"
-#include "tools/bench/scenes/ray_sets.hpp"
 
 namespace clarity::bench {
 

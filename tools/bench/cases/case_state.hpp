@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "picture/image_io.hpp"
+#include "stand/ray_sets.hpp"
 #include "tools/bench/baselines/whitted.hpp"
 #include "tools/bench/cases/entry.hpp"
 #include "tools/bench/output/record.hpp"
 #include "tools/bench/output/row.hpp"
 #include "tools/bench/run/fixture.hpp"
-#include "tools/bench/scenes/ray_sets.hpp"
 #include "tracers/rays/ray_blocks.hpp"
 
 namespace clarity::bench {

@@ -3,9 +3,9 @@
 #include <functional>
 #include <vector>
 
+#include "stand/ray_sets.hpp"
 #include "tools/bench/cases/case_state.hpp"
 #include "tools/bench/output/record.hpp"
-#include "tools/bench/scenes/ray_sets.hpp"
 #include "tracers/rays/ray_query.hpp"
 
 namespace clarity::bench {

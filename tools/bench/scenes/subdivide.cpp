@@ -9,14 +9,15 @@
 
 #include "base/angle.hpp"
 #include "base/parallel_for.hpp"
-#include "tools/bench/scenes/ray_sets.hpp"
+#include "scene/scene.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity::bench {
 namespace {
 
 // World-space triangles. Points at the same position are one vertex, so that seams of texture coordinates do not tear open.
 struct OneMesh {
-    std::vector<Vec3> points, normals;
+    std::vector<Vec> points, normals;
     std::vector<std::array<rt_u32, 3>> triangles;
     std::vector<rt_u32> materials;
 };
@@ -54,23 +55,23 @@ OneMesh one_mesh(const Scene& scene) {
         }
     }
     // Vertex normals: sums of the triangles' normals, weighted by area.
-    mesh.normals.assign(mesh.points.size(), Vec3{0, 0, 0});
+    mesh.normals.assign(mesh.points.size(), Vec{0, 0, 0});
     for (const auto& t : mesh.triangles) {
-        const Vec3 normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
+        const Vec normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
         for (const rt_u32 corner : t) mesh.normals[corner] += normal;
     }
-    for (Vec3& normal : mesh.normals) normal = normalized(normal, {0, 0, 0});
+    for (Vec& normal : mesh.normals) normal = normalized(normal, {0, 0, 0});
     return mesh;
 }
 
 // Height at a point: waves along three directions which are oblique to all axes. Each octave is twice as fine and half as high.
-double roughness(const Vec3& p, double size, double finest) {
+double roughness(const Vec& p, double size, double finest) {
     double sum = 0;
     for (double wave = size / 4; wave > 4 * finest; wave /= 2) {
         const double k = 2 * kPi / wave;
         sum += 0.015 * wave *
-               (std::sin(k * dot(p, Vec3(0.62, 0.51, 0.60))) * std::sin(k * dot(p, Vec3(-0.55, 0.80, 0.24)) + 1) +
-                std::sin(k * dot(p, Vec3(0.33, -0.41, 0.85)) + 2));
+               (std::sin(k * dot(p, Vec{0.62, 0.51, 0.60})) * std::sin(k * dot(p, Vec{-0.55, 0.80, 0.24}) + 1) +
+                std::sin(k * dot(p, Vec{0.33, -0.41, 0.85}) + 2));
     }
     return sum;
 }
@@ -148,23 +149,23 @@ class Refined {
 
 // Position of a point, given by its weights in a triangle: curved, then displaced. Corners of weight 0 are skipped and the
 // others are added in the order of their vertex indices, so that both triangles of an edge compute exactly the same point.
-Vec3 place(const OneMesh& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
+Vec place(const OneMesh& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](int a, int b) { return t[a] < t[b]; });
-    Vec3 flat{}, normal{};
+    Vec flat{}, normal{};
     for (const int c : order) {
         if (weights[c] == 0) continue;
         flat += weights[c] * mesh.points[t[c]];
         normal += weights[c] * mesh.normals[t[c]];
     }
-    Vec3 bulged{};
+    Vec bulged{};
     for (const int c : order) {
         if (weights[c] == 0) continue;
         const double height = dot(flat - mesh.points[t[c]], mesh.normals[t[c]]);
         bulged += weights[c] * (flat - height * mesh.normals[t[c]]);
     }
     constexpr double kBulge = 0.75;  // curvature, 0 (flat) to 1: the paper's choice
-    const Vec3 p = (1 - kBulge) * flat + kBulge * bulged;
+    const Vec p = (1 - kBulge) * flat + kBulge * bulged;
     return p + roughness(p, size, finest) * normalized(normal, {0, 0, 0});
 }
 
@@ -194,7 +195,7 @@ Scene subdivide(const Scene& scene, unsigned n) {
     triangle_materials.resize(mesh.triangles.size() * per_triangle);
     const auto put = [&](size_t triangle, unsigned i, unsigned j) {
         const double weights[3] = {double(n - i - j) / n, double(i) / n, double(j) / n};
-        const Vec3 p = place(mesh, mesh.triangles[triangle], weights, size, finest);
+        const Vec p = place(mesh, mesh.triangles[triangle], weights, size, finest);
         for (int k = 0; k < 3; ++k) positions[3 * refined.index(triangle, i, j) + k] = static_cast<float>(p[k]);
     };
     parallel_for(static_cast<uint32_t>(mesh.triangles.size()), [&](uint32_t t) {

@@ -8,13 +8,8 @@
 
 namespace clarity::bench {
 
-// Adds to a scene, which may be empty, about so many triangles. The same on all machines.
-//   stadium       tiers and a field around what is there, 200 times as wide: a little detail in much space
-//   hair          strands on a ball, each 400 times as long as wide, in all directions
-//   city          four kinds of houses, placed in 40 x 40 lots as instances
-//   height field  a square of hills, one height for each of k x k points
-//   soup          triangles of all directions, at random in a cube, which overlap
-// Throws std::out_of_range for another name.
+// Adds to a scene, which may be empty, about so many triangles. The same on all machines. name: stadium, hair, city, height
+// field or soup (stand/made_scenes.hpp). Throws std::out_of_range for another name.
 void add_zoo_scene(const std::string& name, uint64_t triangles, Scene& scene);
 
 // The shapes of the suite `shapes` as meshes: those of scenes/shapes, in any number of parts around their

@@ -9,7 +9,7 @@
 namespace clarity::check {
 
 // The checks of one structure's builder, in the order in which they run. quick: fewer scenes and repetitions. seed: of random
-// numbers (seed.hpp). large: `many` is more than 2^20 triangles.
+// numbers (stand/seed.hpp). large: `many` is more than 2^20 triangles.
 std::vector<Check> build_checks(const rt_plugin& plugin, bool quick, uint64_t seed = 0, bool large = false);
 
 }  // namespace clarity::check

@@ -16,7 +16,6 @@
 #include "tools/check/hits/brute_force.hpp"
 #include "tools/check/hits/checked_scene.hpp"
 #include "tools/check/hits/judge.hpp"
-#include "tools/check/hits/ray_maker.hpp"
 #include "tools/check/hits/ray_sets.hpp"
 #include "tools/check/scenes.hpp"
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "base/numbers.hpp"
-#include "tools/check/scene_maker.hpp"
+#include "tools/check/scenes.hpp"
 #include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
@@ -49,7 +49,7 @@ const Lattice kLattices[] = {
     {{1, -3.5f, -1000}, 1, 2, "xyz", {1, 1, 1}, true},
 };
 
-void add_squares(Maker& make, const Lattice& lattice) {
+void add_squares(SceneMaker& make, const Lattice& lattice) {
     for (const char* plane = lattice.planes; *plane; ++plane) {
         const int a = *plane - 'x', u = (a + 1) % 3, v = (a + 2) % 3, layers = lattice.planes[1] ? lattice.count + 1 : 1;
         const auto at = [&](int layer, int i, int j) {
@@ -61,21 +61,21 @@ void add_squares(Maker& make, const Lattice& lattice) {
         for (int layer = 0; layer < layers; ++layer)
             for (int i = 0; i < lattice.count; ++i)
                 for (int j = 0; j < lattice.count; ++j)
-                    make.quad(at(layer, i, j), at(layer, i + 1, j), at(layer, i + 1, j + 1), at(layer, i, j + 1));
+                    make.add_quad(at(layer, i, j), at(layer, i + 1, j), at(layer, i + 1, j + 1), at(layer, i, j + 1));
     }
 }
 
 Scene plane_scene(uint64_t) {
-    Maker make;
+    SceneMaker make;
     const rt_u32 none = RT_NONE;
     rt_u32 placed_mesh = none;
     for (const Lattice& lattice : kLattices) {
         if (!lattice.is_instance || placed_mesh == none) add_squares(make, lattice);
         if (!lattice.is_instance) {
-            make.place(make.mesh());
+            make.place_mesh();
             continue;
         }
-        if (placed_mesh == none) placed_mesh = make.mesh();
+        if (placed_mesh == none) placed_mesh = make.end_mesh();
         Affine world = kIdentity;
         for (int k = 0; k < 3; ++k) world[5 * k] = lattice.mirror[k], world[4 * k + 3] = lattice.corner[k];
         make.place(placed_mesh, world);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/check/hits/ray_maker.hpp"
-
 namespace clarity::check {
 namespace {
 

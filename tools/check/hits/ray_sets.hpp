@@ -9,7 +9,7 @@
 
 namespace clarity::check {
 
-class RayMaker;
+constexpr float kFar = INFINITY;
 
 struct RaySet {
     const char* name;   // of the check: "hits.random"

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "scene/vec.hpp"
-#include "tools/check/hits/ray_maker.hpp"
 #include "tools/check/hits/ray_sets.hpp"
 #include "tools/check/regular_scenes.hpp"
 

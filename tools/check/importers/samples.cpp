@@ -10,7 +10,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/text.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 
 namespace fs = std::filesystem;
 

@@ -8,8 +8,8 @@
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "import/sink/scene_builder.hpp"
+#include "stand/seed.hpp"
 #include "tools/check/process_size.hpp"
-#include "tools/check/seed.hpp"
 #include "tools/check/shapes/shape_values.hpp"
 
 namespace clarity::check {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 #include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {

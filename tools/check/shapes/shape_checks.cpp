@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "stand/seed.hpp"
 #include "tools/check/oclgrind.hpp"
-#include "tools/check/seed.hpp"
 #include "tools/check/shapes/shape_bench.hpp"
 #include "tools/check/shapes/surface_checks.hpp"
 #include "tracers/rays/ray_text.hpp"

@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "import/sink/shape_parts.hpp"
 #include "scene/scene.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 
 namespace clarity::check {
 namespace {

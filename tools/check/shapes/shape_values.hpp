@@ -35,7 +35,7 @@ struct ShapeTrial {
 };
 ShapeTrial try_values(const rt_plugin& plugin, const ShapeValues& values);
 
-// Usual values that the plugin accepts: at most `count`. seed: of random numbers (seed.hpp). `refused` gets those that it
+// Usual values that the plugin accepts: at most `count`. seed: of random numbers (stand/seed.hpp). `refused` gets those that it
 // refused on the way.
 std::vector<ShapeTrial> accepted_trials(const rt_plugin& plugin, size_t count, uint64_t seed,
                                         std::vector<ShapeTrial>* refused = nullptr);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/numbers.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 
 namespace clarity::check {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "base/angle.hpp"
 #include "base/numbers.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 
 namespace clarity::check {
 namespace {

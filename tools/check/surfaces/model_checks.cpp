@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "base/angle.hpp"
-#include "tools/check/seed.hpp"
+#include "stand/seed.hpp"
 #include "tools/check/surfaces/hemisphere.hpp"
 
 namespace clarity::check {

@@ -1,26 +1,46 @@
-// ray_sets.hpp -- the rays of the ray benchmarks. They are made once on the host, so that all structures, settings, devices and
-// baselines trace the same rays.
+// ray_sets.hpp -- rays that are made on the host, so that all structures, settings, devices and baselines trace the same ones.
 #pragma once
+#include <cstdint>
 #include <functional>
-#include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
-#include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "stand/triangle_mesh.hpp"
 
-namespace clarity::bench {
+namespace clarity {
 
-// Vectors in double precision, for rays and meshes made on the host.
-
-using Vec3 = glm::dvec3;
-
-// Unit vector. Returns `otherwise` for the zero vector, for which glm::normalize() returns NaN.
-inline Vec3 normalized(const Vec3& a, const Vec3& otherwise) {
-    const double length = glm::length(a);
-    return length > 0 ? (1 / length) * a : otherwise;
+inline rt_ray ray_of(const Point& origin, const Point& direction, float t_min = 0, float t_max = INFINITY) {
+    return {{origin[0], origin[1], origin[2]}, t_min, {direction[0], direction[1], direction[2]}, t_max};
 }
+
+// Where rays are aimed.
+struct Region {
+    const char* name;
+    Point center;
+    float radius;
+};
+
+// Rays by chance, with directions of unit length.
+class RayMaker {
+ public:
+    RayMaker(unsigned own, uint64_t seed);
+    float any();  // 0 to 1
+    size_t below(size_t n);
+    Point direction();
+    Point within(const Region& region, float share = 1);  // of a cube of twice the radius
+    static rt_ray from_to(const Point& from, const Point& to);
+    // A ray from `away` radii outside to a point of the region.
+    rt_ray into(const Region& region, float away) { return along(direction(), region, away); }
+    rt_ray along(const Point& direction, const Region& region, float away);
+
+ private:
+    std::mt19937 random_;
+};
+
+// Origins in and around the box, and directions all over the sphere; half of these are up to ten long.
+std::vector<rt_ray> random_rays(const Bounds& box, size_t count, unsigned seed);
 
 // Rays in an order which suits packets of up to 16x16 pixels: tiles of 16x16 pixels in rows, Z-order within a tile. Any 4, 8 or
 // 16 consecutive rays are thus 2x2, 4x2 or 4x4 pixels. A pixel without a ray (beyond the picture's edge, or where the camera
@@ -60,7 +80,7 @@ class SurfaceNormals {
  public:
     explicit SurfaceNormals(const Scene& scene) : scene_(scene), numbers_(scene) {}
     // Unit normal at a point of the primitive, on either side of it; (0, 1, 0) for a primitive without area.
-    Vec3 at(rt_i32 prim, const Vec3& point) const;
+    Vec at(rt_i32 prim, const Vec& point) const;
     // Shapes have no normal here.
     bool is_shape(rt_i32 prim) const;
 
@@ -69,7 +89,4 @@ class SurfaceNormals {
     const PrimNumbers numbers_;
 };
 
-// 32-bit hash of low bias: Wellons 2018, "Prospecting for Hash Functions".
-uint32_t lowbias32(uint32_t x);
-
-}  // namespace clarity::bench
+}  // namespace clarity

@@ -1,24 +1,22 @@
-#include "tools/bench/scenes/ray_sets.hpp"
+#include "stand/ray_sets.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/angle.hpp"
+#include "base/lowbias32.hpp"
 #include "base/parallel_for.hpp"
 #include "scene/light_kinds.hpp"
+#include "stand/seed.hpp"
 
-namespace clarity::bench {
+namespace clarity {
 namespace {
 
 constexpr int kTile = 16;        // pixels, width and height
 constexpr size_t kPacket = 16;   // rays per packet; an inactive ray copies an active ray of its packet
 constexpr size_t kChunk = 4096;  // rays per task
 
-Vec3 vec(const float* p) {
-    return {p[0], p[1], p[2]};
-}
-
-rt_ray make_ray(const Vec3& origin, const Vec3& direction, double t_max) {
+rt_ray make_ray(const Vec& origin, const Vec& direction, double t_max) {
     rt_ray ray{};
     for (int k = 0; k < 3; ++k) {
         ray.origin[k] = static_cast<float>(origin[k]);
@@ -53,23 +51,77 @@ rt_u32 even_bits(rt_u32 z) {
     return x;
 }
 
-Vec3 cosine_direction(const Vec3& normal, rt_u32 pixel) {
+Vec cosine_direction(const Vec& normal, rt_u32 pixel) {
     const double u1 = lowbias32(2 * pixel + 1) * 0x1p-32, u2 = lowbias32(2 * pixel + 2) * 0x1p-32;
     const double r = std::sqrt(u1), phi = 2 * kPi * u2;
-    const Vec3 side = std::fabs(normal[0]) > 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
-    const Vec3 tangent = normalized(cross(side, normal), {1, 0, 0}), bitangent = cross(normal, tangent);
+    const Vec side = std::fabs(normal[0]) > 0.9 ? Vec{0, 1, 0} : Vec{1, 0, 0};
+    const Vec tangent = normalized(cross(side, normal), {1, 0, 0}), bitangent = cross(normal, tangent);
     return normalized(r * std::cos(phi) * tangent + r * std::sin(phi) * bitangent + std::sqrt(1 - u1) * normal, normal);
 }
 
 }  // namespace
 
-uint32_t lowbias32(uint32_t x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    x ^= x >> 16;
-    return x;
+RayMaker::RayMaker(unsigned own, uint64_t seed) : random_(random_of(own, seed)) {}
+
+float RayMaker::any() {
+    return std::uniform_real_distribution<float>(0, 1)(random_);
+}
+
+size_t RayMaker::below(size_t n) {
+    return std::uniform_int_distribution<size_t>(0, n - 1)(random_);
+}
+
+Point RayMaker::direction() {
+    Point d;
+    float length = 0;
+    do {
+        for (float& c : d) c = std::normal_distribution<float>()(random_);
+        length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    } while (length < 1e-3f);
+    for (float& c : d) c /= length;
+    return d;
+}
+
+Point RayMaker::within(const Region& region, float share) {
+    Point p = region.center;
+    for (float& c : p) c += share * region.radius * (2 * any() - 1);
+    return p;
+}
+
+rt_ray RayMaker::from_to(const Point& from, const Point& to) {
+    rt_ray ray = ray_of(from, {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
+    const float length = std::sqrt(ray.direction[0] * ray.direction[0] + ray.direction[1] * ray.direction[1] +
+                                   ray.direction[2] * ray.direction[2]);
+    if (length > 0)
+        for (float& d : ray.direction) d /= length;
+    return ray;
+}
+
+rt_ray RayMaker::along(const Point& d, const Region& region, float away) {
+    const Point to = within(region, 0.8f);
+    Point from = to;
+    for (int k = 0; k < 3; ++k) from[k] -= away * region.radius * d[k];
+    return from_to(from, to);
+}
+
+std::vector<rt_ray> random_rays(const Bounds& box, size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> at(-0.3f, 1.3f), any(0, 1);
+    std::normal_distribution<float> normal;
+    std::vector<rt_ray> rays(count);
+    for (rt_ray& ray : rays) {
+        float length = 0;
+        for (int k = 0; k < 3; ++k) {
+            ray.origin[k] = box.min[k] + at(random) * (box.max[k] - box.min[k]);
+            ray.direction[k] = normal(random);
+            length += ray.direction[k] * ray.direction[k];
+        }
+        const float scale = (any(random) < 0.5f ? 1 : 1 + 9 * any(random)) / std::sqrt(length);
+        for (float& d : ray.direction) d *= scale;
+        ray.t_min = 0;
+        ray.t_max = INFINITY;
+    }
+    return rays;
 }
 
 std::vector<rt_u32> ray_order(int width, int height) {
@@ -85,10 +137,10 @@ std::vector<rt_u32> ray_order(int width, int height) {
 }
 
 RaySet camera_rays(const Camera& camera, int width, int height) {
-    const Vec3 eye = vec(camera.eye.data());
-    const Vec3 w = normalized(vec(camera.target.data()) - eye, {0, 0, -1});
-    const Vec3 u = normalized(cross(w, vec(camera.up.data())), std::fabs(w[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 0, 1});
-    const Vec3 v = cross(u, w);
+    const Vec eye = to_vec(camera.eye.data());
+    const Vec w = normalized(to_vec(camera.target.data()) - eye, {0, 0, -1});
+    const Vec u = normalized(cross(w, to_vec(camera.up.data())), std::fabs(w[0]) < 0.9 ? Vec{1, 0, 0} : Vec{0, 0, 1});
+    const Vec v = cross(u, w);
     const double tangent = std::tan(0.5 * camera.fov_y_rad), aspect = double(width) / height;
     RaySet set;
     set.kind = "primary";
@@ -101,33 +153,33 @@ RaySet camera_rays(const Camera& camera, int width, int height) {
     return set;
 }
 
-Vec3 SurfaceNormals::at(rt_i32 prim, const Vec3& point) const {
-    const Vec3 otherwise{0, 1, 0};
+Vec SurfaceNormals::at(rt_i32 prim, const Vec& point) const {
+    const Vec otherwise{0, 1, 0};
     const PrimPlace place = numbers_.place(prim);
     switch (place.kind) {
         case PrimPlace::Kind::triangle: {
             const Instance& instance = scene_.instances[place.instance];
             const size_t triangle = scene_.meshes[instance.mesh].first_triangle + size_t(place.index);
-            Vec3 corners[3];
+            Vec corners[3];
             for (int c = 0; c < 3; ++c) {
                 const float* p = &scene_.positions[3 * size_t(scene_.triangles[3 * triangle + c])];
-                corners[c] = vec(transform_point(instance.world_from_object, p).data());
+                corners[c] = to_vec(transform_point(instance.world_from_object, p).data());
             }
             return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]), otherwise);
         }
         case PrimPlace::Kind::sphere:
-            return normalized(point - vec(scene_.spheres[place.index].center.data()), otherwise);
+            return normalized(point - to_vec(scene_.spheres[place.index].center.data()), otherwise);
         case PrimPlace::Kind::polygon: {
             const Polygon& polygon = scene_.polygons[place.index];
             const float* corners = &scene_.polygon_corners[3 * size_t(polygon.first_corner)];
-            Vec3 sum{};
+            Vec sum{};
             for (rt_u32 c = 0; c < polygon.corner_count; ++c)
-                sum = sum + cross(vec(corners + 3 * c) - vec(corners),
-                                  vec(corners + 3 * ((c + 1) % polygon.corner_count)) - vec(corners));
+                sum = sum + cross(to_vec(corners + 3 * c) - to_vec(corners),
+                                  to_vec(corners + 3 * ((c + 1) % polygon.corner_count)) - to_vec(corners));
             return normalized(sum, otherwise);
         }
         case PrimPlace::Kind::plane:
-            return normalized(vec(scene_.planes[place.index].normal.data()), otherwise);
+            return normalized(to_vec(scene_.planes[place.index].normal.data()), otherwise);
         default:
             return otherwise;
     }
@@ -139,25 +191,26 @@ bool SurfaceNormals::is_shape(rt_i32 prim) const {
 
 namespace {
 
-Vec3 point_of(const rt_ray& ray, const rt_hit& hit) {
-    return vec(ray.origin) + double(hit.t) * vec(ray.direction);
+Vec point_of(const rt_ray& ray, const rt_hit& hit) {
+    return to_vec(ray.origin) + double(hit.t) * to_vec(ray.direction);
 }
 
 // Of hits on shapes, in the order of the rays; 0 of all others. From the points that rays a thousandth to the left, right,
 // above and below hit on the same shape.
-std::vector<Vec3> shape_normals(const SurfaceNormals& normals, const RaySet& primary, const std::vector<rt_hit>& hits,
-                                const TraceRays& trace) {
+std::vector<Vec> shape_normals(const SurfaceNormals& normals, const RaySet& primary, const std::vector<rt_hit>& hits,
+                               const TraceRays& trace) {
     constexpr double kAside = 1e-3;
-    std::vector<Vec3> along[2];  // of each ray, tangents of the surface
+    std::vector<Vec> along[2];  // of each ray, tangents of the surface
     for (int axis = 0; axis < 2; ++axis) {
         along[axis].assign(hits.size(), {0, 0, 0});
         for (const double sign : {1.0, -1.0}) {
             std::vector<rt_ray> aside = primary.rays;
             for (rt_ray& ray : aside) {
-                const Vec3 direction = vec(ray.direction);
-                const Vec3 u =
-                    normalized(cross(direction, std::fabs(direction[1]) < 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}), {1, 0, 0});
-                ray = make_ray(vec(ray.origin), direction + sign * kAside * (axis == 0 ? u : cross(u, direction)), ray.t_max);
+                const Vec direction = to_vec(ray.direction);
+                const Vec u =
+                    normalized(cross(direction, std::fabs(direction[1]) < 0.9 ? Vec{0, 1, 0} : Vec{1, 0, 0}), {1, 0, 0});
+                ray =
+                    make_ray(to_vec(ray.origin), direction + sign * kAside * (axis == 0 ? u : cross(u, direction)), ray.t_max);
             }
             const std::vector<rt_hit> there = trace(aside);
             for (size_t i = 0; i < hits.size(); ++i)
@@ -166,10 +219,10 @@ std::vector<Vec3> shape_normals(const SurfaceNormals& normals, const RaySet& pri
                         along[axis][i] + sign * (point_of(aside[i], there[i]) - point_of(primary.rays[i], hits[i]));
         }
     }
-    std::vector<Vec3> found(hits.size(), Vec3{0, 0, 0});
+    std::vector<Vec> found(hits.size(), Vec{0, 0, 0});
     for (size_t i = 0; i < hits.size(); ++i)
         if (normals.is_shape(hits[i].prim))
-            found[i] = normalized(cross(along[0][i], along[1][i]), -vec(primary.rays[i].direction));
+            found[i] = normalized(cross(along[0][i], along[1][i]), -to_vec(primary.rays[i].direction));
     return found;
 }
 
@@ -179,7 +232,7 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
                                    const TraceRays& trace) {
     const std::vector<rt_hit> hits = trace(primary.rays);
     const SurfaceNormals normals(scene);
-    std::vector<Vec3> of_shapes;
+    std::vector<Vec> of_shapes;
     if (!scene.shapes.empty()) of_shapes = shape_normals(normals, primary, hits, trace);
     const Bounds bounds = scene.bounds();
     const double eps = 1e-4 * (bounds.empty ? 1.0 : double(bounds.diagonal()));
@@ -196,13 +249,13 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
         for (size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
             const rt_ray& ray = primary.rays[i];
             if (!is_active(ray) || !std::isfinite(hits[i].t) || hits[i].prim < 0) continue;
-            const Vec3 direction = vec(ray.direction), point = point_of(ray, hits[i]);
-            Vec3 normal = normals.is_shape(hits[i].prim) ? of_shapes[i] : normals.at(hits[i].prim, point);
+            const Vec direction = to_vec(ray.direction), point = point_of(ray, hits[i]);
+            Vec normal = normals.is_shape(hits[i].prim) ? of_shapes[i] : normals.at(hits[i].prim, point);
             if (dot(normal, direction) > 0) normal = -normal;
-            const Vec3 origin = point + eps * normal;
+            const Vec origin = point + eps * normal;
             const bool has_place = light_kind_of(light).has_place;
-            const Vec3 to_light = has_place ? vec(light.position) - origin : vec(light.position);
-            const double distance = has_place ? glm::length(to_light) : INFINITY;
+            const Vec to_light = has_place ? to_vec(light.position) - origin : to_vec(light.position);
+            const double distance = has_place ? length(to_light) : INFINITY;
             sets[0].rays[i] = make_ray(origin, normalized(to_light, normal), distance);
             sets[1].rays[i] = make_ray(origin, direction - 2 * dot(direction, normal) * normal, INFINITY);
             sets[2].rays[i] = make_ray(origin, cosine_direction(normal, order[i]), INFINITY);
@@ -212,4 +265,4 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
     return sets;
 }
 
-}  // namespace clarity::bench
+}  // namespace clarity
