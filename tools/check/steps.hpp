@@ -35,9 +35,9 @@ struct Check {
 };
 
 // A check whose function takes what the checks of a phase share.
-template <class Bench>
-Check check_of(const std::shared_ptr<Bench>& bench, const char* name, const char* tried, Outcome (*run)(Bench&, const Step&)) {
-    return {name, tried, [=](const Step& step) { return run(*bench, step); }};
+template <class Stand>
+Check check_of(const std::shared_ptr<Stand>& stand, const char* name, const char* tried, Outcome (*run)(Stand&, const Step&)) {
+    return {name, tried, [=](const Step& step) { return run(*stand, step); }};
 }
 
 }  // namespace clarity::check

@@ -32,7 +32,7 @@ double processor_s() {
 }
 
 // The same with few rays, and for debugging alone.
-BenchInput few(BenchInput input) {
+StandInput few(StandInput input) {
     input.options.rays = kBuiltRays;
     input.options.quick = true;
     return input;
@@ -61,15 +61,15 @@ struct Case {
     std::string what;  // "bvh2,max_leaf=1"
     BuiltAs as;
 };
-Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, const Step& step) {
+Outcome trace_cases(const StandInput& input, const std::vector<Case>& cases, const Step& step) {
     const double most = input.options.quick ? kQuick_s : kLong_s;
-    Bench usually(few(input));
+    HitStand usually(few(input));
     const Defines usual = usually.scene(step).accel()->defines;
     const size_t all_lanes = usually.options().lanes.size(),
                  lanes = input.options.quick ? std::min<size_t>(2, all_lanes) : all_lanes;
     struct Tried {
         std::string what;
-        std::unique_ptr<Bench> bench;
+        std::unique_ptr<HitStand> stand;
         Defines defines;
         size_t turn;
     };
@@ -78,12 +78,12 @@ Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, con
     size_t usual_turn = 0;
     for (const Case& one : cases) {
         const auto add = [&](std::vector<Tried>& list, size_t turn) {
-            auto bench = std::make_unique<Bench>(few(input), kMixedScene, one.as);
-            auto defines = bench->scene(step).accel()->defines;
-            bench->take_turn(turn, step);
-            list.push_back({one.what, std::move(bench), std::move(defines), turn});
+            auto stand = std::make_unique<HitStand>(few(input), kMixedScene, one.as);
+            auto defines = stand->scene(step).accel()->defines;
+            stand->take_turn(turn, step);
+            list.push_back({one.what, std::move(stand), std::move(defines), turn});
         };
-        const Defines defines = Bench(few(input), kMixedScene, one.as).scene(step).accel()->defines;
+        const Defines defines = HitStand(few(input), kMixedScene, one.as).scene(step).accel()->defines;
         if (defines == usual) {
             add(left, usual_turn++ % all_lanes);
         } else if (add_choices(defines, usual, choices)) {
@@ -107,7 +107,7 @@ Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, con
         if (next == left.end()) next = left.begin();
         programs.insert({next->defines, next->turn});
         Outcome outcome =
-            trace_sets(*next->bench, {"hits.random", "hits.instances", "hits.primitives", "hits.nested", "hits.close"},
+            trace_sets(*next->stand, {"hits.random", "hits.instances", "hits.primitives", "hits.nested", "hits.close"},
                        "with " + next->what, step);
         if (outcome.kind == Outcome::Kind::failed) return outcome;
         if (next->defines != usual) spent += processor_s() - begin;
@@ -119,7 +119,7 @@ Outcome trace_cases(const BenchInput& input, const std::vector<Case>& cases, con
                                                              std::to_string(static_cast<int>(most)) + " s of processor time"));
 }
 
-Outcome parameters(const BenchInput& input, const Step& step) {
+Outcome parameters(const StandInput& input, const Step& step) {
     std::vector<Case> cases;
     for (const ParameterValues& params : parameter_tries(input.plugin, input.options.seed))
         cases.push_back({choice_text(input.plugin, params), {params, 0, {}, Moves::none}});
@@ -129,7 +129,7 @@ Outcome parameters(const BenchInput& input, const Step& step) {
     return trace_cases(input, cases, step);
 }
 
-Outcome packed(const BenchInput& input, const Step& step) {
+Outcome packed(const StandInput& input, const Step& step) {
     if (input.layout || !input.plugin.accel->pack) return Outcome::skipped("the plugin has no `pack`");
     std::vector<Case> cases;
     for (const rt_u32 leaf : {1u, 3u, 50u})
@@ -138,7 +138,7 @@ Outcome packed(const BenchInput& input, const Step& step) {
 }
 
 // What is built after a refit differs in defines from what was built before: quick checks compile that for one number of lanes.
-Outcome refitted(const BenchInput& input, bool quick, const Step& step) {
+Outcome refitted(const StandInput& input, bool quick, const Step& step) {
     struct Row {
         const TestScene& scene;
         Moves moves;
@@ -149,11 +149,11 @@ Outcome refitted(const BenchInput& input, bool quick, const Step& step) {
          {Row{kMixedScene, Moves::refitted, {"hits.random", "hits.instances", "hits.primitives", "hits.limits"}},
           Row{kMixedScene, Moves::rebuilt, {"hits.random", "hits.instances"}},
           Row{kRegularScene, Moves::refitted, {"hits.edges", "hits.uneven"}}}) {
-        Bench bench(input, row.scene, {{}, 0, {}, row.moves});
+        HitStand stand(input, row.scene, {{}, 0, {}, row.moves});
         const bool again = row.moves == Moves::rebuilt;
-        if (again && quick && bench.scene(step).accel()->defines != Bench(input).scene(step).accel()->defines)
-            bench.take_turn(0, step);
-        outcome = trace_sets(bench, row.sets, again ? "after a refit and a new build" : "after a refit", step);
+        if (again && quick && stand.scene(step).accel()->defines != HitStand(input).scene(step).accel()->defines)
+            stand.take_turn(0, step);
+        outcome = trace_sets(stand, row.sets, again ? "after a refit and a new build" : "after a refit", step);
         if (outcome.kind == Outcome::Kind::failed) break;
     }
     return outcome;
@@ -300,13 +300,13 @@ bool is_traceable(const rt_ray& ray) {
 
 }  // namespace
 
-std::vector<Check> built_checks(const BenchInput& input) {
+std::vector<Check> built_checks(const StandInput& input) {
     std::vector<Check> checks = {
         {"hits.parameters", "rays with all parameters at the ends of their ranges, and in between",
          [=](const Step& step) { return parameters(input, step); }},
         {"hits.pack", "rays in trees of other builders, packed", [=](const Step& step) { return packed(input, step); }},
     };
-    BenchInput debug = input;  // other programs are those of the other checks
+    StandInput debug = input;  // other programs are those of the other checks
     debug.options.quick = true;
     const bool refits = refit_of(input.layout ? *input.layout : input.plugin).refit != nullptr;
     checks.push_back({"hits.refit", "rays in scenes that moved after the build", [=](const Step& step) {
@@ -316,11 +316,11 @@ std::vector<Check> built_checks(const BenchInput& input) {
     // Their programs are their own, because they have no instances: quick checks compile one each. A structure may have code
     // for what is large, and that of several lanes is what CPUs run.
     const auto add = [&](const TestScene& test, size_t turn) {
-        const auto bench = std::make_shared<Bench>(few(input), test);
+        const auto stand = std::make_shared<HitStand>(few(input), test);
         const RaySet set = test.rays(BuildScene(), 0, 0).front();
         checks.push_back({set.name, set.tried, [=](const Step& step) {
-                              if (input.options.quick) bench->take_turn(turn, step);
-                              return trace_set(*bench, set.name, step);
+                              if (input.options.quick) stand->take_turn(turn, step);
+                              return trace_set(*stand, set.name, step);
                           }});
     };
     add(kEmptyScene, 0);
@@ -334,7 +334,7 @@ Check device_hits_check(const rt_plugin& plugin, const rt_plugin* layout,
             [=, &plugin](const Step& step) { return trace_moved(plugin, layout, open, step); }};
 }
 
-Check own_scene_check(const BenchInput& input, Scene scene, const std::vector<rt_ray>& all) {
+Check own_scene_check(const StandInput& input, Scene scene, const std::vector<rt_ray>& all) {
     RaySet set{"hits.own", "your rays in your scene", {}};
     std::copy_if(all.begin(), all.end(), std::back_inserter(set.rays), is_traceable);
     const size_t left_out = all.size() - set.rays.size();
@@ -345,13 +345,13 @@ Check own_scene_check(const BenchInput& input, Scene scene, const std::vector<rt
     const auto test = std::make_shared<const TestScene>(
         TestScene{"the scene", [=](uint64_t) { return *shared; },
                   [=](const BuildScene&, size_t, uint64_t) { return std::vector<RaySet>{set}; }, nullptr, limit_s});
-    BenchInput debug = input;
+    StandInput debug = input;
     debug.options.quick = true;
     return {set.name, set.tried, [=](const Step& step) {
                 if (set.rays.empty()) return Outcome::skipped("there is no ray to trace" + note);
-                Bench bench(debug, *test);
-                const std::vector<Truth>& truths = bench.truths(bench.set(set.name, step), step);
-                Outcome outcome = trace_passes(bench, set.rays, step, [&](const Pass& pass) {
+                HitStand stand(debug, *test);
+                const std::vector<Truth>& truths = stand.truths(stand.set(set.name, step), step);
+                Outcome outcome = trace_passes(stand, set.rays, step, [&](const Pass& pass) {
                     const Traced& traced = pass.traced;
                     const Faults faults = Faults::of(set.rays, truths, traced.hits, pass.any_hit);
                     if (!faults.wrong.empty())

@@ -12,8 +12,8 @@
 #include "device/kernel_files.hpp"
 #include "plugin/capabilities.hpp"
 #include "rt_plugin.h"
-#include "tools/check/hits/bench.hpp"
 #include "tools/check/hits/built_checks.hpp"
+#include "tools/check/hits/hit_stand.hpp"
 #include "tools/check/oclgrind.hpp"
 #include "tracers/rays/ray_text.hpp"
 
@@ -59,11 +59,12 @@ std::string list_fault(const rt_ray& ray, const Truth& truth, const rt_hit* begi
     return {};
 }
 
-Outcome trace_all(Bench& bench, const Variant& variant, const char* name, const Step& step, uint64_t& listed, size_t& longest) {
-    const RaySet& set = bench.set(name, step);
-    const std::vector<Truth>& truths = bench.truths(set, step);
-    CheckedScene& scene = bench.scene(step);
-    step(std::string("listing all hits of ") + name + " with " + variant.text(), compile_limit_s(bench.options()));
+Outcome trace_all(HitStand& stand, const Variant& variant, const char* name, const Step& step, uint64_t& listed,
+                  size_t& longest) {
+    const RaySet& set = stand.set(name, step);
+    const std::vector<Truth>& truths = stand.truths(set, step);
+    CheckedScene& scene = stand.scene(step);
+    step(std::string("listing all hits of ") + name + " with " + variant.text(), compile_limit_s(stand.options()));
     const AllHits all = scene.trace_all(variant, set.rays, false), counted = scene.trace_all(variant, set.rays, true);
     for (size_t i = 0; i < set.rays.size(); ++i) {
         std::string why =
@@ -79,18 +80,18 @@ Outcome trace_all(Bench& bench, const Variant& variant, const char* name, const 
     return Outcome::passed("");
 }
 
-Outcome all_hits_of(Bench& bench, const Step& step) {
-    bench.scene(step);
+Outcome all_hits_of(HitStand& stand, const Step& step) {
+    stand.scene(step);
     // One lane shows what a traversal stops at, and its program is the smallest. The most lanes have lists for many rays at
     // once.
-    std::vector<int> lanes = bench.options().lanes;
-    lanes = bench.options().quick || lanes.size() < 2 ? std::vector<int>{lanes.front()}
+    std::vector<int> lanes = stand.options().lanes;
+    lanes = stand.options().quick || lanes.size() < 2 ? std::vector<int>{lanes.front()}
                                                       : std::vector<int>{lanes.front(), lanes.back()};
     uint64_t listed = 0;
     size_t longest = 0;
     for (const int count : lanes)
         for (const char* name : {"hits.random", "hits.nested", "hits.instances", "hits.primitives"}) {
-            Outcome outcome = trace_all(bench, {count, false, false}, name, step, listed, longest);
+            Outcome outcome = trace_all(stand, {count, false, false}, name, step, listed, longest);
             if (outcome.kind == Outcome::Kind::failed) return outcome;
         }
     return Outcome::passed(std::to_string(listed) + " hits are listed and counted, up to " + std::to_string(longest) +
@@ -98,12 +99,12 @@ Outcome all_hits_of(Bench& bench, const Step& step) {
 }
 
 // The check `hits.all`.
-Check all_hits_check(const BenchInput& input) {
-    BenchInput few = input;
+Check all_hits_check(const StandInput& input) {
+    StandInput few = input;
     few.options.rays = std::min<size_t>(few.options.rays, kAllRays);
-    const auto bench = std::make_shared<Bench>(few);
+    const auto stand = std::make_shared<HitStand>(few);
     return {"hits.all", "all hits along a ray, in their order, and how many they are",
-            [=](const Step& step) { return all_hits_of(*bench, step); }};
+            [=](const Step& step) { return all_hits_of(*stand, step); }};
 }
 
 // Names of the host that a plugin's kernels must not define.
@@ -143,25 +144,25 @@ Problem reserved_name_fault(const rt_plugin& tracer) {
     return {};
 }
 
-Outcome compile(Bench& bench, const rt_plugin& tracer, const Step& step) {
+Outcome compile(HitStand& stand, const rt_plugin& tracer, const Step& step) {
     if (const Problem why = reserved_name_fault(tracer)) return Outcome::failed(why.text());
-    for (const Variant& variant : bench.variants(step)) try {
-            bench.compiled(variant, step);
+    for (const Variant& variant : stand.variants(step)) try {
+            stand.compiled(variant, step);
         } catch (const Error& e) {
             std::string log = e.details().substr(0, 400);
             std::replace(log.begin(), log.end(), '\n', ' ');
             return Outcome::failed("for " + variant.text() + ": " + e.what() + (log.empty() ? "" : ": " + log));
         }
-    return Outcome::passed(std::to_string(bench.variants(step).size()) + " programs compiled");
+    return Outcome::passed(std::to_string(stand.variants(step).size()) + " programs compiled");
 }
 
-Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
-    const RaySet& set = bench.set(name, step);
+Outcome strange_set(HitStand& stand, const std::string& name, const Step& step) {
+    const RaySet& set = stand.set(name, step);
     const auto is_strange = [](size_t i) { return i % 5 == 2; };
-    const BruteForce force(bench.scene(step).build_scene());
+    const BruteForce force(stand.scene(step).build_scene());
     std::vector<Truth> truths;  // strange rays hit nothing
     for (size_t i = 0; i < set.rays.size(); ++i) truths.push_back(is_strange(i) ? Truth() : force.trace(set.rays[i]));
-    return trace_passes(bench, set.rays, step, [&](const Pass& pass) {
+    return trace_passes(stand, set.rays, step, [&](const Pass& pass) {
         std::vector<rt_hit> hits = pass.traced.hits;
         for (size_t i = 0; i < hits.size(); ++i) {
             if (!is_strange(i)) continue;
@@ -176,18 +177,18 @@ Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
         Outcome outcome =
             Outcome::failed("beside rays that are no numbers (`--only hits.random` tells whether it is right without them): " +
                             faults.text(set.rays, truths, hits, pass.variant.lanes));
-        outcome.repeat = write_report(bench, name, faults, set.rays, hits, pass.what);
+        outcome.repeat = write_report(stand, name, faults, set.rays, hits, pass.what);
         return outcome;
     });
 }
 
-Outcome accesses(Bench& bench, const Step& step) {
-    const Variant variant{bench.options().lanes.front(), false, false};
+Outcome accesses(HitStand& stand, const Step& step) {
+    const Variant variant{stand.options().lanes.front(), false, false};
     size_t rays = 0;
-    for (const RaySet& set : bench.sets(step))
+    for (const RaySet& set : stand.sets(step))
         for (const bool any_hit : {false, true}) {
-            CheckedScene& scene = bench.compiled(variant, step);
-            step(std::string("tracing ") + set.name + " on a simulated device", compile_limit_s(bench.options()));
+            CheckedScene& scene = stand.compiled(variant, step);
+            step(std::string("tracing ") + set.name + " on a simulated device", compile_limit_s(stand.options()));
             scene.trace(variant, set.rays, any_hit);
             rays += set.rays.size();
         }
@@ -205,8 +206,8 @@ std::vector<Check> access_checks(const rt_plugin& plugin, const rt_plugin* layou
     HitsOptions few = options;
     few.rays = 16;
     few.lanes.resize(1);
-    const auto bench = std::make_shared<Bench>(BenchInput{plugin, layout, open, few});
-    return {{kAccessCheck, kAccessTried, [=](const Step& step) { return accesses(*bench, step); }}};
+    const auto stand = std::make_shared<HitStand>(StandInput{plugin, layout, open, few});
+    return {{kAccessCheck, kAccessTried, [=](const Step& step) { return accesses(*stand, step); }}};
 }
 
 std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
@@ -216,19 +217,19 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
         if (!*opened) *opened = open_device();
         return *opened;
     };
-    const BenchInput input{plugin, layout, open, options};
+    const StandInput input{plugin, layout, open, options};
     const rt_plugin& tracer = layout ? *layout : plugin;
-    const auto bench = std::make_shared<Bench>(input), regular = std::make_shared<Bench>(input, kRegularScene),
-               floor = std::make_shared<Bench>(input, kFloorScene), sizes = std::make_shared<Bench>(input, kSizesScene);
+    const auto stand = std::make_shared<HitStand>(input), regular = std::make_shared<HitStand>(input, kRegularScene),
+               floor = std::make_shared<HitStand>(input, kFloorScene), sizes = std::make_shared<HitStand>(input, kSizesScene);
     std::vector<Check> checks = {
         {"hits.kernels", "the kernels compile for each number of lanes, and define no name of the host",
-         [=, &tracer](const Step& step) { return compile(*bench, tracer, step); }},
+         [=, &tracer](const Step& step) { return compile(*stand, tracer, step); }},
         {"hits.stack", "the traversal stack holds the tree, with --debug",
-         [=](const Step& step) { return stack_check(input, *bench, *regular, step); }},
+         [=](const Step& step) { return stack_check(input, *stand, *regular, step); }},
         {"hits.pushes", "the traversal asks RT_STACK_OK before each push",
          [=](const Step& step) { return pushes_check(input, step); }},
         {"hits.counts", "primitives are tested by the host", [=](const Step& step) { return counts_check(input, step); }}};
-    for (const auto& of : {sizes, bench, floor, regular})
+    for (const auto& of : {sizes, stand, floor, regular})
         for (const RaySet& set : of->test().rays(BuildScene(), 0, 0)) {
             const std::string name = set.name;
             if (set.strange)

@@ -174,12 +174,12 @@ bool is_right(const PlaneTruth& truth, const rt_hit& hit, bool any_hit) {
            std::any_of(truth.maybe.begin(), truth.maybe.end(), [&](double t) { return t <= truth.t && is_at(t); });
 }
 
-Outcome trace_planes(Bench& bench, const Step& step) {
-    const std::vector<rt_ray>& rays = bench.set(kPlaneRays.name, step).rays;
+Outcome trace_planes(HitStand& stand, const Step& step) {
+    const std::vector<rt_ray>& rays = stand.set(kPlaneRays.name, step).rays;
     const std::vector<Face> faces = plane_faces();
     std::vector<PlaneTruth> truths;
     for (const rt_ray& ray : rays) truths.push_back(truth_of(faces, ray));
-    return trace_passes(bench, rays, step, [&](const Pass& pass) {
+    return trace_passes(stand, rays, step, [&](const Pass& pass) {
         const std::vector<rt_hit>& hits = pass.traced.hits;
         size_t wrong = 0, first = 0;
         for (size_t i = rays.size(); i-- > 0;)
@@ -198,14 +198,14 @@ Outcome trace_planes(Bench& bench, const Step& step) {
 
 }  // namespace
 
-Check planes_check(const BenchInput& input) {
+Check planes_check(const StandInput& input) {
     static const TestScene scene{"a scene of floors and lattices", plane_scene, [](const BuildScene&, size_t, uint64_t) {
                                      RaySet set = kPlaneRays;
                                      set.rays = plane_rays();
                                      return std::vector<RaySet>{set};
                                  }};
-    const auto bench = std::make_shared<Bench>(input, scene);
-    return {kPlaneRays.name, kPlaneRays.tried, [=](const Step& step) { return trace_planes(*bench, step); }};
+    const auto stand = std::make_shared<HitStand>(input, scene);
+    return {kPlaneRays.name, kPlaneRays.tried, [=](const Step& step) { return trace_planes(*stand, step); }};
 }
 
 }  // namespace clarity::check

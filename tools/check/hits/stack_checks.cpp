@@ -47,17 +47,17 @@ std::vector<rt_ray> for_each_room(const std::vector<rt_ray>& rays) {
     return all;
 }
 
-void add_efforts(Bench& bench, const char* name, const Step& step, Efforts& efforts) {
+void add_efforts(HitStand& stand, const char* name, const Step& step, Efforts& efforts) {
     const Variant variant{1, true, false};
-    const RaySet& set = bench.set(name, step);
-    const std::vector<Truth>& truths = bench.truths(set, step);
-    CheckedScene& scene = bench.scene(step);
+    const RaySet& set = stand.set(name, step);
+    const std::vector<Truth>& truths = stand.truths(set, step);
+    CheckedScene& scene = stand.scene(step);
     std::vector<rt_ray> ended = set.rays;
     // What is not certain may lie anywhere: the plane of a triangle along the ray.
     for (size_t i = 0; i < ended.size(); ++i)
         if (const Contact* hit = truths[i].nearest_certain()) ended[i].t_max = static_cast<float>(hit->t * 0.99);
     const auto count = [&](const std::vector<rt_ray>& rays, bool any_hit) {
-        step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(bench.options()));
+        step(std::string("counting the primitives that rays of ") + name + " test", compile_limit_s(stand.options()));
         return scene.count(variant, for_each_room(rays), any_hit);
     };
     for (const bool any_hit : {false, true}) {
@@ -74,7 +74,7 @@ void add_efforts(Bench& bench, const char* name, const Step& step, Efforts& effo
     }
 }
 
-BenchInput few_rays(BenchInput input) {
+StandInput few_rays(StandInput input) {
     input.options.rays = 400;
     return input;
 }
@@ -83,9 +83,9 @@ const TestScene kCrowd{"60000 triangles whose boxes overlap", [](uint64_t) { ret
     kSmallCrowd{"400 triangles whose boxes overlap", [](uint64_t) { return crowd_scene(400); }, crowd_ray_sets};
 
 // Returns the large crowd for trees, and the small one for grids and kd-trees, where each cell names each primitive of a crowd.
-const TestScene& crowd_of(const BenchInput& input, const Step& step) {
+const TestScene& crowd_of(const StandInput& input, const Step& step) {
     constexpr uint64_t kMost = 512;  // bytes a primitive, of a structure that names it once
-    Bench small(input, kSmallCrowd);
+    HitStand small(input, kSmallCrowd);
     const AccelData& accel = *small.scene(step).accel();
     uint64_t bytes = accel.leaf_count * sizeof(rt_packed_prim);
     for (const AccelData::Slot& slot : accel.slots) bytes += slot.memory.bytes();
@@ -94,9 +94,9 @@ const TestScene& crowd_of(const BenchInput& input, const Step& step) {
 
 }  // namespace
 
-Outcome stack_check(const BenchInput& input, Bench& mixed, Bench& regular, const Step& step) {
+Outcome stack_check(const StandInput& input, HitStand& mixed, HitStand& regular, const Step& step) {
     struct Row {
-        Bench& bench;
+        HitStand& stand;
         std::vector<const char*> sets;
         const char* note;
     };
@@ -106,8 +106,8 @@ Outcome stack_check(const BenchInput& input, Bench& mixed, Bench& regular, const
             for (const bool any_hit : {false, true})
                 for (const Variant& variant : variants) {
                     if (!variant.debug) continue;
-                    const RaySet& set = row.bench.set(name, step);
-                    CheckedScene& scene = row.bench.compiled(variant, step);
+                    const RaySet& set = row.stand.set(name, step);
+                    CheckedScene& scene = row.stand.compiled(variant, step);
                     step(std::string("filling the stack with rays of ") + name + ", " + variant.text(), kTraceLimit_s);
                     const std::string full = scene.trace(variant, set.rays, any_hit).full_stack();
                     rays += set.rays.size();
@@ -120,24 +120,24 @@ Outcome stack_check(const BenchInput& input, Bench& mixed, Bench& regular, const
                                {"hits.uneven", "hits.inside", "hits.edges"},
                                ". The world of this scene is ten instances, and the trees of their meshes are deeper: the "
                                "stack must hold the deepest tree of all groups"}})
-        if (const std::string why = fault_of(row, row.bench.variants(step)); !why.empty()) return Outcome::failed(why);
+        if (const std::string why = fault_of(row, row.stand.variants(step)); !why.empty()) return Outcome::failed(why);
     // Sizes are often rounded up to a multiple of 8: among eight lengths one leaves no room.
     for (unsigned count = input.options.quick ? 25 : 18; count <= 25; ++count) {
         const TestScene scene{"a row of " + std::to_string(count) + " pairs of triangles",
                               [count](uint64_t) { return row_scene(count); }, row_ray_sets};
-        BenchInput debug = few_rays(input);
+        StandInput debug = few_rays(input);
         debug.options.quick = true;
-        Bench bench(debug, scene);
-        bench.take_turn(0, step);
-        const std::string why = fault_of({bench, {kRow}, ". It is as full as the tree is deep"}, bench.variants(step));
+        HitStand stand(debug, scene);
+        stand.take_turn(0, step);
+        const std::string why = fault_of({stand, {kRow}, ". It is as full as the tree is deep"}, stand.variants(step));
         if (!why.empty()) return Outcome::failed(why);
-        Outcome outcome = trace_set(bench, kRow, step);
+        Outcome outcome = trace_set(stand, kRow, step);
         if (outcome.kind == Outcome::Kind::failed) return outcome;
     }
     return Outcome::passed("no stack was full, as far as the traversal asks RT_STACK_OK (" + std::to_string(rays) + " rays)");
 }
 
-Outcome pushes_check(const BenchInput& input, const Step& step) {
+Outcome pushes_check(const StandInput& input, const Step& step) {
     struct Row {
         const TestScene& scene;
         std::vector<const char*> sets;
@@ -167,9 +167,9 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
     uint32_t path = kLeast, longest = 0;
     std::vector<std::pair<const Row*, Effort>> with_some;
     for (const Row& row : rows) {
-        Bench bench(few_rays(input), row.scene, {{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none});
+        HitStand stand(few_rays(input), row.scene, {{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none});
         Efforts efforts;
-        for (const char* name : row.sets) add_efforts(bench, name, step, efforts);
+        for (const char* name : row.sets) add_efforts(stand, name, step, efforts);
         const Effort &all = efforts.with[kUsual], &left = efforts.with[kNone];
         asked += efforts.asked;
         if (!left.in_one_leaf()) with_some.push_back({&row, efforts.with[kSome]});
@@ -206,25 +206,25 @@ Outcome pushes_check(const BenchInput& input, const Step& step) {
         "would say so. Ask before each push");
 }
 
-Outcome crowd_check(const BenchInput& input, const Step& step) {
-    Bench crowd(few_rays(input), crowd_of(input, step));
+Outcome crowd_check(const StandInput& input, const Step& step) {
+    HitStand crowd(few_rays(input), crowd_of(input, step));
     return trace_set(crowd, "hits.crowd", step);
 }
 
-Outcome counts_check(const BenchInput& input, const Step& step) {
+Outcome counts_check(const StandInput& input, const Step& step) {
     // The program of hits.pushes is there already.
     const BuiltAs as{{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none};
-    Bench mixed(few_rays(input), kMixedScene, as), regular(few_rays(input), kRegularScene, as);
+    HitStand mixed(few_rays(input), kMixedScene, as), regular(few_rays(input), kRegularScene, as);
     const Variant variant{1, true, false};
     struct Row {
-        Bench& bench;
+        HitStand& stand;
         const char* set;
     };
     uint64_t hits = 0, untested = 0;
     std::string first;
     for (const Row& row : {Row{mixed, "hits.random"}, Row{mixed, "hits.primitives"}, Row{regular, "hits.uneven"}}) {
-        const RaySet& set = row.bench.set(row.set, step);
-        CheckedScene& scene = row.bench.scene(step);
+        const RaySet& set = row.stand.set(row.set, step);
+        CheckedScene& scene = row.stand.scene(step);
         step(std::string("counting the primitives that rays of ") + row.set + " test", compile_limit_s(input.options));
         const Traced traced = scene.count(variant, for_each_room(set.rays), false);
         for (size_t i = 0; i < set.rays.size(); ++i) {

@@ -108,24 +108,24 @@ std::vector<Aimed> aim(const std::vector<TouchedPart>& parts, const PlacedShapes
 
 }  // namespace
 
-Outcome hits_placed(ShapeBench& bench, const Step& step) {
-    if (!bench.accel()) return Outcome::skipped("no structure for scenes was found");
-    const std::vector<TouchedPart>& parts = bench.parts(step);
+Outcome hits_placed(ShapeStand& stand, const Step& step) {
+    if (!stand.accel()) return Outcome::skipped("no structure for scenes was found");
+    const std::vector<TouchedPart>& parts = stand.parts(step);
     step("placing shapes in a scene", kShapeTrace_s);
-    const PlacedShapes placed = place_all(bench.trials(step), parts);
+    const PlacedShapes placed = place_all(stand.trials(step), parts);
     const std::vector<Aimed> aimed = aim(parts, placed);
     if (aimed.empty()) return Outcome::skipped("no ray met a smooth piece of the surface");
     const auto scene = std::make_shared<const Scene>(placed.scene);
-    const auto device = bench.device(step);
+    const auto device = stand.device(step);
     step("building a structure for the scene", kShapeCompile_s);
     Progress progress;
     BuildTarget target;
     target.place = BuildPlace::here;
     const auto accel = std::make_shared<const AccelData>(
-        build_accel(*scene, *bench.accel(), default_parameters(*bench.accel()), progress, target));
+        build_accel(*scene, *stand.accel(), default_parameters(*stand.accel()), progress, target));
     RayQueries queries(device);
     size_t asked = 0;
-    for (const Variant& variant : bench.variants(step)) {
+    for (const Variant& variant : stand.variants(step)) {
         Settings settings;
         settings.lanes = variant.lanes;
         settings.portable = variant.portable;

@@ -8,14 +8,14 @@
 #include "base/numbers.hpp"
 #include "stand/seed.hpp"
 #include "tools/check/oclgrind.hpp"
-#include "tools/check/shapes/shape_bench.hpp"
+#include "tools/check/shapes/shape_stand.hpp"
 #include "tools/check/shapes/surface_checks.hpp"
 #include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {
 
-using Shared = std::shared_ptr<ShapeBench>;
+using Shared = std::shared_ptr<ShapeStand>;
 
 std::string t_text(const rt_ray& ray, const ProbeHit& hit) {
     return is_hit(ray, hit) ? "t " + exact_text(hit.t) : std::string("nothing");
@@ -25,24 +25,24 @@ bool from_behind(const TouchedPart& part, size_t touch) {
     return dot(to_vec(part.surfaces[touch].normal), to_vec(part.touches[touch].ray.direction)) > 0;
 }
 
-Outcome kernels_compile(ShapeBench& bench, const Step& step) {
-    for (const Variant& variant : bench.variants(step)) try {
-            bench.probe(variant, step);
+Outcome kernels_compile(ShapeStand& stand, const Step& step) {
+    for (const Variant& variant : stand.variants(step)) try {
+            stand.probe(variant, step);
         } catch (const Error& e) {
             std::string log = e.details().substr(0, 400);
             std::replace(log.begin(), log.end(), '\n', ' ');
             return Outcome::failed("for " + variant.text() + ": " + e.what() + (log.empty() ? "" : ": " + log));
         }
-    return Outcome::passed(std::to_string(bench.variants(step).size()) + " programs compiled");
+    return Outcome::passed(std::to_string(stand.variants(step).size()) + " programs compiled");
 }
 
 // All answers are hits within t_min and the box, or none.
-Outcome within_box(ShapeBench& bench, const Step& step) {
+Outcome within_box(ShapeStand& stand, const Step& step) {
     size_t rays = 0, hits = 0;
-    for (const TouchedPart& part : bench.parts(step)) {
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         step("tracing rays at " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, part.rays);
+        const std::vector<ProbeHit> answers = stand.first_probe(step).hits(subject, part.rays);
         const double room = 1e-5 * double(subject.size) + 1e-6 * double(subject.coordinate);
         for (size_t i = 0; i < answers.size(); ++i) {
             const rt_ray& ray = part.rays[i];
@@ -73,10 +73,10 @@ Outcome within_box(ShapeBench& bench, const Step& step) {
 
 // Where a ray meets the surface, rays from other directions meet it, too: from both sides, and with t_min just before the
 // point.
-Outcome met_again(ShapeBench& bench, const Step& step) {
+Outcome met_again(ShapeStand& stand, const Step& step) {
     RayFindings findings;
-    std::mt19937 random = random_of(11, bench.options().seed);
-    for (const TouchedPart& part : bench.parts(step)) {
+    std::mt19937 random = random_of(11, stand.options().seed);
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         const double slack = slack_of(subject);
         std::vector<rt_ray> rays;
@@ -106,7 +106,7 @@ Outcome met_again(ShapeBench& bench, const Step& step) {
             }
         }
         step("tracing rays from other sides at " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, rays);
+        const std::vector<ProbeHit> answers = stand.first_probe(step).hits(subject, rays);
         findings.tried(rays.size());
         for (size_t i = 0; i < rays.size(); ++i) {
             if (is_hit(rays[i], answers[i]) && std::fabs(double(answers[i].t) - expected[i]) <= 1.01 * room[i]) continue;
@@ -123,9 +123,9 @@ Outcome met_again(ShapeBench& bench, const Step& step) {
 }
 
 // The same ray with a direction of another length, and with a larger t_min.
-Outcome same_for_any_length(ShapeBench& bench, const Step& step) {
+Outcome same_for_any_length(ShapeStand& stand, const Step& step) {
     RayFindings findings;
-    for (const TouchedPart& part : bench.parts(step)) {
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         std::vector<rt_ray> rays;
         std::vector<size_t> of;
@@ -142,7 +142,7 @@ Outcome same_for_any_length(ShapeBench& bench, const Step& step) {
                 expected.push_back(double(touch.hit.t) / double(factor));
             }
         step("tracing rays of other lengths at " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, rays);
+        const std::vector<ProbeHit> answers = stand.first_probe(step).hits(subject, rays);
         findings.tried(rays.size());
         for (size_t i = 0; i < rays.size(); ++i) {
             const double room = slack_of(subject) / (0.3 * length(to_vec(rays[i].direction)));
@@ -168,18 +168,18 @@ bool same_answer(const rt_ray& ray, const ProbeHit& a, const ProbeHit& b) {
 }
 
 // Every number of lanes, in any order, and beside rays that are no numbers.
-Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
+Outcome same_for_any_lanes(ShapeStand& stand, const Step& step, bool strange) {
     size_t rays = 0;
-    for (const TouchedPart& part : bench.parts(step)) {
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         step("tracing rays at " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> expected = bench.first_probe(step).hits(subject, part.rays);
-        for (const Variant& variant : bench.variants(step)) {
-            ShapeProbe& probe = bench.probe(variant, step);
+        const std::vector<ProbeHit> expected = stand.first_probe(step).hits(subject, part.rays);
+        for (const Variant& variant : stand.variants(step)) {
+            ShapeProbe& probe = stand.probe(variant, step);
             // Each fifth is strange, the others in another order.
             std::vector<rt_ray> asked;
             std::vector<size_t> of;
-            std::mt19937 random = random_of(23, bench.options().seed);
+            std::mt19937 random = random_of(23, stand.options().seed);
             std::vector<size_t> order(part.rays.size());
             for (size_t i = 0; i < order.size(); ++i) order[i] = i;
             std::shuffle(order.begin(), order.end(), random);
@@ -208,7 +208,7 @@ Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
                                        (strange ? " and rays that are no numbers in other lanes" : "") + ", in lane " +
                                        std::to_string(i % static_cast<size_t>(variant.lanes)) + ", ray " + ray_text(asked[i]) +
                                        " at " + subject.what + " finds " + t_text(asked[i], answers[i]) + ", with " +
-                                       bench.variants(step).front().text() + " " + t_text(asked[i], expected[of[i]]) +
+                                       stand.variants(step).front().text() + " " + t_text(asked[i], expected[of[i]]) +
                                        ": every lane must be computed by itself (branches on one lane, or `#pragma OPENCL "
                                        "FP_CONTRACT OFF` left out)");
             }
@@ -218,10 +218,10 @@ Outcome same_for_any_lanes(ShapeBench& bench, const Step& step, bool strange) {
 }
 
 // Rays along the surface may hit or miss, but what they hit must be there.
-Outcome grazing(ShapeBench& bench, const Step& step) {
+Outcome grazing(ShapeStand& stand, const Step& step) {
     size_t rays_traced = 0, hits = 0;
-    std::mt19937 random = random_of(31, bench.options().seed);
-    for (const TouchedPart& part : bench.parts(step)) {
+    std::mt19937 random = random_of(31, stand.options().seed);
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         std::vector<rt_ray> rays;
         for (const Touch& touch : part.touches) {
@@ -232,7 +232,7 @@ Outcome grazing(ShapeBench& bench, const Step& step) {
             rays.push_back(ray_of(at - double(subject.size) * along, along));
         }
         step("tracing rays along " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, rays);
+        const std::vector<ProbeHit> answers = stand.first_probe(step).hits(subject, rays);
         std::vector<ProbePoint> points;
         std::vector<size_t> of;
         for (size_t i = 0; i < rays.size(); ++i) {
@@ -246,7 +246,7 @@ Outcome grazing(ShapeBench& bench, const Step& step) {
             of.push_back(i);
         }
         step("computing the surface of " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeSurface> surfaces = bench.first_probe(step).surfaces(subject, points);
+        const std::vector<ProbeSurface> surfaces = stand.first_probe(step).surfaces(subject, points);
         for (size_t i = 0; i < points.size(); ++i) {
             ++hits;
             if (std::fabs(double(surfaces[i].height)) <= 2e-3 * double(subject.size) + 1e-5 * double(subject.coordinate))
@@ -260,20 +260,20 @@ Outcome grazing(ShapeBench& bench, const Step& step) {
 }
 
 // Keys at their ends: whatever is accepted gives numbers.
-Outcome at_ends(ShapeBench& bench, const Step& step) {
+Outcome at_ends(ShapeStand& stand, const Step& step) {
     size_t shapes = 0;
-    std::mt19937 random = random_of(41, bench.options().seed);
-    for (const ShapeValues& values : values_at_ends(*bench.plugin().primitive, bench.trials(step).front().values)) {
+    std::mt19937 random = random_of(41, stand.options().seed);
+    for (const ShapeValues& values : values_at_ends(*stand.plugin().primitive, stand.trials(step).front().values)) {
         step("trying " + values.what, kShapeTrace_s);
-        const ShapeTrial trial = try_values(bench.plugin(), values);
+        const ShapeTrial trial = try_values(stand.plugin(), values);
         if (!trial.why.empty()) continue;
-        for (ShapeSubject& subject : subjects_of(bench.plugin(), trial, 1)) {
+        for (ShapeSubject& subject : subjects_of(stand.plugin(), trial, 1)) {
             if (!std::isfinite(subject.size)) continue;
             if (!(subject.size > 0)) subject.size = 1e-3f * std::max(subject.coordinate, 1.f);  // a point: rays go past it
             ++shapes;
             const std::vector<rt_ray> rays = rays_at(subject, 60, random);
             step("tracing rays at a shape with " + values.what, kShapeTrace_s);
-            const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, rays);
+            const std::vector<ProbeHit> answers = stand.first_probe(step).hits(subject, rays);
             std::vector<ProbePoint> points;
             std::vector<size_t> of;
             for (size_t i = 0; i < rays.size(); ++i) {
@@ -286,7 +286,7 @@ Outcome at_ends(ShapeBench& bench, const Step& step) {
                 points.push_back({{float(at[0]), float(at[1]), float(at[2])}, answers[i].u, answers[i].v});
                 of.push_back(i);
             }
-            const std::vector<ProbeSurface> surfaces = bench.first_probe(step).surfaces(subject, points);
+            const std::vector<ProbeSurface> surfaces = stand.first_probe(step).surfaces(subject, points);
             for (size_t i = 0; i < points.size(); ++i) {
                 const Vec n = to_vec(surfaces[i].normal);
                 if (std::isfinite(dot(n, n)) && dot(n, n) > 0 && std::isfinite(surfaces[i].height)) continue;
@@ -299,9 +299,9 @@ Outcome at_ends(ShapeBench& bench, const Step& step) {
     return Outcome::passed(std::to_string(shapes) + " shapes with a key at its end give numbers");
 }
 
-Outcome accesses(ShapeBench& bench, const Step& step) {
+Outcome accesses(ShapeStand& stand, const Step& step) {
     size_t rays = 0;
-    for (const TouchedPart& part : bench.parts(step)) rays += part.rays.size();
+    for (const TouchedPart& part : stand.parts(step)) rays += part.rays.size();
     return Outcome::passed("every access of " + std::to_string(rays) + " rays and of the surface there is within its buffer");
 }
 
@@ -313,15 +313,15 @@ std::vector<Check> shape_access_checks(const rt_plugin& plugin, const std::funct
     few.rays = 12;
     few.lanes.resize(1);
     few.quick = true;
-    const auto bench = std::make_shared<ShapeBench>(plugin, nullptr, open, few);
-    return {{kAccessCheck, kAccessTried, [=](const Step& step) { return accesses(*bench, step); }}};
+    const auto stand = std::make_shared<ShapeStand>(plugin, nullptr, open, few);
+    return {{kAccessCheck, kAccessTried, [=](const Step& step) { return accesses(*stand, step); }}};
 }
 
 std::vector<Check> shape_checks(const rt_plugin& plugin, const rt_plugin* accel,
                                 const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options) {
-    const auto bench = std::make_shared<ShapeBench>(plugin, accel, open, options);
-    const auto check = [&](const char* name, const char* tried, Outcome (*run)(ShapeBench&, const Step&)) {
-        return check_of(bench, name, tried, run);
+    const auto stand = std::make_shared<ShapeStand>(plugin, accel, open, options);
+    const auto check = [&](const char* name, const char* tried, Outcome (*run)(ShapeStand&, const Step&)) {
+        return check_of(stand, name, tried, run);
     };
     return {
         check("hits.kernels", "the kernels compile for each number of lanes", kernels_compile),
@@ -329,9 +329,9 @@ std::vector<Check> shape_checks(const rt_plugin& plugin, const rt_plugin* accel,
         check("hits.again", "what one ray meets, rays from other sides meet, too", met_again),
         check("hits.length", "directions of any length", same_for_any_length),
         {"hits.lanes", "the same answers for any number of lanes and any neighbours",
-         [=](const Step& step) { return same_for_any_lanes(*bench, step, false); }},
+         [=](const Step& step) { return same_for_any_lanes(*stand, step, false); }},
         {"hits.strange", "rays that are no numbers disturb no others",
-         [=](const Step& step) { return same_for_any_lanes(*bench, step, true); }},
+         [=](const Step& step) { return same_for_any_lanes(*stand, step, true); }},
         check("hits.grazing", "rays along the surface", grazing),
         check("hits.ends", "shapes with a key at its least or greatest value", at_ends),
         check("surface.height", "height is the distance from where rays meet the surface", surface_height),

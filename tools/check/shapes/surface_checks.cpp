@@ -27,9 +27,9 @@ double error_of(const ProbeSurface& surface, const Vec& at) {
 
 }  // namespace
 
-Outcome surface_height(ShapeBench& bench, const Step& step) {
+Outcome surface_height(ShapeStand& stand, const Step& step) {
     RayFindings findings;
-    for (const TouchedPart& part : bench.parts(step)) {
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         const double lift = 1e-3 * double(subject.size);
         std::vector<ProbePoint> points;  // above and below
@@ -60,7 +60,7 @@ Outcome surface_height(ShapeBench& bench, const Step& step) {
             }
         }
         step("computing heights beside the surface of " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeSurface> found = bench.first_probe(step).surfaces(subject, points);
+        const std::vector<ProbeSurface> found = stand.first_probe(step).surfaces(subject, points);
         for (size_t i = 0; i < points.size(); ++i) {
             const double expected = i % 2 ? -lift : lift;
             if (std::fabs(double(found[i].height) - expected) <= 0.3 * lift) continue;
@@ -76,9 +76,9 @@ Outcome surface_height(ShapeBench& bench, const Step& step) {
     return Outcome::passed(std::to_string(findings.tried_count()) + " heights agree with the hits");
 }
 
-Outcome surface_normal(ShapeBench& bench, const Step& step) {
+Outcome surface_normal(ShapeStand& stand, const Step& step) {
     RayFindings slanted, inward;
-    for (const TouchedPart& part : bench.parts(step)) {
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         // A shape is closed if rays from outside of its box meet it an even number of times; it is seen from outside first.
         std::vector<rt_ray> behind;
@@ -118,7 +118,7 @@ Outcome surface_normal(ShapeBench& bench, const Step& step) {
             behind[i].t_min = static_cast<float>(double(part.touches[firsts[i]].hit.t) +
                                                  2 * neighbour_distance(subject) / length(to_vec(behind[i].direction)));
         step("looking behind the hits of " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> next = bench.first_probe(step).hits(subject, behind);
+        const std::vector<ProbeHit> next = stand.first_probe(step).hits(subject, behind);
         for (size_t i = 0; i < behind.size(); ++i) once += !is_hit(behind[i], next[i]);
         const bool closed = from_outside >= 20 && once * 100 <= from_outside;
         inward.tried(closed ? from_outside : 0);
@@ -135,10 +135,10 @@ Outcome surface_normal(ShapeBench& bench, const Step& step) {
                            (inward.tried_count() ? ", and outward where the shape is closed" : ""));
 }
 
-Outcome surface_leaving(ShapeBench& bench, const Step& step) {
+Outcome surface_leaving(ShapeStand& stand, const Step& step) {
     RayFindings findings;
-    std::mt19937 random = random_of(51, bench.options().seed);
-    for (const TouchedPart& part : bench.parts(step)) {
+    std::mt19937 random = random_of(51, stand.options().seed);
+    for (const TouchedPart& part : stand.parts(step)) {
         const ShapeSubject& subject = part.subject;
         std::vector<rt_ray> rays;
         std::vector<double> near;  // as far as a hit is the surface itself
@@ -159,7 +159,7 @@ Outcome surface_leaving(ShapeBench& bench, const Step& step) {
             }
         }
         step("tracing rays that leave " + subject.what, kShapeTrace_s);
-        const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, rays);
+        const std::vector<ProbeHit> answers = stand.first_probe(step).hits(subject, rays);
         findings.tried(rays.size());
         for (size_t i = 0; i < rays.size(); ++i)
             if (is_hit(rays[i], answers[i]) && double(answers[i].t) < near[i])

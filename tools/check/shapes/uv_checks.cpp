@@ -345,10 +345,10 @@ std::string fault_of_poles(Surface& surface, const std::vector<Spot>& spots, siz
 
 }  // namespace
 
-Outcome surface_uv(ShapeBench& bench, const Step& step) {
+Outcome surface_uv(ShapeStand& stand, const Step& step) {
     RayFindings findings;
     constexpr float kRoom = 1e-3f;
-    for (const TouchedPart& part : bench.parts(step))
+    for (const TouchedPart& part : stand.parts(step))
         for (size_t i = 0; i < part.touches.size(); ++i) {
             const ProbeSurface& s = part.surfaces[i];
             findings.tried();
@@ -358,9 +358,9 @@ Outcome surface_uv(ShapeBench& bench, const Step& step) {
         }
     if (!findings.empty()) return Outcome::failed(findings.text("texture coordinates are not within 0 and 1"));
     size_t jumps = 0, poles = 0;
-    std::mt19937 random = random_of(61, bench.options().seed);
-    for (const TouchedPart& part : bench.parts(step)) {
-        Surface surface(bench.first_probe(step), part.subject);
+    std::mt19937 random = random_of(61, stand.options().seed);
+    for (const TouchedPart& part : stand.parts(step)) {
+        Surface surface(stand.first_probe(step), part.subject);
         const std::vector<Spot> spots = smooth_spots(part);
         if (spots.empty()) continue;
         const auto failed = [&](const std::string& why) { return Outcome::failed(why + ". The shape: " + part.subject.what); };

@@ -18,9 +18,9 @@ constexpr double kCosines[] = {1, 0.8, 0.4, 0.1};
 // Also closer to the surface than a picture's rays usually come.
 constexpr double kGrazingCosines[] = {1, 0.5, 0.1, 1e-2, 1e-3, 1e-6};
 
-class ModelBench {
+class ModelStand {
  public:
-    ModelBench(const rt_plugin& plugin, std::function<std::shared_ptr<Device>()> open, bool quick, uint64_t seed)
+    ModelStand(const rt_plugin& plugin, std::function<std::shared_ptr<Device>()> open, bool quick, uint64_t seed)
         : plugin_(plugin), open_(std::move(open)), quick_(quick), seed_(seed) {}
     SurfaceProbe& probe(const Step& step) {
         if (!probe_) {
@@ -47,17 +47,17 @@ class ModelBench {
 };
 
 Outcome failed(const SurfaceSubject& subject, const std::string& found) {
-    return Outcome::failed(subject.what + ": " + found, ModelBench::to_see(subject));
+    return Outcome::failed(subject.what + ": " + found, ModelStand::to_see(subject));
 }
 
 // Calls try_one with each material of these colours and each wo. Returns the first failure, or how many were tried.
 template <size_t N>
-Outcome each(ModelBench& bench, const Step& step, const std::vector<std::array<float, 3>>& colors, const double (&cosines)[N],
+Outcome each(ModelStand& stand, const Step& step, const std::vector<std::array<float, 3>>& colors, const double (&cosines)[N],
              const std::function<Outcome(SurfaceProbe&, const SurfaceSubject&, const float*)>& try_one) {
-    SurfaceProbe& probe = bench.probe(step);
+    SurfaceProbe& probe = stand.probe(step);
     size_t tried = 0;
     for (const auto& color : colors)
-        for (const SurfaceSubject& subject : bench.subjects(color))
+        for (const SurfaceSubject& subject : stand.subjects(color))
             for (const double cosine : cosines) {
                 float wo[3];
                 set_direction(cosine, 0.37 * double(++tried), wo);  // from all around
@@ -68,16 +68,16 @@ Outcome each(ModelBench& bench, const Step& step, const std::vector<std::array<f
     return Outcome::passed("right in " + std::to_string(tried) + " cases of keys, colour and wo");
 }
 
-Outcome compiles(ModelBench& bench, const Step& step) {
-    bench.probe(step);
+Outcome compiles(ModelStand& stand, const Step& step) {
+    stand.probe(step);
     return Outcome::passed("they need nothing but the contract of rt_surface.h");
 }
 
-Outcome finite(ModelBench& bench, const Step& step) {
-    std::mt19937 random = bench.random(91);
-    return each(bench, step, {kWhite, kBlack, kColor}, kGrazingCosines,
+Outcome finite(ModelStand& stand, const Step& step) {
+    std::mt19937 random = stand.random(91);
+    return each(stand, step, {kWhite, kBlack, kColor}, kGrazingCosines,
                 [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-                    auto queries = random_draws(wo, bench.pairs(), random);
+                    auto queries = random_draws(wo, stand.pairs(), random);
                     for (size_t i = 0; i < queries.size(); ++i) {
                         SurfaceQuery& query = queries[i];
                         const double near = i % 2 ? kGrazingCosines[i / 2 % std::size(kGrazingCosines)] : double(query.u[0]);
@@ -96,12 +96,12 @@ Outcome finite(ModelBench& bench, const Step& step) {
                 });
 }
 
-Outcome weights(ModelBench& bench, const Step& step) {
-    std::mt19937 random = bench.random(92);
+Outcome weights(ModelStand& stand, const Step& step) {
+    std::mt19937 random = stand.random(92);
     size_t drawn = 0;
     Outcome outcome =
-        each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-            const auto queries = random_draws(wo, bench.pairs(), random);
+        each(stand, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+            const auto queries = random_draws(wo, stand.pairs(), random);
             const auto answers = probe.ask(subject, queries);
             for (size_t i = 0; i < answers.size(); ++i) {
                 drawn += answers[i].drawn();
@@ -114,10 +114,10 @@ Outcome weights(ModelBench& bench, const Step& step) {
     return outcome;
 }
 
-Outcome reciprocity(ModelBench& bench, const Step& step) {
-    std::mt19937 random = bench.random(93);
-    return each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-        auto there = random_draws(wo, bench.pairs(), random), back = there;
+Outcome reciprocity(ModelStand& stand, const Step& step) {
+    std::mt19937 random = stand.random(93);
+    return each(stand, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+        auto there = random_draws(wo, stand.pairs(), random), back = there;
         for (size_t i = 0; i < there.size(); ++i) {
             set_direction(0.02 + 0.98 * double(there[i].u[0]), double(there[i].u[1]), there[i].wi);
             std::copy_n(there[i].wi, 3, back[i].wo);
@@ -133,11 +133,11 @@ Outcome reciprocity(ModelBench& bench, const Step& step) {
     });
 }
 
-Outcome total(ModelBench& bench, const Step& step) {
-    std::mt19937 random = bench.random(96);
+Outcome total(ModelStand& stand, const Step& step) {
+    std::mt19937 random = stand.random(96);
     double greatest = 0;
     Outcome outcome =
-        each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+        each(stand, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
             const double sum = DrawCells(probe, subject, wo, random).total();
             greatest = std::max(greatest, sum);
             if (sum <= 1.01) return Outcome::passed("");  // NaN fails; 1 % is for the integration
@@ -148,22 +148,22 @@ Outcome total(ModelBench& bench, const Step& step) {
     return outcome;
 }
 
-Outcome density(ModelBench& bench, const Step& step) {
-    std::mt19937 random = bench.random(94);
-    return each(bench, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
-        const std::string fault = density_fault(probe, subject, wo, bench.draws(), random);
+Outcome density(ModelStand& stand, const Step& step) {
+    std::mt19937 random = stand.random(94);
+    return each(stand, step, {kColor}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+        const std::string fault = density_fault(probe, subject, wo, stand.draws(), random);
         return fault.empty() ? Outcome::passed("") : failed(subject, fault);
     });
 }
 
-Outcome energy(ModelBench& bench, const Step& step) {
-    std::mt19937 random = bench.random(95);
+Outcome energy(ModelStand& stand, const Step& step) {
+    std::mt19937 random = stand.random(95);
     double greatest = 0;
     Outcome outcome =
-        each(bench, step, {kWhite}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
+        each(stand, step, {kWhite}, kCosines, [&](SurfaceProbe& probe, const SurfaceSubject& subject, const float* wo) {
             double mean = 0, error = 0;
             for (int again = 0; again < 2; ++again) {  // as in density()
-                const auto answers = probe.ask(subject, random_draws(wo, bench.draws(), random));
+                const auto answers = probe.ask(subject, random_draws(wo, stand.draws(), random));
                 mean = 0;
                 for (int k = 0; k < 3; ++k) {
                     double sum = 0, squares = 0;
@@ -196,9 +196,9 @@ std::string of_draw(const SurfaceQuery& query) {
 
 std::vector<Check> model_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open, bool quick,
                                 uint64_t seed) {
-    const auto bench = std::make_shared<ModelBench>(plugin, open, quick, seed);
-    const auto check = [&](const char* name, const char* tried, Outcome (*run)(ModelBench&, const Step&)) {
-        return check_of(bench, name, tried, run);
+    const auto stand = std::make_shared<ModelStand>(plugin, open, quick, seed);
+    const auto check = [&](const char* name, const char* tried, Outcome (*run)(ModelStand&, const Step&)) {
+        return check_of(stand, name, tried, run);
     };
     return {
         check("surface.kernels", "the three functions compile alone", compiles),

@@ -1,4 +1,4 @@
-#include "tools/check/hits/bench.hpp"
+#include "tools/check/hits/hit_stand.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,11 +89,11 @@ constexpr size_t kRays = 2400, kQuickRays = 800;  // of a set
 constexpr size_t kRaysAtOnce = 64;                // of the reference, between two steps
 
 // Draws the scene around the first wrong ray.
-std::string write_picture(const Bench& bench, CheckedScene& scene, const Variant& variant, const std::string& name,
+std::string write_picture(const HitStand& stand, CheckedScene& scene, const Variant& variant, const std::string& name,
                           const rt_ray& ray, bool any_hit, const Step& step) {
-    if (bench.options().report_folder.empty()) return {};
-    const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".png";
-    step("drawing the picture of the report", compile_limit_s(bench.options()));
+    if (stand.options().report_folder.empty()) return {};
+    const std::string path = stand.options().report_folder + "/" + stand.plugin().id + "." + name + ".png";
+    step("drawing the picture of the report", compile_limit_s(stand.options()));
     try {
         const ReportPicture picture = write_report_picture(path, scene, variant, ray, any_hit);
         return "; the view along the first of them is " + path + ": " + std::to_string(picture.differing) + " of " +
@@ -151,7 +151,7 @@ std::string again_fault(CheckedScene& scene, const Variant& variant, const std::
 
 }  // namespace
 
-std::vector<Variant> Bench::variants(const Step& step) {
+std::vector<Variant> HitStand::variants(const Step& step) {
     scene(step);
     const HitsOptions& options = input_.options;
     std::vector<Variant> list;
@@ -162,7 +162,7 @@ std::vector<Variant> Bench::variants(const Step& step) {
     return list;
 }
 
-CheckedScene& Bench::scene(const Step& step) {
+CheckedScene& HitStand::scene(const Step& step) {
     if (!scene_) {
         step("opening the device", compile_limit_s(options()));
         device_ = input_.open();
@@ -176,13 +176,13 @@ CheckedScene& Bench::scene(const Step& step) {
     return *scene_;
 }
 
-void Bench::take_turn(size_t turn, const Step& step) {
+void HitStand::take_turn(size_t turn, const Step& step) {
     scene(step);
     std::vector<int>& lanes = input_.options.lanes;
     lanes = {lanes[turn % lanes.size()]};
 }
 
-CheckedScene& Bench::compiled(const Variant& variant, const Step& step) {
+CheckedScene& HitStand::compiled(const Variant& variant, const Step& step) {
     CheckedScene& at = scene(step);
     if (std::find(compiled_.begin(), compiled_.end(), variant.text()) != compiled_.end()) return at;
     step("compiling for " + variant.text(), compile_limit_s(options()));
@@ -191,22 +191,22 @@ CheckedScene& Bench::compiled(const Variant& variant, const Step& step) {
     return at;
 }
 
-size_t Bench::ray_count() const {
+size_t HitStand::ray_count() const {
     if (options().rays > 0) return options().rays;
     return options().quick ? kQuickRays : kRays;
 }
 
-const std::vector<RaySet>& Bench::sets(const Step& step) {
+const std::vector<RaySet>& HitStand::sets(const Step& step) {
     if (sets_.empty()) sets_ = test_.rays(scene(step).build_scene(), ray_count(), options().seed);
     return sets_;
 }
 
-const RaySet& Bench::set(const std::string& name, const Step& step) {
+const RaySet& HitStand::set(const std::string& name, const Step& step) {
     const auto& all = sets(step);
     return *std::find_if(all.begin(), all.end(), [&](const RaySet& set) { return name == set.name; });
 }
 
-const std::vector<Truth>& Bench::truths(const RaySet& set, const Step& step) {
+const std::vector<Truth>& HitStand::truths(const RaySet& set, const Step& step) {
     const std::string pose = as_.moves == Moves::none ? " at rest, " : " in another pose, ";
     std::vector<Truth>& known = (*input_.truths)[test_.what + pose + std::to_string(ray_count()) + " " + set.name];
     const BuildScene& at = scene(step).build_scene();
@@ -221,10 +221,10 @@ const std::vector<Truth>& Bench::truths(const RaySet& set, const Step& step) {
     return known;
 }
 
-std::string write_report(const Bench& bench, const std::string& name, const Faults& faults, const std::vector<rt_ray>& rays,
+std::string write_report(const HitStand& stand, const std::string& name, const Faults& faults, const std::vector<rt_ray>& rays,
                          const std::vector<rt_hit>& hits, const std::string& what) {
-    if (bench.options().report_folder.empty()) return {};
-    const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".rays";
+    if (stand.options().report_folder.empty()) return {};
+    const std::string path = stand.options().report_folder + "/" + stand.plugin().id + "." + name + ".rays";
     std::string text = "# " + what + "\n";
     for (const Faults::One& one : faults.wrong)
         text += ray_text(rays[one.ray]) + "  # found t " + std::to_string(hits[one.ray].t) + " prim " +
@@ -237,15 +237,15 @@ std::string write_report(const Bench& bench, const std::string& name, const Faul
     return "the rays are in " + path;
 }
 
-Outcome trace_passes(Bench& bench, const std::vector<rt_ray>& rays, const Step& step,
+Outcome trace_passes(HitStand& stand, const std::vector<rt_ray>& rays, const Step& step,
                      const std::function<Outcome(const Pass&)>& judge) {
     std::string wrong, right;
     Outcome first;
     for (const bool any_hit : {false, true})
-        for (const Variant& variant : bench.variants(step)) {
-            CheckedScene& scene = bench.compiled(variant, step);
+        for (const Variant& variant : stand.variants(step)) {
+            CheckedScene& scene = stand.compiled(variant, step);
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
-            step("tracing " + std::to_string(rays.size()) + " rays, " + what, bench.test().limit_s);
+            step("tracing " + std::to_string(rays.size()) + " rays, " + what, stand.test().limit_s);
             const Traced traced = scene.trace(variant, rays, any_hit);
             Outcome outcome = judge({variant, any_hit, what, scene, traced});
             const bool failed = outcome.kind == Outcome::Kind::failed;
@@ -258,16 +258,16 @@ Outcome trace_passes(Bench& bench, const std::vector<rt_ray>& rays, const Step& 
         }
     if (wrong.empty())
         return Outcome::passed(std::to_string(rays.size()) + " rays, nearest and any, are right with " +
-                               std::to_string(bench.variants(step).size()) + " programs");
+                               std::to_string(stand.variants(step).size()) + " programs");
     first.found += right.empty() ? ". With every number of lanes, nearest and any" : ". Wrong: " + wrong + ". Right: " + right;
     return first;
 }
 
-Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
-    const RaySet& set = bench.set(name, step);
-    const std::vector<Truth>& truths = bench.truths(set, step);
+Outcome trace_set(HitStand& stand, const std::string& name, const Step& step) {
+    const RaySet& set = stand.set(name, step);
+    const std::vector<Truth>& truths = stand.truths(set, step);
     std::map<std::string, std::vector<rt_hit>> nearest;  // of each variant
-    return trace_passes(bench, set.rays, step, [&](const Pass& pass) {
+    return trace_passes(stand, set.rays, step, [&](const Pass& pass) {
         const std::vector<rt_hit>& hits = pass.traced.hits;
         const Faults faults = Faults::of(set.rays, truths, hits, pass.any_hit);
         if (!pass.any_hit) nearest[pass.variant.text()] = hits;
@@ -279,21 +279,21 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
         Outcome outcome = Outcome::failed(faults.text(set.rays, truths, hits, pass.variant.lanes) +
                                           (*set.hint && faults.misses() ? ". Mostly: " + std::string(set.hint) : ""));
         outcome.repeat =
-            write_report(bench, name, faults, set.rays, hits, pass.what) +
-            write_picture(bench, pass.scene, pass.variant, name, set.rays[faults.wrong.front().ray], pass.any_hit, step);
+            write_report(stand, name, faults, set.rays, hits, pass.what) +
+            write_picture(stand, pass.scene, pass.variant, name, set.rays[faults.wrong.front().ray], pass.any_hit, step);
         return outcome;
     });
 }
 
-Outcome trace_sets(Bench& bench, const std::vector<const char*>& names, const std::string& after, const Step& step) {
+Outcome trace_sets(HitStand& stand, const std::vector<const char*>& names, const std::string& after, const Step& step) {
     size_t rays = 0;
     for (const char* name : names) {
-        Outcome outcome = trace_set(bench, name, step);
+        Outcome outcome = trace_set(stand, name, step);
         if (outcome.kind == Outcome::Kind::failed) {
             outcome.found = after + ", rays of " + name + ": " + outcome.found;
             return outcome;
         }
-        rays += bench.set(name, step).rays.size();
+        rays += stand.set(name, step).rays.size();
     }
     return Outcome::passed(std::to_string(rays) + " rays, nearest and any, are right " + after);
 }

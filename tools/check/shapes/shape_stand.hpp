@@ -1,4 +1,4 @@
-// shape_bench.hpp -- what the checks of one shape's kernels share: shapes, rays, what they touch, and compiled kernels.
+// shape_stand.hpp -- what the checks of one shape's kernels share: shapes, rays, what they touch, and compiled kernels.
 #pragma once
 #include <functional>
 #include <map>
@@ -14,15 +14,15 @@ namespace clarity::check {
 // A part of a shape with its rays. The touches are those of the first program.
 struct TouchedPart {
     ShapeSubject subject;
-    size_t trial = 0;  // in ShapeBench::trials()
+    size_t trial = 0;  // in ShapeStand::trials()
     std::vector<rt_ray> rays;
     std::vector<Touch> touches;
     std::vector<ProbeSurface> surfaces;  // one for each touch
 };
 
-class ShapeBench {
+class ShapeStand {
  public:
-    ShapeBench(const rt_plugin& plugin, const rt_plugin* accel, std::function<std::shared_ptr<Device>()> open,
+    ShapeStand(const rt_plugin& plugin, const rt_plugin* accel, std::function<std::shared_ptr<Device>()> open,
                const HitsOptions& options)
         : plugin_(plugin), accel_(accel), open_(std::move(open)), options_(options) {}
 

@@ -1,4 +1,4 @@
-#include "tools/check/shapes/shape_bench.hpp"
+#include "tools/check/shapes/shape_stand.hpp"
 
 #include <algorithm>
 
@@ -21,7 +21,7 @@ std::string signs_of(const rt_ray& ray) {
 
 }  // namespace
 
-std::vector<Variant> ShapeBench::variants(const Step& step) {
+std::vector<Variant> ShapeStand::variants(const Step& step) {
     device(step);
     std::vector<Variant> list;
     for (const int lanes : options_.lanes) list.push_back({lanes, false, false});
@@ -29,7 +29,7 @@ std::vector<Variant> ShapeBench::variants(const Step& step) {
     return list;
 }
 
-std::shared_ptr<Device> ShapeBench::device(const Step& step) {
+std::shared_ptr<Device> ShapeStand::device(const Step& step) {
     if (!device_) {
         step("opening the device", kShapeCompile_s);
         device_ = open_();
@@ -38,7 +38,7 @@ std::shared_ptr<Device> ShapeBench::device(const Step& step) {
     return device_;
 }
 
-ShapeProbe& ShapeBench::probe(const Variant& variant, const Step& step) {
+ShapeProbe& ShapeStand::probe(const Variant& variant, const Step& step) {
     std::unique_ptr<ShapeProbe>& known = probes_[variant.text()];
     if (!known) {
         const auto on = device(step);
@@ -48,7 +48,7 @@ ShapeProbe& ShapeBench::probe(const Variant& variant, const Step& step) {
     return *known;
 }
 
-const std::vector<ShapeTrial>& ShapeBench::trials(const Step& step) {
+const std::vector<ShapeTrial>& ShapeStand::trials(const Step& step) {
     if (!trials_.empty()) return trials_;
     step("making shapes with usual values", kShapeTrace_s);
     trials_ = accepted_trials(plugin_, options_.quick ? kQuickShapes : kShapes, options_.seed);
@@ -56,7 +56,7 @@ const std::vector<ShapeTrial>& ShapeBench::trials(const Step& step) {
     return trials_;
 }
 
-const std::vector<TouchedPart>& ShapeBench::parts(const Step& step) {
+const std::vector<TouchedPart>& ShapeStand::parts(const Step& step) {
     if (!parts_.empty()) return parts_;
     ShapeProbe& with = first_probe(step);
     std::mt19937 random = random_of(3, options_.seed);

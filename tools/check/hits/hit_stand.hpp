@@ -1,4 +1,4 @@
-// bench.hpp -- a structure over one scene, the rays that are sent into it, and what they hit: shared by the checks of hits.
+// hit_stand.hpp -- a structure over one scene, the rays that are sent into it, and what they hit: shared by the checks of hits.
 #pragma once
 #include <functional>
 #include <map>
@@ -34,8 +34,8 @@ using OpenDevice = std::function<std::shared_ptr<Device>()>;
 // What rays hit, by the scene, its pose, the number of rays and the set: it does not depend on how a structure is built.
 using KnownTruths = std::map<std::string, std::vector<Truth>>;
 
-// What a bench is for. Plugin and layout must outlive it.
-struct BenchInput {
+// What a stand is for. Plugin and layout must outlive it.
+struct StandInput {
     const rt_plugin& plugin;
     const rt_plugin* layout;  // what traces the tree if the plugin builds a topology, otherwise nullptr
     OpenDevice open;          // on first use
@@ -44,9 +44,9 @@ struct BenchInput {
 };
 
 // Used from one thread.
-class Bench {
+class HitStand {
  public:
-    explicit Bench(BenchInput input, const TestScene& test = kMixedScene, BuiltAs as = {})
+    explicit HitStand(StandInput input, const TestScene& test = kMixedScene, BuiltAs as = {})
         : input_(std::move(input)), test_(test), as_(std::move(as)) {}
 
     const HitsOptions& options() const { return input_.options; }
@@ -64,7 +64,7 @@ class Bench {
  private:
     size_t ray_count() const;  // of a set
 
-    BenchInput input_;
+    StandInput input_;
     const TestScene& test_;
     const BuiltAs as_;
     std::shared_ptr<Device> device_;
@@ -83,15 +83,15 @@ struct Pass {
 };
 // Traces rays with every variant, nearest and any. judge: says what is wrong with a pass. Returns what is wrong with the first
 // of those that failed, and which of them failed.
-Outcome trace_passes(Bench& bench, const std::vector<rt_ray>& rays, const Step& step,
+Outcome trace_passes(HitStand& stand, const std::vector<rt_ray>& rays, const Step& step,
                      const std::function<Outcome(const Pass&)>& judge);
 // Traces a set with every variant, nearest and any, and judges all answers.
-Outcome trace_set(Bench& bench, const std::string& name, const Step& step);
+Outcome trace_set(HitStand& stand, const std::string& name, const Step& step);
 // Sets one after the other until one fails. after: "after a refit", for the message.
-Outcome trace_sets(Bench& bench, const std::vector<const char*>& names, const std::string& after, const Step& step);
+Outcome trace_sets(HitStand& stand, const std::vector<const char*>& names, const std::string& after, const Step& step);
 
 // Writes the wrong rays, for `clarity trace`, with what was found as comments; if the user wants a report. Returns where.
-std::string write_report(const Bench& bench, const std::string& name, const Faults& faults, const std::vector<rt_ray>& rays,
+std::string write_report(const HitStand& stand, const std::string& name, const Faults& faults, const std::vector<rt_ray>& rays,
                          const std::vector<rt_hit>& hits, const std::string& what);
 
 }  // namespace clarity::check
