@@ -108,7 +108,7 @@ int grade_all(const PluginRegistry& plugins, const LabCommand& command, Progress
     Desk desk(plugins, command, std::move(of), progress);
     lab::Grader& grader = desk.grader();
     log(LogLevel::info, std::string("sandbox: ") + lab::sandbox_text(lab::find_sandbox()));
-    size_t elsewhere = 0;
+    size_t elsewhere = 0, failed = 0;
     for (size_t i = 1; i < command.words.size(); ++i) {
         const std::string name = name_of(command.words[i]), record = command.output + "/" + name + ".json";
         const std::string digest = grader.digest(command.words[i]);
@@ -125,7 +125,17 @@ int grade_all(const PluginRegistry& plugins, const LabCommand& command, Progress
                 continue;
             }
         }
-        const lab::Marks marks = grader.grade(command.words[i], progress);
+        lab::Marks marks;
+        try {
+            marks = grader.grade(command.words[i], progress);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& e) {
+            if (command.words.size() == 2) throw;
+            log(LogLevel::warning, name + ": not graded: " + e.what());
+            ++failed;
+            continue;
+        }
         if (!command.output.empty()) write_text_file(record, lab::record_json(grader.lab(), name, digest, marks));
         if (!command.gradescope.empty()) write_text_file(command.gradescope, lab::gradescope_json(grader.lab(), &marks));
         if (command.autolab)
@@ -136,9 +146,10 @@ int grade_all(const PluginRegistry& plugins, const LabCommand& command, Progress
             print_text("%s", lab::marks_text(grader.lab(), marks).c_str());
         std::fflush(stdout);
     }
-    if (elsewhere == 0) return static_cast<int>(Exit::done);
-    log(LogLevel::warning,
-        std::to_string(elsewhere) + " submissions are being graded by other processes; run the same again, until none is");
+    if (elsewhere + failed == 0) return static_cast<int>(Exit::done);
+    if (elsewhere > 0)
+        log(LogLevel::warning,
+            std::to_string(elsewhere) + " submissions are being graded by other processes; run the same again, until none is");
     return static_cast<int>(Exit::failed);
 }
 

@@ -28,6 +28,8 @@ namespace rt {
 struct Stopped : std::exception {
     const char* what() const noexcept override { return "stopped by the host"; }
 };
+// What a plugin says where it gets no memory: the host knows this reason from others.
+inline constexpr const char* kOutOfMemory = "out of memory";
 // Thrown when the user has cancelled.
 struct Cancelled : std::exception {
     const char* what() const noexcept override { return "cancelled"; }
@@ -47,7 +49,7 @@ struct Guard<F> {
         } catch (const Stopped&) {
             return RT_FAILED;
         } catch (const std::bad_alloc&) {
-            return host->fail(host->ctx, "out of memory");
+            return host->fail(host->ctx, kOutOfMemory);
         } catch (const std::exception& e) {
             return host->fail(host->ctx, e.what());
         } catch (...) {

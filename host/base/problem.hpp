@@ -4,16 +4,19 @@
 #include <string>
 #include <utility>
 
+#include "base/error.hpp"
+
 namespace clarity {
 
 //   if (const Problem problem = validate(scene)) throw Error(Exit::import_failed, problem.text());
 class [[nodiscard]] Problem {
  public:
     Problem() = default;  // nothing is wrong
-    Problem(std::string text) : text_(std::move(text)) {}
+    Problem(std::string text, Failure failure = Failure::other) : text_(std::move(text)), failure_(failure) {}
     Problem(const char* text) : text_(text) {}
     explicit operator bool() const { return !text_.empty(); }
     const std::string& text() const { return text_; }
+    Failure failure() const { return failure_; }
 
     friend bool operator==(const Problem& a, const Problem& b) { return a.text_ == b.text_; }
     friend bool operator!=(const Problem& a, const Problem& b) { return a.text_ != b.text_; }
@@ -21,6 +24,7 @@ class [[nodiscard]] Problem {
 
  private:
     std::string text_;
+    Failure failure_ = Failure::other;
 };
 
 }  // namespace clarity

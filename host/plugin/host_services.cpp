@@ -8,12 +8,14 @@
 #include "base/log.hpp"
 #include "base/parallel_for.hpp"
 #include "base/scoped_fp_mode.hpp"
+#include "rt_plugin.hpp"
 
 namespace clarity {
 namespace {
 
 int32_t host_fail(void* ctx, const char* why) {
-    static_cast<HostServices*>(ctx)->fail(why ? why : "");
+    const std::string text = why ? why : "";
+    static_cast<HostServices*>(ctx)->fail(text, text == rt::kOutOfMemory ? Failure::no_memory : Failure::other);
     return RT_FAILED;
 }
 
@@ -72,10 +74,16 @@ HostServices::HostServices(std::string name, Progress& progress, std::string oth
     };
 }
 
-void HostServices::fail(const std::string& why) {
+int32_t HostServices::fail(const rt_host* host, const Error& error) {
+    static_cast<HostServices*>(host->ctx)->fail(error.what(), error.failure());
+    return RT_FAILED;
+}
+
+void HostServices::fail(const std::string& why, Failure failure) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (failed_) return;
     failed_ = true;
+    failure_ = failure;
     try {
         why_ = why;
     } catch (const std::bad_alloc&) {  // no room for the text: check() then says that no reason is known
@@ -93,15 +101,18 @@ std::string HostServices::why() const {
 }
 
 void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
-    const auto error = [&](const std::string& why) { return Error(static_cast<Exit>(exit_code), named(why)); };
+    const auto error = [&](const std::string& why, Failure failure) {
+        return Error(static_cast<Exit>(exit_code), named(why)).as(failure);
+    };
     int32_t status = RT_FAILED;
     std::string thrown;
+    Failure of_thrown = Failure::plugin_fault;
     try {
         status = call();
     } catch (const Error&) {  // from the host itself, during the call
         throw;
     } catch (const std::bad_alloc&) {
-        thrown = "out of memory";
+        thrown = rt::kOutOfMemory, of_thrown = Failure::no_memory;
     } catch (const std::exception& e) {
         thrown = std::string("an exception escaped it: ") + e.what();
     } catch (...) {
@@ -110,19 +121,22 @@ void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
     const bool stopped = told_to_stop_ || progress_.cancelled();
     if (status == RT_CANCELLED && stopped) throw Cancelled();
     if (failed()) {
-        const std::string reason = why().empty() ? "failed and gave no reason" : why();
-        throw error(reason + (status == RT_OK ? " (and then it reported success, a bug of the plugin)" : ""));
+        const std::string success = status == RT_OK ? " (and then it reported success, a bug of the plugin)" : "";
+        if (why().empty()) throw error("failed and gave no reason" + success, Failure::no_reason);
+        throw error(why() + success, failure_);
     }
-    if (!thrown.empty()) throw error(thrown);
+    if (!thrown.empty()) throw error(thrown, of_thrown);
     switch (status) {
         case RT_OK:
             return;
         case RT_FAILED:
-            throw error("failed without saying why; the plugin should call host->fail");
+            throw error("failed without saying why; the plugin should call host->fail", Failure::no_reason);
         case RT_CANCELLED:
-            throw error("returned RT_CANCELLED, but the host had not asked it to stop; a bug of the plugin");
+            throw error("returned RT_CANCELLED, but the host had not asked it to stop; a bug of the plugin",
+                        Failure::plugin_fault);
         default:
-            throw error("returned " + std::to_string(status) + ", which is no status; a bug of the plugin");
+            throw error("returned " + std::to_string(status) + ", which is no status; a bug of the plugin",
+                        Failure::plugin_fault);
     }
 }
 

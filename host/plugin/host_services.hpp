@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "base/progress.hpp"
 #include "rt_plugin.h"
 
@@ -25,7 +26,9 @@ class HostServices {
     // The bytes of the file that an importer is to load, where it cannot read them itself. They must outlive the call.
     void set_content(std::string_view bytes);
     // Records why the call failed. Only the first reason is kept. Thread-safe.
-    void fail(const std::string& why);
+    void fail(const std::string& why, Failure failure = Failure::other);
+    // The same for the services behind `host`. Returns RT_FAILED.
+    static int32_t fail(const rt_host* host, const Error& error);
     bool failed() const;
     std::string why() const;
 
@@ -42,6 +45,7 @@ class HostServices {
     rt_host host_{};
     mutable std::mutex mutex_;
     std::string why_;
+    Failure failure_ = Failure::other;
     bool failed_ = false;
     std::atomic<bool> told_to_stop_{false};  // progress has returned 0
 };

@@ -14,6 +14,7 @@
 #include "base/files/parcel.hpp"
 #include "base/machine.hpp"
 #include "base/scoped_fp_mode.hpp"
+#include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
 #include "plugin/trust.hpp"
@@ -175,7 +176,8 @@ void build_job(ParcelReader& arguments) {
         build(again);
         if (!is_same(output.result(), again.result()))
             throw Error(Exit::failed,
-                        "the builder gives another result for the same scene when it is called again: it keeps state");
+                        "the builder gives another result for the same scene when it is called again: it keeps state")
+                .as(Failure::keeps_state);
     }
     worker::answer(BuildAnswer{output.result()});
 }
@@ -202,7 +204,7 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
-        return host->fail(host->ctx, e.what());
+        return HostServices::fail(host, e);
     }
     return RT_OK;
 }
@@ -220,7 +222,8 @@ class ClosedBuild : public worker::Job {
     void on_output(const std::string&) override {}
     void watch() override {
         if (seconds_since(begin_) > most_s_)
-            throw Error(kind_.code, "the builder did not come to its end within " + worker::in_words(most_s_));
+            throw Error(kind_.code, "the builder did not come to its end within " + worker::in_words(most_s_))
+                .as(Failure::endless);
     }
     const double most_s_;
     const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -240,7 +243,7 @@ int32_t build_closed(const rt_host* host, const rt_build_input* input, const rt_
     try {
         job.run(work, replay, progress);
     } catch (const Error& e) {
-        return host->fail(host->ctx, e.what());
+        return HostServices::fail(host, e);
     }
     return RT_OK;
 }

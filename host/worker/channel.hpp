@@ -23,7 +23,7 @@ enum class MessageKind : uint32_t {
     log,           // level, text
     death,         // text: the cause of death as the worker sees it, "stack overflow"
     no_memory,     // memory was refused; if the worker dies, this was the reason
-    failed,        // text: error message, naming the file or the plugin
+    failed,        // level: Failure; text: error message, naming the file or the plugin
     cancelled,     // the work stopped because it was told to
     report,        // text: a part of the result
     done,          // the result is complete and sealed

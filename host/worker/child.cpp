@@ -15,6 +15,7 @@
 #include <exception>
 #include <new>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 
 namespace clarity::worker {
@@ -215,7 +216,9 @@ int worker_main(const JobKind& kind, int argc, char** argv) {
     } catch (const Cancelled&) {
         last.kind = MessageKind::cancelled;
     } catch (const std::exception& e) {
+        const auto* const error = dynamic_cast<const Error*>(&e);
         last.kind = MessageKind::failed;
+        last.level = static_cast<int32_t>(error ? error->failure() : Failure::other);
         last.text = e.what();
     }
     std::fflush(nullptr);  // what libraries printed comes before the end

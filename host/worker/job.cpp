@@ -122,7 +122,8 @@ void Job::take(const Message& message) {
         case MessageKind::failed:
             if (progress_->cancelled()) throw Cancelled();
             forward_last_output();
-            throw Error(kind_.code, message.text);
+            throw Error(kind_.code, message.text)
+                .as(static_cast<Failure>(std::clamp(message.level, 0, static_cast<int>(kLastFailure))));
         case MessageKind::cancelled:
             throw Cancelled();
         case MessageKind::done:

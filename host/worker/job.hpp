@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <chrono>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,8 +37,15 @@ struct JobKind {
     void (*main)(ParcelReader& arguments);  // the work, in the worker: see child.hpp; nullptr: a tool has it, and fills it in
 };
 
+constexpr Failure failure_of(Cause cause) {
+    constexpr Failure kFailures[] = {Failure::crash,   Failure::exit,      Failure::endless,
+                                     Failure::endless, Failure::no_memory, Failure::other};
+    static_assert(std::size(kFailures) == size_t(Cause::killed) + 1);
+    return kFailures[static_cast<size_t>(cause)];
+}
+
 struct JobDied : Error {
-    JobDied(Exit code, Cause of, const std::string& message) : Error(code, message), cause(of) {}
+    JobDied(Exit code, Cause of, const std::string& message) : Error(Error(code, message).as(failure_of(of))), cause(of) {}
     Cause cause;
 };
 

@@ -8,65 +8,65 @@
 namespace clarity::check {
 namespace {
 
-// A failure belongs to the row with the longest `check` that begins its check's name, and of these to the one with the longest
-// `found` that is in what the check found. Stages are in the order in which they depend on each other: what fails at one may
+// A failure belongs to the row with the longest `check` that begins its check's name, and of these to the one with its `asked`,
+// or with none. Stages are in the order in which they depend on each other: what fails at one may
 // make the checks of later ones fail. Checks without a row depend on no other.
 struct Row {
-    const char *stage, *check, *found;
+    const char *stage, *check;
+    Asked asked = Asked::nothing;
 };
 constexpr Row kRows[] = {
-    {"start", "builds.start", ""},
-    {"start", "hits.start", ""},
-    {"start", "imports.start", ""},
-    {"start", "keys.start", ""},
-    {"start", "shape.start", ""},
-    {"start", "surface.start", ""},
-    {"build", "builds.sound", ""},
-    {"build", "builds.refs", ""},
-    {"build", "builds.pack", ""},
-    {"reading", "imports.read", ""},
-    {"values", "keys.values", ""},
-    {"fresh memory", "imports.memory", ""},
-    {"state", "imports.state", ""},
-    {"truth", "imports.truth", ""},
-    {"bounds", "builds.bounds", ""},
-    {"compilation", "hits.kernels", ""},
-    {"compilation", "surface.kernels", ""},
-    {"numbers", "surface.finite", ""},
-    {"nearest hits of one lane", "hits.", "nearest hits with 1 lane"},
-    {"any-hit queries of one lane", "hits.", "any-hit queries with 1 lane"},
-    {"hits", "hits.", ""},
-    {"hits", "hits.box", ""},
-    {"hits", "hits.again", ""},
-    {"hits", "hits.length", ""},
-    {"hits", "hits.grazing", ""},
-    {"nearest hits of several lanes", "hits.", "nearest hits with "},
-    {"any-hit queries of several lanes", "hits.", "any-hit queries with "},
-    {"several lanes", "hits.lanes", ""},
-    {"surface", "surface.", ""},
-    {"instances", "hits.instances", ""},
-    {"instances", "hits.nested", ""},
-    {"scenes", "hits.placed", ""},
-    {"stack", "hits.stack", ""},
-    {"stack", "hits.pushes", ""},
-    {"accesses", "accesses.", ""},
-    {"build with other parameters", "builds.parameters", ""},
-    {"ends of keys", "keys.ends", ""},
-    {"hits at the ends of keys", "hits.ends", ""},
-    {"refit", "builds.refit", ""},
-    {"refit", "hits.refit", ""},
-    {"work on the device", "builds.device", ""},
-    {"work on the device", "hits.device", ""},
-    {"texture coordinates", "surface.uv", ""},
+    {"start", "builds.start"},
+    {"start", "hits.start"},
+    {"start", "imports.start"},
+    {"start", "keys.start"},
+    {"start", "shape.start"},
+    {"start", "surface.start"},
+    {"build", "builds.sound"},
+    {"build", "builds.refs"},
+    {"build", "builds.pack"},
+    {"reading", "imports.read"},
+    {"values", "keys.values"},
+    {"fresh memory", "imports.memory"},
+    {"state", "imports.state"},
+    {"truth", "imports.truth"},
+    {"bounds", "builds.bounds"},
+    {"compilation", "hits.kernels"},
+    {"compilation", "surface.kernels"},
+    {"numbers", "surface.finite"},
+    {"nearest hits of one lane", "hits.", Asked::nearest_one_lane},
+    {"any-hit queries of one lane", "hits.", Asked::any_one_lane},
+    {"hits", "hits."},
+    {"hits", "hits.box"},
+    {"hits", "hits.again"},
+    {"hits", "hits.length"},
+    {"hits", "hits.grazing"},
+    {"nearest hits of several lanes", "hits.", Asked::nearest_lanes},
+    {"any-hit queries of several lanes", "hits.", Asked::any_lanes},
+    {"several lanes", "hits.lanes"},
+    {"surface", "surface."},
+    {"instances", "hits.instances"},
+    {"instances", "hits.nested"},
+    {"scenes", "hits.placed"},
+    {"stack", "hits.stack"},
+    {"stack", "hits.pushes"},
+    {"accesses", "accesses."},
+    {"build with other parameters", "builds.parameters"},
+    {"ends of keys", "keys.ends"},
+    {"hits at the ends of keys", "hits.ends"},
+    {"refit", "builds.refit"},
+    {"refit", "hits.refit"},
+    {"work on the device", "builds.device"},
+    {"work on the device", "hits.device"},
+    {"texture coordinates", "surface.uv"},
 };
 
 // The end of kRows: none.
 const Row* row_of(const CheckResult& result) {
-    // What follows lists all passes, also those that were right.
-    const std::string found = result.outcome.found.substr(0, result.outcome.found.find(". Wrong: "));
-    const auto fit = [&](const Row& row) -> std::pair<size_t, size_t> {
-        if (result.name.rfind(row.check, 0) != 0 || found.find(row.found) == std::string::npos) return {0, 0};
-        return {std::strlen(row.check), std::strlen(row.found)};
+    const auto fit = [&](const Row& row) -> std::pair<size_t, bool> {
+        const bool is_asked = row.asked != Asked::nothing;
+        if (result.name.rfind(row.check, 0) != 0 || (is_asked && row.asked != result.outcome.asked)) return {0, false};
+        return {std::strlen(row.check), is_asked};
     };
     const Row* const best =
         std::max_element(std::begin(kRows), std::end(kRows), [&](const Row& a, const Row& b) { return fit(a) < fit(b); });

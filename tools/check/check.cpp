@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstdlib>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -25,6 +26,11 @@ namespace {
 constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;  // of a worker; the scenes are small
 // After so many deaths of its worker a phase ends: each endless loop costs its time limit.
 constexpr unsigned kMostDeaths = 3;
+
+// Of what a worker says, which is not trusted.
+Asked asked_in(int number) {
+    return static_cast<Asked>(std::clamp(number, 0, static_cast<int>(Asked::any_lanes)));
+}
 
 // The checks were told to stop.
 struct Stopped {
@@ -50,12 +56,13 @@ class CheckRun : public worker::Job {
 
  private:
     void on_step(const std::string& text) override {
-        const size_t a = text.find('\n'), b = text.find('\n', a + 1);
-        if (a == std::string::npos || b == std::string::npos) return;
+        const size_t a = text.find('\n'), b = text.find('\n', a + 1), c = text.find('\n', b + 1);
+        if (a == std::string::npos || b == std::string::npos || c == std::string::npos) return;
         if (current_.name != text.substr(0, a)) begin_ = std::chrono::steady_clock::now();
         current_.name = text.substr(0, a);
         current_.tried = text.substr(a + 1, b - a - 1);
-        step_ = text.substr(b + 1);
+        current_.outcome.asked = asked_in(std::atoi(text.c_str() + b + 1));
+        step_ = text.substr(c + 1);
     }
     void on_report(const std::string& text) override {
         const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
@@ -70,6 +77,7 @@ class CheckRun : public worker::Job {
                                                   : Outcome::Kind::failed;
         result.outcome.found = json.value("found", "");
         result.outcome.repeat = json.value("repeat", "");
+        result.outcome.asked = asked_in(json.value("asked", 0));
         result.seconds = json.value("seconds", 0.0);
         on_result_(result);
     }
@@ -258,7 +266,9 @@ class Run {
             } catch (const worker::JobDied& died) {
                 CheckResult result = run.current();
                 if (result.name.empty()) result.name = name + ".start";
+                const Asked asked = result.outcome.asked;
                 result.outcome = Outcome::failed(died.what());
+                result.outcome.asked = asked;
                 finish(result);
                 if (died.cause == worker::Cause::no_progress || ++deaths >= kMostDeaths || result.name == "builds.sound" ||
                     result.name == name + ".start")

@@ -61,6 +61,7 @@ void report(const Check& check, const Outcome& outcome, double seconds) {
                                    {"kind", kKinds[static_cast<int>(outcome.kind)]},
                                    {"found", shortened(outcome.found)},
                                    {"repeat", outcome.repeat},
+                                   {"asked", static_cast<int>(outcome.asked)},
                                    {"seconds", seconds}};
     worker::send_message(kChannelFd,
                          {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
@@ -68,9 +69,10 @@ void report(const Check& check, const Outcome& outcome, double seconds) {
 
 Outcome::Kind run(const Check& check) {
     const auto start = std::chrono::steady_clock::now();
-    const Step step = [&](const std::string& what, double limit_s) {
-        worker::say_step(check.name + '\n' + check.tried + '\n' + what, limit_s);
-    };
+    const Step step([&](const std::string& what, double limit_s, Asked asked) {
+        worker::say_step(check.name + '\n' + check.tried + '\n' + std::to_string(static_cast<int>(asked)) + '\n' + what,
+                         limit_s);
+    });
     step("beginning", 10);
     Outcome outcome;
     try {

@@ -35,7 +35,8 @@ struct CheckResult {
 };
 
 extern const worker::JobKind kCheckJob;
-// The work of kCheckJob. Its steps are the name of a check, what it tries and what it does now, each on a line of its own.
+// The work of kCheckJob. Its steps are the name of a check, what it tries, the number of Asked and what it does
+// now, each on a line of its own.
 void check_job(ParcelReader& arguments);
 
 }  // namespace clarity::check

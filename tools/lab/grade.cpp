@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 
 #include "base/digest.hpp"
 #include "base/error.hpp"
@@ -41,23 +42,27 @@ void add_file(Digest& digest, const std::string& path) {
 
 // Of a hidden case students learn which kind of thing went wrong, and nothing of the scene or of what their own code says about
 // it.
-std::string without_secrets(const std::string& found) {
-    constexpr const char* kKinds[][2] = {{"any-hit queries", "any-hit queries are wrong"},
-                                         {"nearest hits", "nearest hits are wrong"},
-                                         {"crashed", "it crashes"},
-                                         {"did not come to", "it does not come to its end"},
-                                         {"keeps state", "it keeps state"},
-                                         {"memory", "it needs too much memory"},
-                                         {"by eval", "the light that is sent back by eval is wrong"},
-                                         {"biased", "the mean of the draws is wrong"},
-                                         {"the density pdf", "the directions of sample do not have the density pdf"},
-                                         {"never finds", "sample never finds some of the light"},
-                                         {"weight of colour", "weights are not f cos / pdf"},
-                                         {"sample", "sample is wrong"},
-                                         {"eval", "eval is wrong"}};
-    for (const auto& [words, kind] : kKinds)
-        if (found.find(words) != std::string::npos) return std::string("in this hidden case ") + kind;
-    return "in this hidden case the build fails";
+std::string without_secrets(Wrong kind) {
+    constexpr const char* kKinds[] = {"nothing is wrong",
+                                      "nearest hits are wrong",
+                                      "any-hit queries are wrong",
+                                      "the build fails",
+                                      "the kernels do not compile",
+                                      "nodes, boxes or tests are not counted by the host",
+                                      "eval, pdf or sample gives numbers that are negative or none",
+                                      "weights are not f cos / pdf",
+                                      "the directions of sample do not have the density pdf",
+                                      "the light that is sent back by eval is wrong",
+                                      "the mean of the draws is wrong",
+                                      "sample never finds some of the light",
+                                      "it crashes",
+                                      "it ends the process",
+                                      "it does not come to its end",
+                                      "it needs too much memory",
+                                      "it keeps state",
+                                      "it fails"};
+    static_assert(std::size(kKinds) == size_t(Wrong::other) + 1);
+    return std::string("in this hidden case ") + kKinds[static_cast<size_t>(kind)];
 }
 
 BuildTools tools_for(const Lab& lab, const GradeOptions& options) {
@@ -285,7 +290,7 @@ void Grader::mark_cases(const Libraries& libraries, Marks& marks, Progress& prog
         line.tried = tried_text(*cases[i], lab_.is_surface);
         if (!cases[i]->hidden) line.alone = "clarity lab check . --only " + cases[i]->name;
         if (!figures.wrong.empty()) {
-            line.found = cases[i]->hidden ? without_secrets(figures.wrong) : figures.wrong;
+            line.found = cases[i]->hidden ? without_secrets(figures.kind) : figures.wrong;
         } else {
             line.found = figures.found;
             if (reference > 0) {
@@ -313,17 +318,19 @@ void Grader::mark_cases(const Libraries& libraries, Marks& marks, Progress& prog
     if (!with_speed) return;
     Line line = line_of("speed", "speed", lab_.points_speed, "rays a second, in turns with the reference on this machine");
     bool steady = true;
+    size_t timed = 0;
     for (const CaseFigures& figures : all) {
-        speed += figures.ms > 0 && figures.reference_ms > 0 ? std::log(figures.reference_ms / figures.ms) : 0;
-        steady &= figures.steady;
+        if (!(figures.ms > 0 && figures.reference_ms > 0)) continue;
+        speed += std::log(figures.reference_ms / figures.ms);
+        steady &= figures.steady, ++timed;
     }
-    if (right) {
-        marks.speed = std::exp(speed / double(all.size()));
+    if (right && timed > 0) {
+        marks.speed = std::exp(speed / double(timed));
         line.points = line.most * std::min(1.0, marks.speed);
         line.found = text_of(marks.speed, "%.2f") + " times as fast as the reference" +
                      (steady ? "" : "; the machine was busy, so the best of all rounds counts");
     } else {
-        line.found = "not measured, because a hit is wrong";
+        line.found = right ? "not measured: no case has times" : "not measured, because a hit is wrong";
     }
     marks.lines.push_back(line);
 }

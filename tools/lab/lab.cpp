@@ -149,7 +149,12 @@ Lab read_lab(const std::string& folder, bool with_hidden) {
     lab.lanes = value(json, "lanes", 1, file);
     const ordered_json points = value(json, "points", ordered_json::object(), file);
     lab.points_checks = value(points, "checks", 50.0, file), lab.points_answers = value(points, "answers", 0.0, file);
-    lab.points_counts = value(points, "counts", 35.0, file), lab.points_speed = value(points, "speed", 15.0, file);
+    // No times are taken of models of surfaces.
+    lab.points_counts = value(points, "counts", lab.is_surface ? 50.0 : 35.0, file);
+    lab.points_speed = value(points, "speed", lab.is_surface ? 0.0 : 15.0, file);
+    if (lab.is_surface && lab.points_speed != 0)
+        refuse(file, "`points.speed` of a lab of surfaces is " + std::to_string(lab.points_speed) +
+                         ", but their times are not taken; give these points to `counts`");
     lab.full = value(json, "full", 1.1, file), lab.none = value(json, "none", 8.0, file);
     if (!(lab.full > 0 && lab.none > lab.full)) refuse(file, "`none` must be larger than `full`, and both larger than 0");
     lab.compile_s = value(json, "compile_s", 120.0, file), lab.build_s = value(json, "build_s", 2.0, file);

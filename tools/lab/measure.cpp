@@ -87,7 +87,7 @@ MotionCosts motion_costs(const rt_plugin& plugin, const Scene& scene) {
     const check::BuildCase input("the poses", scene);
     const BuildScene& build = input.scene();
     const check::BuildRun run = input.run(plugin, {}, check::Schedule::program);
-    if (run.why) throw Error(Exit::failed, run.why.text());
+    if (run.why) throw Error(Exit::failed, run.why.text()).as(run.why.failure());
     MotionCosts costs;
     std::set<uint64_t> before;
     for (const rt_u32 group : build.group_of_mesh) {
@@ -154,8 +154,9 @@ Counted count(CheckedScene& scene, const Variant& variant, const std::vector<rt_
     return counted;
 }
 
-// What is wrong with the first rays; "": nothing.
-std::string fault_of(CheckedScene& scene, const Variant& variant, std::vector<rt_ray> rays, std::vector<rt_hit> nearest) {
+// Says what is wrong with the first rays, if anything is.
+void judge(CheckedScene& scene, const Variant& variant, std::vector<rt_ray> rays, std::vector<rt_hit> nearest,
+           nlohmann::json& report) {
     // Every k-th one, so that all kinds are among them.
     const size_t step = (rays.size() + kJudged - 1) / kJudged;
     for (size_t i = 0; i * step < rays.size(); ++i) rays[i] = rays[i * step], nearest[i] = nearest[i * step];
@@ -165,11 +166,12 @@ std::string fault_of(CheckedScene& scene, const Variant& variant, std::vector<rt
     for (const bool any_hit : {false, true}) {
         const std::vector<rt_hit>& hits = any_hit ? any : nearest;
         const check::Faults faults = check::Faults::of(rays, truths, hits, any_hit);
-        if (!faults.wrong.empty())
-            return std::string(any_hit ? "any-hit queries" : "nearest hits") + ": " +
-                   faults.text(rays, truths, hits, variant.lanes);
+        if (faults.wrong.empty()) continue;
+        report["wrong"] =
+            std::string(any_hit ? "any-hit queries" : "nearest hits") + ": " + faults.text(rays, truths, hits, variant.lanes);
+        report["kind"] = any_hit ? Wrong::any_hits : Wrong::nearest_hits;
+        return;
     }
-    return {};
 }
 
 void report_case(const nlohmann::json& report) {
@@ -227,20 +229,24 @@ void measure_job(ParcelReader& arguments) {
             reference_work = work_of(costs_of(*reference, count(*theirs, variant, rays, node_bytes(*reference)).costs));
         }
         report["reference_work"] = reference_work;
+        Wrong stage = Wrong::build;
         try {
             // The library's own limit of time is that of its builds.
             worker::say_step("building", kCompile_s);
             CheckedScene own(*student, layout_for(*student), job.scenes[c].scene, device);
+            stage = Wrong::kernels;
             worker::say_step("compiling", kCompile_s);
             own.compile(variant);
             own.count(variant, {rays.front()}, false);
+            stage = Wrong::counts;
             worker::say_step("tracing " + std::to_string(rays.size()) + " rays", job.limit_s);
             Counted counted = count(own, variant, rays, node_bytes(*student));
             worker::say_step("comparing hits", 60 + job.limit_s);
-            report["wrong"] = fault_of(own, variant, rays, std::move(counted.hits));
+            judge(own, variant, rays, std::move(counted.hits), report);
+            stage = Wrong::build;
             const RayCosts costs = costs_of(*student, counted.costs);
             report["found"] = text_of(costs, job.poses[c] > 1), report["work"] = work_of(costs);
-            if (job.times && theirs && report["wrong"] == "") {
+            if (job.times && theirs && !report.contains("wrong")) {
                 worker::say_step("measuring times", 20 * kTimes_s);
                 const RayBlocks blocks(rays, static_cast<unsigned>(job.lanes));
                 RayQueries own_queries(device), their_queries(device);
@@ -267,7 +273,7 @@ void measure_job(ParcelReader& arguments) {
                 report["steady"] = measured[0].status == bench::RowStatus::ok && measured[1].status == bench::RowStatus::ok;
             }
         } catch (const Error& e) {
-            report["wrong"] = e.what();
+            report["wrong"] = e.what(), report["kind"] = wrong_of(e.failure(), stage);
         }
         report_case(report);
     }
@@ -281,14 +287,19 @@ class Run : public worker::Job {
  private:
     void on_output(const std::string&) override {}  // of a kernel's printf, too
     void on_report(const std::string& text) override {
-        const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
         CaseFigures figures;
-        figures.wrong = json.value("wrong", "");
-        figures.found = json.value("found", "");
-        figures.work = json.value("work", 0.0), figures.truth = json.value("truth", std::vector<double>{});
-        figures.reference_work = json.value("reference_work", 0.0);
-        figures.ms = json.value("ms", 0.0), figures.reference_ms = json.value("reference_ms", 0.0);
-        figures.steady = json.value("steady", true);
+        try {
+            const nlohmann::json json = nlohmann::json::parse(text);
+            figures.wrong = json.value("wrong", "");
+            figures.kind = static_cast<Wrong>(std::clamp(json.value("kind", 0), 0, static_cast<int>(Wrong::other)));
+            figures.found = json.value("found", "");
+            figures.work = json.value("work", 0.0), figures.truth = json.value("truth", std::vector<double>{});
+            figures.reference_work = json.value("reference_work", 0.0);
+            figures.ms = json.value("ms", 0.0), figures.reference_ms = json.value("reference_ms", 0.0);
+            figures.steady = json.value("steady", true);
+        } catch (const nlohmann::json::exception&) {  // the worker's memory may be damaged
+            throw Error(Exit::failed, "what was measured cannot be read");
+        }
         cases.push_back(std::move(figures));
     }
 };
@@ -305,20 +316,38 @@ double work_of(const RayCosts& costs) {
            costs.following;
 }
 
+Wrong wrong_of(Failure failure, Wrong otherwise) {
+    switch (failure) {
+        case Failure::no_memory:
+            return Wrong::memory;
+        case Failure::keeps_state:
+            return Wrong::state;
+        case Failure::crash:
+            return Wrong::crash;
+        case Failure::exit:
+            return Wrong::exit;
+        case Failure::endless:
+            return Wrong::endless;
+        default:
+            return otherwise;
+    }
+}
+
 std::vector<CaseFigures> measure(const MeasureJob& job, Progress& progress) {
     Run run(job.limit_s);
     run.subject = job.library;
-    std::string died;
+    std::string died = "nothing was measured";
+    Wrong kind = Wrong::other;
     try {
         run.run(job, progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
-        died = e.what();
+        died = e.what(), kind = wrong_of(e.failure(), Wrong::other);
     }
     while (run.cases.size() < job.scenes.size() + job.materials.size()) {
         run.cases.emplace_back();
-        run.cases.back().wrong = died.empty() ? "nothing was measured" : died;
+        run.cases.back().wrong = died, run.cases.back().kind = kind;
     }
     return run.cases;
 }

@@ -1,9 +1,11 @@
 // measure.hpp -- what a structure costs on the cases of a lab: wrong hits, work a ray, and times in turns with the reference.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/progress.hpp"
 #include "import/wire.hpp"
 #include "structures/build_in_worker.hpp"
@@ -38,8 +40,35 @@ struct RayCosts {
 // Work a ray that is graded, in tests of a triangle. One place, for all labs.
 double work_of(const RayCosts& costs);
 
+// Which kind of thing is wrong: of a hidden case, students learn this and no more (grade.cpp).
+enum class Wrong : uint8_t {
+    nothing,
+    nearest_hits,
+    any_hits,
+    build,
+    kernels,
+    counts,
+    // Of models of surfaces.
+    numbers,
+    weights,
+    density,
+    eval_light,
+    mean,
+    never_drawn,
+    // Of the process.
+    crash,
+    exit,
+    endless,
+    memory,
+    state,
+    other
+};
+// The kind of an error; those of no kind happened at a stage, of which `otherwise` is the kind.
+Wrong wrong_of(Failure failure, Wrong otherwise);
+
 struct CaseFigures {
     std::string wrong;                    // what is wrong; "": every hit is right
+    Wrong kind = Wrong::nothing;          // of it
     std::string found;                    // what the work is of, for people
     std::vector<double> truth;            // of the reference: Case::truth
     double work = 0, reference_work = 0;  // 0: no reference

@@ -91,6 +91,7 @@ std::vector<View> views_of(const Case& one) {
 // seldom drawn would be missing in a mean of draws.
 struct Brought {
     double mean[3] = {}, square[3] = {};
+    std::string lost;  // light that is never drawn; "": none
 };
 Brought brought(SurfaceProbe& probe, const SurfaceSubject& subject, const View& view, const std::vector<SurfaceAnswer>& drawn) {
     std::vector<check::Hint> hints;
@@ -98,7 +99,7 @@ Brought brought(SurfaceProbe& probe, const SurfaceSubject& subject, const View& 
         if (answer.drawn())
             hints.push_back(
                 {check::place_of(answer.wi), double(answer.drawn_f[0]) * double(answer.wi[2]) * view.radiance(answer.wi)});
-    std::string lost;
+    Brought sum;
     const auto cells = check::even_cells(16);
     const auto integrals =
         check::integrate(probe, subject, view.wo, cells, hints, [&](const SurfaceQuery& query, const SurfaceAnswer& answer) {
@@ -108,17 +109,15 @@ Brought brought(SurfaceProbe& probe, const SurfaceSubject& subject, const View& 
                 values[k] = light;
                 if (light <= 0) continue;
                 if (answer.density <= 0) {
-                    if (lost.empty())
-                        lost = "sample never finds light" + check::of_pair(query) + ": there pdf is 0, and eval is " +
-                               check::direction_text(answer.f);
+                    if (sum.lost.empty())
+                        sum.lost = "sample never finds light" + check::of_pair(query) + ": there pdf is 0, and eval is " +
+                                   check::direction_text(answer.f);
                     continue;
                 }
                 values[3 + k] = light * light / double(answer.density);
             }
             return values;
         });
-    if (!lost.empty()) throw Error(Exit::failed, lost);
-    Brought sum;
     for (const Integrals& cell : integrals)
         for (size_t k = 0; k < 3; ++k) sum.mean[k] += cell[k], sum.square[k] += cell[3 + k];
     return sum;
@@ -130,21 +129,30 @@ std::string color_text(const double* color) {
     return text;
 }
 
+struct Fault {
+    std::string text;  // "": nothing is wrong
+    Wrong kind = Wrong::nothing;
+};
+
 // What is wrong with draws. Their mean should be `truth`.
-std::string fault_of(SurfaceProbe& probe, const SurfaceSubject& subject, const View& view, const Brought& own,
-                     const double* truth, size_t draws, std::mt19937& random) {
+Fault fault_of(SurfaceProbe& probe, const SurfaceSubject& subject, const View& view, const Brought& own, const double* truth,
+               size_t draws, std::mt19937& random) {
+    if (!own.lost.empty()) return {own.lost, Wrong::never_drawn};
     for (size_t k = 0; k < 3; ++k)
         if (!(std::fabs(own.mean[k] - truth[k]) <= kSameLight * truth[k] + 1e-5))
-            return "the light that is sent back by eval, integrated over all directions, is " + color_text(own.mean) +
-                   check::of_wo(view.wo) + ", expected " + color_text(truth);
+            return {"the light that is sent back by eval, integrated over all directions, is " + color_text(own.mean) +
+                        check::of_wo(view.wo) + ", expected " + color_text(truth),
+                    Wrong::eval_light};
     std::string biased;
     for (int again = 0; again < 2; ++again) {  // numbers of their own must confirm it
         const auto queries = check::random_draws(view.wo, draws, random);
         const auto answers = probe.ask(subject, queries);
         double mean[3] = {};
         for (size_t i = 0; i < answers.size(); ++i) {
-            if (const std::string fault = check::number_fault(queries[i], answers[i]); !fault.empty()) return fault;
-            if (const std::string fault = check::weight_fault(queries[i], answers[i]); !fault.empty()) return fault;
+            if (const std::string fault = check::number_fault(queries[i], answers[i]); !fault.empty())
+                return {fault, Wrong::numbers};
+            if (const std::string fault = check::weight_fault(queries[i], answers[i]); !fault.empty())
+                return {fault, Wrong::weights};
             if (!answers[i].drawn()) continue;
             for (size_t k = 0; k < 3; ++k)
                 mean[k] += double(answers[i].weight[k]) * view.radiance(answers[i].wi) / double(draws);
@@ -155,12 +163,12 @@ std::string fault_of(SurfaceProbe& probe, const SurfaceSubject& subject, const V
             const double error = std::sqrt(variance / double(draws)) + 1e-3 * truth[k] + 1e-6;
             worst = std::max(worst, std::fabs(mean[k] - truth[k]) / error);
         }
-        if (worst < kSigmas) return check::density_fault(probe, subject, view.wo, draws, random);
+        if (worst < kSigmas) return {check::density_fault(probe, subject, view.wo, draws, random), Wrong::density};
         biased = "the mean of " + std::to_string(draws) + " draws is " + color_text(mean) + check::of_wo(view.wo) +
                  ", expected " + color_text(truth) + ", which is " + check::short_text(worst) +
                  " standard errors away: the draws are biased";
     }
-    return biased;
+    return {biased, Wrong::mean};
 }
 
 }  // namespace
@@ -195,6 +203,7 @@ void measure_materials(const MeasureJob& job, const std::function<void(const nlo
             truth.clear();
             for (const View& view : views) {
                 const Brought light = brought(*theirs, subject, view, first_draws(*theirs, subject, view));
+                if (!light.lost.empty()) throw Error(Exit::failed, light.lost);
                 truth.insert(truth.end(), light.mean, light.mean + 3);
                 add_work(light);
             }
@@ -208,20 +217,20 @@ void measure_materials(const MeasureJob& job, const std::function<void(const nlo
             if (!own) own = std::make_unique<SurfaceProbe>(*student, device);
             const SurfaceSubject subject = subject_of(*student, one);
             std::mt19937 random = random_of(99, one.seed);
-            std::string wrong;
+            Fault fault;
             work = 0;
-            for (size_t i = 0; i < views.size() && wrong.empty(); ++i) {
+            for (size_t i = 0; i < views.size() && fault.text.empty(); ++i) {
                 worker::say_step("asking " + subject.what + check::of_wo(views[i].wo), job.limit_s);
                 const Brought light = brought(*own, subject, views[i], first_draws(*own, subject, views[i]));
-                wrong = fault_of(*own, subject, views[i], light, &truth[3 * i], draws, random);
+                fault = fault_of(*own, subject, views[i], light, &truth[3 * i], draws, random);
                 add_work(light);
             }
             char text[120];
             std::snprintf(text, sizeof text, "%.4g draws until the standard error is 1 %%", work);
-            figures["wrong"] = wrong.empty() ? "" : subject.what + ": " + wrong;
+            if (!fault.text.empty()) figures["wrong"] = subject.what + ": " + fault.text, figures["kind"] = fault.kind;
             figures["found"] = text, figures["work"] = work;
         } catch (const Error& e) {
-            figures["wrong"] = e.what();
+            figures["wrong"] = e.what(), figures["kind"] = wrong_of(e.failure(), Wrong::kernels);
         }
         report(figures);
     }

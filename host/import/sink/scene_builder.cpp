@@ -41,7 +41,7 @@ std::string file_name(const std::string& path) {
     return fs::path(path).filename().string();
 }
 
-[[noreturn]] void fail(const std::string& path, const std::string& why) {
+[[noreturn]] void fail(const std::string& path, const std::string& why, Failure failure = Failure::other) {
     throw Error(Exit::import_failed, path + ": " + why);
 }
 
@@ -128,6 +128,22 @@ void SceneBuilder::set_info(const std::string& path, const rt_scene_info& info) 
     scene_.unit_scale = std::isfinite(info.unit_scale) && info.unit_scale > 0 ? info.unit_scale : 0;
 }
 
+// A file is being imported, until the end of a scope.
+struct SceneBuilder::Opened {
+    Opened(SceneBuilder& in, const std::string& canonical, bool stores) : builder(in), outer_stores(in.stores_) {
+        in.open_.push_back(canonical);
+        in.stores_ = stores;
+    }
+    Opened(const Opened&) = delete;
+    Opened& operator=(const Opened&) = delete;
+    ~Opened() {
+        builder.open_.pop_back();
+        builder.stores_ = outer_stores;
+    }
+    SceneBuilder& builder;
+    const bool outer_stores;
+};
+
 // Returns the content of a file and runs its importer on first use. The sink's `load` calls this recursively.
 const FileContent& SceneBuilder::content_of(const std::string& path, const std::string& canonical) {
     const auto known = files_.find(canonical);
@@ -135,16 +151,16 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     const rt_plugin* plugin = plugins_.importer_for(path);
     if (!plugin) {
         const std::string list = known_extensions(plugins_);
-        fail(path, list.empty()
-                       ? "no importers are loaded; `clarity plugins` lists the libraries seen and why they were refused"
-                       : "no importer reads this kind of file; the known ones are " + list);
+        fail(path,
+             list.empty() ? "no importers are loaded; `clarity plugins` lists the libraries seen and why they were refused"
+                          : "no importer reads this kind of file; the known ones are " + list,
+             Failure::no_importer);
     }
     const std::string stage = "importing " + file_name(path);
     progress_.stage(stage);
     if (observer_) observer_->running(path, plugin->id);
-    open_.push_back(canonical);
     as_stored_.resize(scene_.meshes.size(), stores_);
-    const bool outer_stores = std::exchange(stores_, !parameters_.deforms(plugin->id));
+    const Opened opened(*this, canonical, !parameters_.deforms(plugin->id));
     auto content = std::make_unique<FileContent>();
     content->first_material = static_cast<rt_u32>(scene_.materials.size());
     reserve_arrays(path, scene_);
@@ -176,14 +192,12 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
         if (sink.cancelled()) throw Cancelled();
         const std::string why = without_path(without_path(e.what(), path), path);
         // "main.scene:3:9: ..." contains the file's name already.
-        if (why.compare(0, path.size() + 1, path + ":") == 0) throw Error(Exit::import_failed, why);
-        fail(path, why);
+        if (why.compare(0, path.size() + 1, path + ":") == 0) throw Error(Exit::import_failed, why).as(e.failure());
+        fail(path, why, e.failure());
     }
     if (const Problem why = sink.finish()) fail(path, why.text());
     as_stored_.resize(scene_.meshes.size(), stores_);
-    stores_ = outer_stores;
-    open_.pop_back();
-    if (!open_.empty()) progress_.stage("importing " + file_name(open_.back()));
+    if (open_.size() > 1) progress_.stage("importing " + file_name(open_[open_.size() - 2]));
     return *(files_[canonical] = std::move(content));
 }
 
@@ -251,7 +265,6 @@ Problem SceneBuilder::include(const std::string& from, const std::string& path, 
     const fs::path beside = is_sequence ? fs::path(frame) : pattern;
     std::error_code error;
     const std::string shown = fs::equivalent(beside, found.path, error) ? beside.string() : found.path;
-    const size_t depth = open_.size();
     try {
         check_model_file(shown);
         const FileContent& content =
@@ -264,8 +277,7 @@ Problem SceneBuilder::include(const std::string& from, const std::string& path, 
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& e) {
-        open_.resize(depth);
-        return what + without_path(e.what(), shown);
+        return {what + without_path(e.what(), shown), e.failure()};
     }
     return {};
 }

@@ -62,6 +62,7 @@ class SceneBuilder {
     rt_u32 next_source() { return ++sources_; }
 
  private:
+    struct Opened;
     bool take_faces(const std::string& path, const rt_sky_desc& sky, Sky& into);
     const FileContent& content_of(const std::string& path, const std::string& canonical);
     const FileContent& content_or_sequence(const std::string& path, const std::string& file, const std::string& canonical);

@@ -33,8 +33,8 @@ std::string clean_name(const char* name) {
     return text;
 }
 
-rt_u32 SceneSink::fail(const std::string& why) {
-    services_.fail(why);
+rt_u32 SceneSink::fail(const std::string& why, Failure failure) {
+    services_.fail(why, failure);
     return kFailed;
 }
 
@@ -310,7 +310,7 @@ int32_t SceneSink::load(const rt_load& d) {
     }
     const Problem why = builder_.include(path_, d.path, placement, content_);
     if (!why) return RT_OK;
-    fail((d.where ? std::string(d.where) + ": " : "") + why.text());
+    fail((d.where ? std::string(d.where) + ": " : "") + why.text(), why.failure());
     return RT_FAILED;
 }
 

@@ -48,7 +48,7 @@ class SceneSink {
     int32_t edit(const char* key, const char* value, const char* where);
     int32_t sky(const rt_sky_desc& sky);
 
-    rt_u32 fail(const std::string& why);
+    rt_u32 fail(const std::string& why, Failure failure = Failure::other);
     // Finds the scene material, or a material's texture, of an id. If the plugin never received this id, records an error and
     // returns false.
     bool scene_texture(rt_u32 id, const Material& material, rt_u32& texture);

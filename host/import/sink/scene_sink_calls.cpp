@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "import/sink/scene_sink.hpp"
 #include "plugin/abi_struct.hpp"
+#include "rt_plugin.hpp"
 
 namespace clarity::import {
 namespace {
@@ -27,7 +28,9 @@ Result SceneSink::guarded(void* ctx, Result failed, const Body& body) {
         self->cancelled_ = true;
         self->services_.fail("cancelled");
     } catch (const std::bad_alloc&) {
-        self->services_.fail("out of memory");
+        self->services_.fail(rt::kOutOfMemory, Failure::no_memory);
+    } catch (const Error& e) {
+        self->services_.fail(e.what(), e.failure());
     } catch (const std::exception& e) {
         self->services_.fail(e.what());
     }

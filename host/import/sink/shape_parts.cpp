@@ -94,7 +94,7 @@ class Parts {
 
  private:
     int32_t fail(const std::string& why) {
-        services_.fail("its plugin " + why);
+        services_.fail("its plugin " + why, Failure::plugin_fault);
         return RT_FAILED;
     }
 
@@ -118,7 +118,9 @@ int32_t single_part(const rt_primitive& primitive, const rt_host* host, const rt
 
 void add_shape_parts(const rt_primitive& primitive, const rt_primitive_desc& desc, const std::string& speaker,
                      Progress& progress, Scene& scene, Shape& shape) {
-    const auto fail = [&](const std::string& why) { throw Error(Exit::import_failed, speaker + ": " + why); };
+    const auto fail = [&](const std::string& why, Failure failure = Failure::other) {
+        throw Error(Exit::import_failed, speaker + ": " + why).as(failure);
+    };
     if (desc.value_count != primitive.key_count || !desc.values)
         fail(std::to_string(desc.value_count) + " values, but the shape has " + std::to_string(primitive.key_count) + " keys");
     for (rt_u32 i = 0; i < primitive.key_count; ++i)
@@ -131,7 +133,7 @@ void add_shape_parts(const rt_primitive& primitive, const rt_primitive_desc& des
                                  : single_part(primitive, services.host(), desc, parts);
     });
     shape.part_count = static_cast<rt_u32>(scene.shape_parts.size()) - shape.first_part;
-    if (shape.part_count == 0) fail("its plugin made no part of it; this is a fault of the plugin");
+    if (shape.part_count == 0) fail("its plugin made no part of it; this is a fault of the plugin", Failure::plugin_fault);
 }
 
 }  // namespace clarity::import

@@ -22,6 +22,7 @@ BenchRecord row(const std::string& scene, const std::string& measure, const std:
     r.measure = measure;
     r.variant = baseline.empty() ? variant : baseline;
     r.baseline = baseline;
+    r.baseline_quality = baseline.substr(baseline.rfind(' ') + 1);
     r.device = "a processor";
     r.device_id = baseline.empty() && measure != "build" ? "0:0" : "host";
     r.time_ms = r.wall_ms = {1, 1, 1, 1, 1, 9};

@@ -10,6 +10,7 @@
 
 namespace {
 
+using clarity::check::Asked;
 using clarity::check::CheckResult;
 using clarity::check::Outcome;
 using nlohmann::json;
@@ -21,14 +22,21 @@ CheckResult result(const char* name, Outcome outcome) {
     return result;
 }
 
+// Answers are wrong; the words do not matter.
+Outcome wrong(Asked asked, const char* found = "3 are wrong") {
+    Outcome outcome = Outcome::failed(found);
+    outcome.asked = asked;
+    return outcome;
+}
+
 TEST(Causes, TheFirstStageThatFailsStandsForTheOthers) {
     const std::vector<CheckResult> results = {
         result("builds.sound", Outcome::passed("")),
-        result("hits.octants", Outcome::failed("any-hit queries with 1 lane: 3 are wrong")),
-        result("hits.random", Outcome::failed("nearest hits with 1 lane, debug: 3 are wrong")),
+        result("hits.octants", wrong(Asked::any_one_lane)),
+        result("hits.random", wrong(Asked::nearest_one_lane)),
         result("builds.leaks", Outcome::failed("it leaks memory")),
         result("builds.cancel", Outcome::failed("a box is too small")),
-        result("hits.axes", Outcome::failed("crashed while tracing 800 rays, nearest hits with 16 lanes")),
+        result("hits.axes", wrong(Asked::nearest_lanes, "crashed")),
         result("builds.bounds", Outcome::failed("a box is too small")),
         result("builds.refit", Outcome::failed("wrong")),
     };
@@ -38,11 +46,9 @@ TEST(Causes, TheFirstStageThatFailsStandsForTheOthers) {
     EXPECT_EQ(causes[0].results, (std::vector<size_t>{6, 2, 1, 5, 7, 4}));
     EXPECT_EQ(causes[1].results, (std::vector<size_t>{3}));
     EXPECT_EQ(clarity::check::stage_of(results[5]), "nearest hits of several lanes");
-    // Not the pass that is right.
-    const auto listed =
-        result("hits.large", Outcome::failed("nearest hits with 4 lanes: 3 are wrong. Wrong: nearest hits with 4 "
-                                             "lanes. Right: any-hit queries with 4 lanes"));
-    EXPECT_EQ(clarity::check::stage_of(listed), "nearest hits of several lanes");
+    EXPECT_EQ(clarity::check::stage_of(result("hits.large", wrong(Asked::any_lanes))), "any-hit queries of several lanes");
+    EXPECT_EQ(clarity::check::stage_of(result("hits.large", wrong(Asked::nothing))), "hits");
+    EXPECT_EQ(clarity::check::stage_of(result("hits.lanes", wrong(Asked::any_lanes))), "several lanes");
 }
 
 TEST(Causes, WithoutFailuresThereAreNone) {

@@ -18,16 +18,17 @@ namespace clarity::bench {
 namespace {
 
 // Entries of the baselines: other ray tracers on the same scene.
-Entry& add_baseline_entry(CaseState& state, const std::string& name) {
+Entry& add_baseline_entry(CaseState& state, const BaselineKind& kind, const std::string& mode = {}) {
     Entry& entry = state.add_entry();
-    entry.row.baseline = entry.row.variant = name;
+    entry.row.baseline = entry.row.variant = kind.name + (mode.empty() ? "" : " " + mode) + " " + kind.quality;
+    entry.row.baseline_quality = kind.quality;
     describe_host(entry.row, state.fixture.baseline_threads());
     entry.row.driver = baseline_version();
     return entry;
 }
 
 void add_baseline_build(CaseState& state, const BaselineKind& kind) {
-    Entry& entry = add_baseline_entry(state, kind.name + " " + kind.quality);
+    Entry& entry = add_baseline_entry(state, kind);
     const auto bytes = std::make_shared<uint64_t>(0);
     const BaselineMesh& mesh = state.fixture.baseline_mesh();
     const unsigned threads = state.fixture.baseline_threads();
@@ -55,7 +56,7 @@ void with_baseline(CaseState& state, const BaselineKind& kind, const Use& use) {
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& e) {
-        BenchRecord& row = add_baseline_entry(state, kind.name + " " + kind.quality).row;
+        BenchRecord& row = add_baseline_entry(state, kind).row;
         row.status = RowStatus::failed;
         row.why = failure_text(e);
     }
@@ -67,7 +68,7 @@ void describe_baseline(BenchRecord& row, const BaselineScene& scene) {
 }
 
 void add_baseline_frame(CaseState& state, const BaselineKind& kind, BaselineScene& scene, const std::string& mode) {
-    Entry& entry = add_baseline_entry(state, kind.name + " " + mode + " " + kind.quality);
+    Entry& entry = add_baseline_entry(state, kind, mode);
     const auto film = std::make_shared<BaselineArray<float>>();
     const auto counts = std::make_shared<BaselineRayCounts>();
     entry.row.depth = int(state.whitted->generations);
@@ -91,7 +92,7 @@ void add_baseline_frame(CaseState& state, const BaselineKind& kind, BaselineScen
 }
 
 void add_baseline_rays(CaseState& state, const BaselineKind& kind, BaselineScene& scene, const std::string& mode) {
-    Entry& entry = add_baseline_entry(state, kind.name + " " + mode + " " + kind.quality);
+    Entry& entry = add_baseline_entry(state, kind, mode);
     const RaySet* const set = state.rays;
     const auto hits = std::make_shared<BaselineArray<BaselineHit>>(set->rays.size());
     entry.once = [=, &scene] {

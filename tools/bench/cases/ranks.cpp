@@ -279,8 +279,7 @@ std::vector<BenchRecord> measure_start(const BenchScene& scene, const PluginRegi
     const TemporaryFolder output("clarity-start");
     for (const DeviceInfo& device : options.devices)
         for (const Variant& variant : c.variants) {
-            if (!kept || variant.label.find("cold") != std::string::npos)
-                kept = std::make_unique<TemporaryFolder>("clarity-cold");
+            if (!kept || variant.cold) kept = std::make_unique<TemporaryFolder>("clarity-cold");
             BenchRecord row = make_row(c);
             row.scene = scene.name;
             row.variant = variant.label;

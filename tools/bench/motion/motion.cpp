@@ -241,6 +241,7 @@ class MotionCase : CaseRun {
         if (!fixture.has_baselines()) return;
         Entry& entry = state_.add_entry();
         entry.row.baseline = entry.row.variant = "embree " + quality;
+        entry.row.baseline_quality = quality;
         describe_host(entry.row, fixture.baseline_threads());
         entry.row.driver = baseline_version();
         run_or_mark_failed(entry, [&](BenchRecord&) {

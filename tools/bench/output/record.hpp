@@ -70,12 +70,13 @@ struct LightRun {
 
 struct BenchRecord {
     // ---- what was measured
-    std::string suite;      // thesis | packets | accel | scale | cpu | devices | mpi | light | quick
-    std::string case_name;  // "bunny/primary"; rows of one case were measured interleaved, so that they can be compared
-    std::string scene;      // "bunny"
-    std::string measure;    // as BenchCase::measure (suite.hpp)
-    std::string variant;    // identifies a row within its case and device: "now", "then", "bvh2", "4x4, lanes 16"
-    std::string baseline;   // "" for our rows, else "embree packet16 high"
+    std::string suite;             // thesis | packets | accel | scale | cpu | devices | mpi | light | quick
+    std::string case_name;         // "bunny/primary"; rows of one case were measured interleaved, so that they can be compared
+    std::string scene;             // "bunny"
+    std::string measure;           // as BenchCase::measure (suite.hpp)
+    std::string variant;           // identifies a row within its case and device: "now", "then", "bvh2", "4x4, lanes 16"
+    std::string baseline;          // "" for our rows, else "embree packet16 high"
+    std::string baseline_quality;  // of its build: "low", "medium", "high", "refit"; not written to files
 
     // ---- on which device
     std::string device, device_id, driver;  // of a baseline: the host's processor, "host", and "Embree 4.3.3"

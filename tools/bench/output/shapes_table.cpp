@@ -1,6 +1,5 @@
 // shapes_table.cpp -- shapes and their meshes side by side, and the error of a mesh from which on the shape is the cheaper one.
 #include <cstdio>
-#include <cstdlib>
 
 #include "tools/bench/output/output.hpp"
 #include "tools/bench/output/text_table.hpp"
@@ -18,12 +17,11 @@ struct ShapeRow {
 };
 
 ShapeRow row_of_shape(const BenchRecord& record) {
-    const size_t comma = record.scene.find(", ");
-    ShapeRow row{&record, record.scene.substr(0, comma), 0, 0};
-    if (comma == std::string::npos) return row;
-    row.parts = static_cast<unsigned>(std::strtoul(record.scene.c_str() + comma + 2, nullptr, 10));
-    row.error = shape_mesh_error(row.kind, row.parts);
-    return row;
+    for (const MeshedShape& kind : meshed_shapes())
+        for (const unsigned parts : kind.parts)
+            if (record.scene == shape_mesh_name(kind.name, parts))
+                return {&record, kind.name, parts, shape_mesh_error(kind.name, parts)};
+    return {&record, record.scene, 0, 0};
 }
 
 // Two digits, however small; "" for 0.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 namespace clarity::bench {
 namespace {
@@ -17,18 +18,13 @@ bool is_picture(const BenchRecord& record) {
     return m == "frame" || m == "whitted" || m == "picture" || m == "ranks" || m == "moving";
 }
 
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 // The fastest row of a baseline; for builds, among those of comparable quality. nullptr: none was measured.
 const BenchRecord* best_baseline(const std::vector<BenchRecord>& rows, const BenchRecord& ours) {
     const BenchRecord* best = nullptr;
     for (const BenchRecord& row : rows) {
         if (row.baseline.empty() || !measured(row)) continue;
-        if ((row.measure == "build" || row.measure == "rebuild") &&
-            !ends_with(row.baseline, " " + like_quality(ours.accel_params)))
-            continue;
+        const bool is_built = row.measure == "build" || row.measure == "rebuild";
+        if (is_built && row.baseline_quality != like_quality(ours.accel_params)) continue;
         if (!best || speed(row) > speed(*best)) best = &row;
     }
     return best;
@@ -37,8 +33,12 @@ const BenchRecord* best_baseline(const std::vector<BenchRecord>& rows, const Ben
 }  // namespace
 
 std::string like_quality(const std::string& accel) {
-    if (accel.find("builder=morton") != std::string::npos) return "low";
-    return accel.find("builder=spatial") != std::string::npos ? "high" : "medium";
+    std::istringstream words(accel);
+    for (std::string word; std::getline(words, word, ',');) {
+        if (word == "builder=morton") return "low";
+        if (word == "builder=spatial") return "high";
+    }
+    return "medium";
 }
 
 bool is_build(const BenchRecord& record) {

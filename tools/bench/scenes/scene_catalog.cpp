@@ -219,7 +219,7 @@ std::vector<BenchScene> SceneCatalog::shapes() const {
         scenes.push_back(shape);
         for (const unsigned parts : kind.parts) {
             BenchScene mesh;
-            mesh.name = kind.name + (", " + std::to_string(parts)) + (parts == 1 ? " part" : " parts");
+            mesh.name = shape_mesh_name(kind.name, parts);
             mesh.shape = kind.name;
             mesh.parts = parts;
             mesh.camera = "1.6,1.9,2.6,0,0.7,0,40";  // those of the files

@@ -127,6 +127,10 @@ const std::vector<MeshedShape>& meshed_shapes() {
     return kinds;
 }
 
+std::string shape_mesh_name(const std::string& name, unsigned parts) {
+    return name + ", " + std::to_string(parts) + (parts == 1 ? " part" : " parts");
+}
+
 double shape_mesh_error(const std::string& name, unsigned parts) {
     const Turned* const shape = turned_shape(name);
     return shape ? error_of(TurnedMesh(*shape, parts)) : 0;

@@ -20,6 +20,7 @@ struct MeshedShape {
     std::vector<unsigned> parts;  // of its meshes, around the axis; ascending
 };
 const std::vector<MeshedShape>& meshed_shapes();
+std::string shape_mesh_name(const std::string& name, unsigned parts);  // "torus, 32 parts"
 
 // The error of a mesh: the greatest distance between the middle of an edge and the point of the surface there. 0: of other
 // names.

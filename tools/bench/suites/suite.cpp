@@ -28,6 +28,24 @@ bool ends_with_gz(const std::string& file) {
     return file.size() > 3 && file.compare(file.size() - 3, 3, ".gz") == 0;
 }
 
+// Scenes of a suite: a list of the catalogue, or one scene.
+struct SceneChoice {
+    enum class From { project, thesis, shared, views, zoo, shapes } from;
+    const char* name = nullptr;  // nullptr: all of the list
+    const char* sky = nullptr;   // a scene of the project, whose sky is added
+    bool at_sizes = false;       // once at each size of the suite
+};
+using From = SceneChoice::From;
+
+// Seconds that a suite may take.
+struct TimeLimit {
+    double suite_s, scene_s;
+    static TimeLimit whole(double suite_s) { return {suite_s, 0}; }
+    static TimeLimit each_scene(double scene_s) { return {0, scene_s}; }
+    // scene_s: if the user names the scenes.
+    static TimeLimit whole_or_each(double suite_s, double scene_s) { return {suite_s, scene_s}; }
+};
+
 class Planner {
  public:
     Planner(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins)
@@ -43,10 +61,11 @@ class Planner {
 
     struct Row {
         const char* name;
-        double limit_s, scene_limit_s;  // of the whole suite, or 0; of each scene if that is 0, or if the user names the scenes
-        std::vector<const char*> scenes;  // of the project by their names, or lists by a word; *: once at each size
-        std::vector<uint64_t> sizes;      // triangles that scenes are split to
+        TimeLimit limit;
+        std::vector<SceneChoice> scenes;
+        std::vector<uint64_t> sizes;  // triangles that scenes are split to
         void (Planner::*cases)(size_t scene);
+        bool unpacked = false;  // its own scenes must not be packed: ranks read the files themselves
     };
     static const std::vector<Row>& rows();
 
@@ -78,10 +97,9 @@ class Planner {
         const bool own = request_.files.empty();
         const auto add_scenes = [&](uint64_t size) {
             for (const std::string& file : request_.files) add_scene(scene_of_file(file), size);
-            for (const std::string word : own ? row.scenes : std::vector<const char*>())
-                if ((word[0] == '*') == (size > 0))
-                    for (const BenchView& view : scenes_of(word.substr(size > 0)))
-                        add_scene(view.scene, size > 0 ? size : view.subdivide_to);
+            for (const SceneChoice& choice : own ? row.scenes : std::vector<SceneChoice>())
+                if (choice.at_sizes == (size > 0))
+                    for (const BenchView& view : scenes_of(choice)) add_scene(view.scene, size > 0 ? size : view.subdivide_to);
         };
         if (own || row.sizes.empty()) add_scenes(0);
         for (const uint64_t size : row.sizes) {
@@ -93,46 +111,41 @@ class Planner {
             add_scenes(size);
         }
         const size_t end = suite_.scenes.size();
-        const bool by_scene = row.limit_s == 0 || (!own && row.scene_limit_s > 0);
-        suite_.time_limit_s += by_scene ? row.scene_limit_s * double(end - first) : row.limit_s;
+        const bool by_scene = row.limit.suite_s == 0 || (!own && row.limit.scene_s > 0);
+        suite_.time_limit_s += by_scene ? row.limit.scene_s * double(end - first) : row.limit.suite_s;
         for (size_t scene = first; scene < end; ++scene) (this->*row.cases)(scene);
     }
 
-    std::vector<BenchView> scenes_of(const std::string& word) const {
+    std::vector<BenchView> scenes_of(const SceneChoice& choice) const {
         std::vector<BenchView> views;
-        if (word == "views" || word == "skull near") {
-            for (const BenchView& view : catalog_.views())
-                if (word == "views" || view.scene.name == word) views.push_back(view);
-            return views;
-        }
-        if (word == "zoo" || word == "shapes") {
-            for (const BenchScene& scene : word == "zoo" ? catalog_.zoo(request_.max_triangles) : catalog_.shapes())
-                views.push_back({scene, 0});
-            return views;
-        }
-        // One of the shared models; with "+ FILE", under the sky of that scene of the project.
-        static const std::vector<std::string> kOfShared = {"dragon_871k", "salle_de_bain + plaster_sky"};
-        const bool is_one = std::find(kOfShared.begin(), kOfShared.end(), word) != kOfShared.end();
-        const std::vector<BenchScene> scenes = word == "shared" || is_one ? catalog_.shared()
-                                               : word == "thesis"         ? catalog_.thesis()
-                                                                          : std::vector<BenchScene>{catalog_.project(word)};
-        const size_t plus = word.find(" + ");
-        for (BenchScene scene : scenes) {
-            if (is_one && scene.name != word.substr(0, plus) && scene.missing.empty()) continue;
-            if (plus != std::string::npos && scene.missing.empty()) {
-                const BenchScene sky = catalog_.project(word.substr(plus + 3));
-                scene.missing = sky.missing;
-                scene.files.insert(scene.files.end(), sky.files.begin(), sky.files.end());
+        for (BenchView& view : list_of(choice)) {
+            // A list that is not there has one row, which says so.
+            const bool is_other = choice.from != From::project && choice.name && view.scene.name != choice.name;
+            if (is_other && (choice.from == From::views || view.scene.missing.empty())) continue;
+            if (choice.sky && view.scene.missing.empty()) {
+                const BenchScene sky = catalog_.project(choice.sky);
+                view.scene.missing = sky.missing;
+                view.scene.files.insert(view.scene.files.end(), sky.files.begin(), sky.files.end());
             }
-            views.push_back({scene, 0});
+            views.push_back(std::move(view));
         }
+        return views;
+    }
+    std::vector<BenchView> list_of(const SceneChoice& choice) const {
+        if (choice.from == From::views) return catalog_.views();
+        std::vector<BenchView> views;
+        for (BenchScene& scene : choice.from == From::project  ? std::vector<BenchScene>{catalog_.project(choice.name)}
+                                 : choice.from == From::thesis ? catalog_.thesis()
+                                 : choice.from == From::shared ? catalog_.shared()
+                                 : choice.from == From::zoo    ? catalog_.zoo(request_.max_triangles)
+                                                               : catalog_.shapes())
+            views.push_back({std::move(scene), 0});
         return views;
     }
 
     // A scene that was not found becomes a note.
     void add_scene(BenchScene source, uint64_t subdivide_to) {
-        // Ranks read the files themselves.
-        if (row_->cases == &Planner::mpi && request_.files.empty() && source.missing.empty() &&
+        if (row_->unpacked && request_.files.empty() && source.missing.empty() &&
             std::any_of(source.files.begin(), source.files.end(), ends_with_gz))
             source.missing = source.name + ": ranks do not read .gz; unpack it and name the file";
         if (!source.missing.empty()) {
@@ -334,9 +347,12 @@ class Planner {
         BenchCase& start = add_case(scene, "start", "start");
         start.timing = Timing::counted_only;
         for (const char* tracer : {"iterative", "path"})
-            for (const char* label : {"cold", "warm"})
-                start.variants.push_back(
-                    {std::string(tracer) + ", " + label, main_accel(), {{"tracer", tracer}, {"size", "64x64"}, {"spp", "1"}}});
+            for (const bool cold : {true, false}) {
+                start.variants.push_back({std::string(tracer) + (cold ? ", cold" : ", warm"),
+                                          main_accel(),
+                                          {{"tracer", tracer}, {"size", "64x64"}, {"spp", "1"}}});
+                start.variants.back().cold = cold;
+            }
     }
 
     // Models whose vertices all move. Structures that do not refit say so in their rows.
@@ -396,30 +412,50 @@ class Planner {
 
 const std::vector<Planner::Row>& Planner::rows() {
     static const std::vector<Row> rows = {
-        {"thesis", 480, 0, {"thesis", "spheres21", "thesis/aim_100k"}, {}, &Planner::thesis},
-        {"packets", 900, 0, {"thesis"}, {}, &Planner::packets},
-        {"accel", 1500, 120, {"thesis", "thesis/aim_100k", "shared"}, {}, &Planner::accel},
+        {"thesis",
+         TimeLimit::whole(480),
+         {{From::thesis}, {From::project, "spheres21"}, {From::project, "thesis/aim_100k"}},
+         {},
+         &Planner::thesis},
+        {"packets", TimeLimit::whole(900), {{From::thesis}}, {}, &Planner::packets},
+        {"accel",
+         TimeLimit::whole_or_each(1500, 120),
+         {{From::thesis}, {From::project, "thesis/aim_100k"}, {From::shared}},
+         {},
+         &Planner::accel},
         {"scale",
-         900,
-         0,
-         {"*models/spot"},
+         TimeLimit::whole(900),
+         {{From::project, "models/spot", nullptr, true}},
          {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000},
          &Planner::scale},
-        {"large", 1200, 0, {"dragon_871k", "*skull near"}, {1'000'000, 10'000'000, 100'000'000}, &Planner::large},
-        {"cpu", 1800, 150, {"shared", "views"}, {}, &Planner::cpu},
-        {"devices", 0, 90, {"thesis/aim_100k", "shared"}, {}, &Planner::devices},
-        {"mpi", 0, 120, {"thesis/aim_100k", "shared"}, {}, &Planner::mpi},
+        {"large",
+         TimeLimit::whole(1200),
+         {{From::shared, "dragon_871k"}, {From::views, "skull near", nullptr, true}},
+         {1'000'000, 10'000'000, 100'000'000},
+         &Planner::large},
+        {"cpu", TimeLimit::whole_or_each(1800, 150), {{From::shared}, {From::views}}, {}, &Planner::cpu},
+        {"devices", TimeLimit::each_scene(90), {{From::project, "thesis/aim_100k"}, {From::shared}}, {}, &Planner::devices},
+        {"mpi", TimeLimit::each_scene(120), {{From::project, "thesis/aim_100k"}, {From::shared}}, {}, &Planner::mpi, true},
         {"light",
-         0,
-         300,
-         {"cornell", "spheres_sky", "veach", "showpiece_sky", "salle_de_bain + plaster_sky"},
+         TimeLimit::each_scene(300),
+         {{From::project, "cornell"},
+          {From::project, "spheres_sky"},
+          {From::project, "veach"},
+          {From::project, "showpiece_sky"},
+          {From::shared, "salle_de_bain", "plaster_sky"}},
          {},
          &Planner::light},
-        {"moving", 0, 240, {"thesis/aim_100k", "shared"}, {}, &Planner::moving},
-        {"policy", 0, 600, {"thesis/models/skull"}, {}, &Planner::policy},
-        {"zoo", 3600, 450, {"zoo"}, {}, &Planner::zoo},
-        {"shapes", 900, 60, {"shapes"}, {}, &Planner::shapes},
-        {"quick", 55, 0, {"thesis/2_two_spheres", "thesis/6_2406_triangles", "thesis/models/skull"}, {}, &Planner::quick}};
+        {"moving", TimeLimit::each_scene(240), {{From::project, "thesis/aim_100k"}, {From::shared}}, {}, &Planner::moving},
+        {"policy", TimeLimit::each_scene(600), {{From::project, "thesis/models/skull"}}, {}, &Planner::policy},
+        {"zoo", TimeLimit::whole_or_each(3600, 450), {{From::zoo}}, {}, &Planner::zoo},
+        {"shapes", TimeLimit::whole_or_each(900, 60), {{From::shapes}}, {}, &Planner::shapes},
+        {"quick",
+         TimeLimit::whole(55),
+         {{From::project, "thesis/2_two_spheres"},
+          {From::project, "thesis/6_2406_triangles"},
+          {From::project, "thesis/models/skull"}},
+         {},
+         &Planner::quick}};
     return rows;
 }
 

@@ -39,6 +39,7 @@ struct Variant {
     bool refitted = false;        // of rays in a motion: the structure was refitted, not built, for the moved scene
     bool sends_vertices = false;  // of a clip: the host makes the vertices of each pose and sends them
     bool overlapped = false;      // of moving: copy each picture to the host while the next one is traced
+    bool cold = false;            // of start: nothing is compiled yet
 };
 
 enum class Timing { timed, counted_only };

@@ -130,7 +130,7 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
     } catch (const Cancelled&) {
         run.cancelled = true;
     } catch (const Error& e) {
-        run.why = e.what();
+        run.why = Problem(e.what(), e.failure());
     }
     // On a busy machine a build waits for others; with several threads it works for longer than it lasts.
     run.ms = std::min(ms_since(start), 1e3 * double(std::clock() - worked) / CLOCKS_PER_SEC);

@@ -66,9 +66,9 @@ class DeviceCheck {
         try {
             for (const BuildForm form : {BuildForm::groups, BuildForm::serial}) {
                 const BuildKernels kernels(device, form);
-                const Step in_form = [&](const std::string& what, double limit_s) {
-                    step(what + ", " + form_text(form), limit_s);
-                };
+                const Step in_form([&](const std::string& what, double limit_s, Asked asked) {
+                    step(what + ", " + form_text(form), limit_s, asked);
+                });
                 if (build_.topology) why = topology_fault(kernels, in_form);
                 if (!why && build_.pack) why = pack_fault(kernels, in_form);
                 if (!why && build_.refit) why = refit_fault(kernels, in_form);

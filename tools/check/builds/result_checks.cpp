@@ -199,19 +199,34 @@ Problem loose_in_group(const rt_plugin& plugin, const BuildScene& scene, const r
     return {};
 }
 
-}  // namespace
-
-Problem missing_refs(const BuildScene& scene, const BuilderResult& result) {
+// How often each primitive of the input is a leaf. unknown: names the first leaf that is none of them.
+std::unordered_map<rt_u32, rt_u32> times_of(const BuildScene& scene, const BuilderResult& result, Problem& unknown) {
     std::unordered_map<rt_u32, rt_u32> times;
     times.reserve(scene.prims.size() * 2);
     for (const rt_prim& prim : scene.prims) times[prim.ref] = 0;
     const auto* refs = static_cast<const rt_u32*>(result.refs.data());
     for (uint64_t i = 0; i < result.leaf_count; ++i) {
         const auto known = times.find(refs[i]);
-        if (known == times.end())
-            return "leaf " + std::to_string(i) + " is " + name_of(refs[i]) + ", which was not in the input";
-        ++known->second;
+        if (known != times.end())
+            ++known->second;
+        else if (!unknown)
+            unknown = "leaf " + std::to_string(i) + " is " + name_of(refs[i]) + ", which was not in the input";
     }
+    return times;
+}
+
+}  // namespace
+
+Problem unknown_ref(const BuildScene& scene, const BuilderResult& result) {
+    Problem unknown;
+    times_of(scene, result, unknown);
+    return unknown;
+}
+
+Problem missing_refs(const BuildScene& scene, const BuilderResult& result) {
+    Problem unknown;
+    auto times = times_of(scene, result, unknown);
+    if (unknown) return unknown;
     size_t missing = 0;
     rt_u32 first = 0;
     for (const rt_prim& prim : scene.prims)

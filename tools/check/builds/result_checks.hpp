@@ -7,6 +7,8 @@
 
 namespace clarity::check {
 
+// A leaf that was not in the input: it cannot be packed.
+Problem unknown_ref(const BuildScene& scene, const BuilderResult& result);
 // Every primitive of the input is among the leaves, and nothing else is.
 Problem missing_refs(const BuildScene& scene, const BuilderResult& result);
 

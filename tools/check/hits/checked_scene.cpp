@@ -74,17 +74,14 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
         const rt_plugin& refits = layout ? *layout : plugin;
         RefitRun moved = run_refit(refits, layout ? default_parameters(refits) : params, run_.result, case_.scene(),
                                    std::vector<uint8_t>(case_.scene().groups.size(), 1), Schedule::program);
-        if (moved.why) throw Error(Exit::failed, moved.why.text() + " (see builds.refit)");
+        if (moved.why) throw Error(Exit::failed, moved.why.text() + " (see builds.refit)").as(moved.why.failure());
         run_.result = std::move(moved.result);
         if (as.moves == Moves::rebuilt) run_on(case_);
     }
     if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
-    if (!run_.why) {
-        // A ref that is unknown cannot be packed; one that is missing is worth a run.
-        Problem why = missing_refs(case_.scene(), run_.result);
-        if (why.text().find("not in the input") != std::string::npos) run_.why = why;
-    }
-    if (run_.why) throw Error(Exit::failed, "the builder failed: " + run_.why.text() + " (see builds.sound)");
+    if (!run_.why) run_.why = unknown_ref(case_.scene(), run_.result);  // one that is missing is worth a run
+    if (run_.why)
+        throw Error(Exit::failed, "the builder failed: " + run_.why.text() + " (see builds.sound)").as(run_.why.failure());
 
     auto accel = std::make_shared<AccelData>();
     accel->plugin = &plugin;

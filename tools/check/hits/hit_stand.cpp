@@ -245,13 +245,15 @@ Outcome trace_passes(HitStand& stand, const std::vector<rt_ray>& rays, const Ste
         for (const Variant& variant : stand.variants(step)) {
             CheckedScene& scene = stand.compiled(variant, step);
             const std::string what = std::string(any_hit ? "any-hit queries" : "nearest hits") + " with " + variant.text();
-            step("tracing " + std::to_string(rays.size()) + " rays, " + what, stand.test().limit_s);
+            const Asked asked = asked_of(any_hit, variant.lanes);
+            step("tracing " + std::to_string(rays.size()) + " rays, " + what, stand.test().limit_s, asked);
             const Traced traced = scene.trace(variant, rays, any_hit);
             Outcome outcome = judge({variant, any_hit, what, scene, traced});
             const bool failed = outcome.kind == Outcome::Kind::failed;
             if (failed && wrong.empty()) {
                 first = std::move(outcome);
                 first.found = what + ": " + first.found;
+                first.asked = asked;
             }
             std::string& list = failed ? wrong : right;
             list += (list.empty() ? "" : "; ") + what;

@@ -94,6 +94,7 @@ struct Import {
     Scene scene;
     std::string importer;  // which was chosen
     std::string why;       // how it failed; empty: it did not
+    Failure failure = Failure::other;
     bool cancelled = false;
     unsigned reports = 0;
     size_t flat = 0;  // instances that flatten their mesh
@@ -114,7 +115,9 @@ Import import_file(const ImportInputs& inputs, const std::string& path, unsigned
     } catch (const Cancelled&) {
         result.cancelled = true;
     } catch (const std::bad_alloc&) {
-        result.why = "out of memory";
+        result.why = "out of memory", result.failure = Failure::no_memory;
+    } catch (const Error& e) {
+        result.why = e.what(), result.failure = e.failure();
     } catch (const std::exception& e) {
         result.why = e.what();
     }
@@ -280,7 +283,7 @@ Outcome hostile(const ImportInputs& inputs, const Step& step) {
             ++others;
             continue;
         }
-        if (result.why.find("out of memory") != std::string::npos)
+        if (result.failure == Failure::no_memory)
             return Outcome::failed(of + "asks for more memory than a worker has, for a file of " +
                                    memory_text(fs::file_size(file.path)) + ": it trusts a count of the file");
         if (result.why.empty()) {

@@ -19,24 +19,15 @@ using Inputs = std::shared_ptr<const KeyInputs>;
 
 constexpr double kLimit_s = 7;  // processor time for one shape
 
-// The host's own words where a plugin fails without any.
-bool gives_no_reason(const std::string& why) {
-    return why.find("without saying why") != std::string::npos || why.find("gave no reason") != std::string::npos;
-}
-
-// Not refused for its values, but for what the plugin did with them.
-bool is_fault(const std::string& why) {
-    return why.find("its plugin ") != std::string::npos || why.find("fault of the plugin") != std::string::npos;
-}
-
 Outcome values(const KeyInputs& inputs, const Step& step, size_t count) {
     step("trying usual values of its keys", kLimit_s);
     std::vector<ShapeTrial> refused;
     const std::vector<ShapeTrial> accepted = accepted_trials(*inputs.plugin, count, inputs.seed, &refused);
     for (const ShapeTrial& trial : refused) {
         const std::string statement = "`" + trial.values.statement(*inputs.plugin) + "`: ";
-        if (is_fault(trial.why)) return Outcome::failed(statement + trial.why);
-        if (gives_no_reason(trial.why))
+        // Not refused for its values, but for what the plugin did with them.
+        if (trial.failure == Failure::plugin_fault) return Outcome::failed(statement + trial.why);
+        if (trial.failure == Failure::no_reason)
             return Outcome::failed(statement + "is refused without a reason: say what is wrong with host->fail (rt::fail)");
     }
     if (accepted.empty())
@@ -54,7 +45,7 @@ Outcome ends(const KeyInputs& inputs, const Step& step, size_t count) {
         for (const ShapeValues& values : values_at_ends(*inputs.plugin->primitive, usual.values)) {
             step("trying " + values.what, kLimit_s);
             const ShapeTrial trial = try_values(*inputs.plugin, values);
-            if (is_fault(trial.why) || gives_no_reason(trial.why))
+            if (trial.failure == Failure::plugin_fault || trial.failure == Failure::no_reason)
                 return Outcome::failed(values.what + ", in `" + values.statement(*inputs.plugin) + "`: " + trial.why +
                                        "; narrow the key's range, or refuse such values with a reason");
             ++(trial.why.empty() ? accepted : refused);
@@ -101,6 +92,7 @@ Outcome statements(const KeyInputs& inputs, const Step& step) {
         const std::string file = std::filesystem::path(statement.path).filename().string();
         step("reading " + (statement.what.empty() ? "a usual statement" : statement.what), kLimit_s);
         std::string why;
+        bool is_read = true;  // by an importer
         Scene scene;
         try {
             Progress progress;
@@ -109,11 +101,10 @@ Outcome statements(const KeyInputs& inputs, const Step& step) {
             builder.add_root(statement.path);
             scene = builder.take();
         } catch (const Error& e) {
-            why = e.what();
+            why = e.what(), is_read = e.failure() != Failure::no_importer;
         }
         if (statement.what.empty()) {
-            if (!why.empty() && why.find("no importer") != std::string::npos)
-                return Outcome::skipped("no importer of text scenes is there: " + why);
+            if (!is_read) return Outcome::skipped("no importer of text scenes is there: " + why);
             const ShapeTrial trial = try_values(*inputs.plugin, statement.values);
             if (trial.why.empty() && (!why.empty() || scene.shapes.size() != 1 || !same(trial.scene, scene)))
                 return Outcome::failed("`" + statement.values.statement(*inputs.plugin) + "` becomes " +

@@ -191,7 +191,7 @@ ShapeTrial try_values(const rt_plugin& plugin, const ShapeValues& values) {
         import::add_shape_parts(*plugin.primitive, desc, plugin.id, progress, trial.scene, shape);
         trial.scene.shapes.push_back(shape);
     } catch (const Error& e) {
-        trial.why = e.what();
+        trial.why = e.what(), trial.failure = e.failure();
     }
     return trial;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "rt_plugin.h"
 #include "scene/scene.hpp"
 
@@ -32,6 +33,7 @@ struct ShapeTrial {
     ShapeValues values;
     Scene scene;      // with one shape, if `why` is empty
     std::string why;  // the plugin refuses the values
+    Failure failure = Failure::other;
 };
 ShapeTrial try_values(const rt_plugin& plugin, const ShapeValues& values);
 
