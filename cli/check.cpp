@@ -172,7 +172,7 @@ class Report {
             }
         print("verdict  " + std::string(record_.plugin->id) + ": " + verdict());
     }
-    // Whether all that was asked for was found right. What was not looked at is not.
+    // At least one check passed, none failed, and the run was not cut short. Skipped checks do not count.
     bool is_right() const { return count(Outcome::Kind::passed) > 0 && causes_.empty() && cut_.empty(); }
 
     std::string verdict() const {

@@ -122,8 +122,8 @@ typedef struct rt_build_input {
     /* Some groups only. NULL: build all groups; first_elements is NULL then, too. Otherwise group g is built if wanted[g] is not 0,
      * and the others have neither root, nodes nor leaves in the output. The host appends the result to other parts of the same
      * structure. So every index into slot s that the builder writes or reports as a root counts from first_elements[s], and every
-     * position in leaf order from first_leaf. Where parts define different values, kernels get the greatest. The host asks only
-     * structures with RT_BUILDS_GROUPS for this. */
+     * position in leaf order from first_leaf. Where parts define different values, kernels get the greatest. Reserved: no host
+     * asks for it yet, and it would ask only structures with RT_BUILDS_GROUPS. */
     const uint8_t *wanted;
     const uint64_t *first_elements;
     uint64_t first_leaf;
@@ -213,7 +213,7 @@ enum {
     RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp visit the same nodes, on GPUs */
     RT_REQUEUES_LONG_RAYS = 8, /* RT_TRAVERSE_REQUEUED: many work-items trace one long ray, on GPUs */
     RT_SPLITS_INCOHERENT = 16, /* reads ray->incoherent: traces incoherent packets ray by ray, on CPUs */
-    RT_BUILDS_GROUPS = 32,     /* `build` obeys rt_build_input::wanted */
+    RT_BUILDS_GROUPS = 32,     /* reserved: `build` obeys rt_build_input::wanted */
     RT_TRAVERSES_SINGLE_RAYS = 64 /* appended: RT_TRAVERSE traces one ray, and the host spreads packets over it, on CPUs */
 };
 /* How the time of a ray grows with the number n of primitives: like log n, as with trees, or like n. Tests and benches leave out

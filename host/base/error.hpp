@@ -32,6 +32,7 @@ enum class Failure : uint8_t {
     plugin_fault,  // a plugin broke its contract
     keeps_state,   // another result for the same input
     no_importer,   // for this kind of file
+    builder,       // of a structure, while a picture is prepared
     crash,         // the last three are of a worker process
     exit,
     endless

@@ -100,7 +100,7 @@ BuildResult build_program(Device& device, const std::string& source, const std::
         if (result.program()) {
             try {
                 raw = result.program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(cl_device);
-            } catch (const cl::Error&) {
+            } catch (const cl::Error&) {  // the error says more than a log that cannot be read
             }
         }
         throw build_error(device.info(), what, e.err(), raw);

@@ -417,7 +417,7 @@ void FrameRenderer::write_sums(const Prepared& prepared, const Settings& setting
                 im.device->queue().enqueueWriteBuffer(
                     im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
                     reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
-        finish(*im.device, im.device->queue(), "reading the film");
+        finish(*im.device, im.device->queue(), "putting samples back");
     });
 }
 

@@ -41,9 +41,15 @@ std::shared_ptr<const AccelData> build_new(const PluginRegistry& plugins, const 
     check_fits(plan_memory(counts, scene, *layout.accel), info,
                std::to_string(counts.references) + " primitives in " + plugin.id);
     progress.stage(std::string("building ") + plugin.id);
-    return std::make_shared<AccelData>(
-        build_accel(scene, plugin, params, progress,
-                    {&layout, device_for_builders(info, lanes), settings.debug ? BuildPlace::worker : BuildPlace::automatic}));
+    const BuildTarget target{&layout, device_for_builders(info, lanes),
+                             settings.debug ? BuildPlace::worker : BuildPlace::automatic};
+    try {
+        return std::make_shared<AccelData>(build_accel(scene, plugin, params, progress, target));
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& e) {
+        throw e.as(Failure::builder);
+    }
 }
 
 }  // namespace

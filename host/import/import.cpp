@@ -7,6 +7,7 @@
 #include "import/file_access.hpp"
 #include "import/import_in_worker.hpp"
 #include "import/sink/scene_builder.hpp"
+#include "import/sink/world_origin.hpp"
 
 namespace clarity::import {
 namespace {
@@ -65,11 +66,7 @@ std::vector<float> SequenceReader::operator()(const std::string& file) {
     // Back to the file's coordinates, which all files of a sequence share.
     for (const Instance& instance : scene.instances) {
         if (scene.origin == std::array<double, 3>{}) break;
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        for (size_t i = 0; i < 3 * size_t(mesh.vertex_count); ++i) {
-            float& p = scene.positions.own()[3 * size_t(mesh.first_vertex) + i];
-            p = static_cast<float>(p + double(instance.world_from_object[4 * (i % 3) + 3]) + scene.origin[i % 3]);
-        }
+        add_origin(scene, instance, scene.origin);
     }
     kept_.emplace_back(file, std::move(scene.positions.own()));
     return kept_.back().second;

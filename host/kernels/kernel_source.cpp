@@ -174,16 +174,24 @@ void write_query(SourceWriter& out, const TraversalTemplate& traversal, const Sc
 // Writes the kernels of the models of surfaces that plugins bring, and the functions that choose among
 // them.
 
-// The choice of one function. call: what follows `case N:`; $ stands for the plugin's id.
-void write_choice(SourceWriter& out, const std::vector<SurfaceModel>& models, const std::string& signature,
-                  const std::string& call, const std::string& else_return) {
-    out.line("RT_NOINLINE " + signature + "\n{\n    switch (model) {");
-    for (const SurfaceModel& model : models) {
-        std::string code = call;
-        for (size_t at; (at = code.find('$')) != std::string::npos;) code.replace(at, 1, model.id);
-        out.line("    case " + std::to_string(model.number) + "u:\n        " + code);
+// A kind to choose, and the code for it, in which $ stands for the id of its plugin.
+struct Chosen {
+    size_t number;
+    const char* id;
+    std::string code;
+};
+
+// A function that chooses by a number. It is not inlined: what it calls is long, and it is called in several places. begin: its
+// first lines. at_end: what follows the switch.
+void write_choice(SourceWriter& out, const std::vector<Chosen>& kinds, const std::string& signature, const std::string& begin,
+                  const std::string& number, const std::string& at_end) {
+    out.line("RT_NOINLINE " + signature + "\n{\n" + begin + "    switch (" + number + ") {");
+    for (const Chosen& kind : kinds) {
+        std::string code = kind.code;
+        for (size_t at; (at = code.find('$')) != std::string::npos;) code.replace(at, 1, kind.id);
+        out.line("    case " + std::to_string(kind.number) + "u:\n        " + code);
     }
-    out.line("    }\n    " + else_return + "\n}");
+    out.line("    }\n" + at_end + "}");
 }
 
 // Writes rt_surface_eval_by() and rt_surface_sample_by() for the models in `lobes`, of Optics.
@@ -195,15 +203,17 @@ void write_surfaces(SourceWriter& out, rt_u32 lobes) {
     out.include("shading/surface_draw.h");
     for (const SurfaceModel& model : models) out.include(*model.plugin, model.surface.kernels);
     out.line("#line 1 \"generated choice of surfaces\"");
-    write_choice(
-        out, models,
-        "float3 rt_surface_eval_by(uint model, const global float *numbers, float3 color, float3 wo, float3 wi, float *pdf)",
-        "*pdf = $_pdf(numbers, color, wo, wi);\n        return $_eval(numbers, color, wo, wi);", "return (float3)(0.0f);");
-    write_choice(
-        out, models,
-        "rt_surface_draw rt_surface_sample_by(uint model, const global float *numbers, float3 color, float3 wo, float3 u)",
-        "return $_sample(numbers, color, wo, u);",
-        "rt_surface_draw none;\n    none.wi = none.weight = (float3)(0.0f);\n    none.pdf = 0.0f;\n    return none;");
+    const auto choice = [&](const char* signature, const char* call, const char* none) {
+        std::vector<Chosen> kinds;
+        for (const SurfaceModel& model : models) kinds.push_back({model.number, model.id.c_str(), call});
+        write_choice(out, kinds, signature, "", "model", none);
+    };
+    choice("float3 rt_surface_eval_by(uint model, const global float *numbers, float3 color, float3 wo, float3 wi, float *pdf)",
+           "*pdf = $_pdf(numbers, color, wo, wi);\n        return $_eval(numbers, color, wo, wi);",
+           "    return (float3)(0.0f);\n");
+    choice("rt_surface_draw rt_surface_sample_by(uint model, const global float *numbers, float3 color, float3 wo, float3 u)",
+           "return $_sample(numbers, color, wo, u);",
+           "    rt_surface_draw none;\n    none.wi = none.weight = (float3)(0.0f);\n    none.pdf = 0.0f;\n    return none;\n");
 }
 
 // Writes the kernels of the shapes that a scene has, and the functions that choose among them.
@@ -218,24 +228,6 @@ std::vector<size_t> kinds_in(const Scene& scene) {
     return kinds;
 }
 
-// A function that chooses by the kind of a shape. each, all: the code for a kind that takes one ray at a time, or all lanes; $
-// stands for the plugin's id. at_end: what follows the switch.
-void write_choice(SourceWriter& out, const Scene& scene, const std::vector<size_t>& kinds, const std::string& signature,
-                  const std::string& each, const std::string& all, const std::string& at_end) {
-    // Not inlined: the tests of shapes are long, and leaf tests are in several places.
-    out.line("RT_NOINLINE " + signature +
-             "\n{\n"
-             "    const global float *numbers = shape->numbers, *more = ctx->shape_numbers + shape->first_more;\n"
-             "    switch (shape->kind) {");
-    for (const size_t kind : kinds) {
-        const rt_plugin& plugin = *scene.shape_kinds[kind].plugin;
-        std::string code = plugin.primitive->flags & RT_SHAPE_SINGLE_RAY ? each : all;
-        code.replace(code.find('$'), 1, plugin.id);
-        out.line("    case " + std::to_string(kind) + "u:\n        " + code);
-    }
-    out.line("    }\n" + at_end + "}");
-}
-
 // Writes rt_shape_hit() and rt_shape_surface_at(), with the kernels of the kinds that occur. rt_ctx must be written already.
 void write_shapes(SourceWriter& out, const Scene& scene) {
     const std::vector<size_t> kinds = kinds_in(scene);
@@ -247,14 +239,23 @@ void write_shapes(SourceWriter& out, const Scene& scene) {
         out.include(plugin, plugin.primitive->kernels);
     }
     out.line("#line 1 \"generated choice of shapes\"");
-    write_choice(out, scene, kinds,
-                 "vfloat rt_shape_hit(const rt_ctx *ctx, const global rt_shape *shape, const rt_shape_rays *ray, uint bits, "
-                 "vfloat *u, vfloat *v)",
-                 "RT_SHAPE_HIT_EACH($_hit)", "return $_hit(numbers, more, ray, u, v);", "    return RT_INFINITY;\n");
-    write_choice(out, scene, kinds,
-                 "void rt_shape_surface_at(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, vfloat u, vfloat v, "
-                 "uint bits, rt_shape_surface *s)",
-                 "RT_SHAPE_SURFACE_EACH($_surface)", "$_surface(numbers, more, at, u, v, s);\n        return;", "");
+    // each, all: the code for a kind that takes one ray at a time, or all lanes.
+    const auto choice = [&](const char* signature, const char* each, const char* all, const char* at_end) {
+        std::vector<Chosen> chosen;
+        for (const size_t kind : kinds) {
+            const rt_plugin& plugin = *scene.shape_kinds[kind].plugin;
+            chosen.push_back({kind, plugin.id, plugin.primitive->flags & RT_SHAPE_SINGLE_RAY ? each : all});
+        }
+        write_choice(out, chosen, signature,
+                     "    const global float *numbers = shape->numbers, *more = ctx->shape_numbers + shape->first_more;\n",
+                     "shape->kind", at_end);
+    };
+    choice("vfloat rt_shape_hit(const rt_ctx *ctx, const global rt_shape *shape, const rt_shape_rays *ray, uint bits, "
+           "vfloat *u, vfloat *v)",
+           "RT_SHAPE_HIT_EACH($_hit)", "return $_hit(numbers, more, ray, u, v);", "    return RT_INFINITY;\n");
+    choice("void rt_shape_surface_at(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, vfloat u, vfloat v, "
+           "uint bits, rt_shape_surface *s)",
+           "RT_SHAPE_SURFACE_EACH($_surface)", "$_surface(numbers, more, at, u, v, s);\n        return;", "");
 }
 
 void write_layout(SourceWriter& out, const Layout& layout) {

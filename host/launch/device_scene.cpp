@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/timeline.hpp"
 #include "kernels/scene_buffers.hpp"
+#include "scene/motion/matrix.hpp"
 #include "structures/memory_plan.hpp"
 
 namespace clarity {
@@ -108,10 +109,7 @@ std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build
         if (done[instance.mesh]) throw std::logic_error("the normals of a mesh would be transformed twice");
         done[instance.mesh] = true;
         const Affine& m = inverse;
-        const double volume = m[0] * (double(m[5]) * m[10] - double(m[6]) * m[9]) +
-                              m[1] * (double(m[6]) * m[8] - double(m[4]) * m[10]) +
-                              m[2] * (double(m[4]) * m[9] - double(m[5]) * m[8]);
-        const double factor = 1 / std::cbrt(std::fabs(volume));
+        const double factor = 1 / std::cbrt(std::fabs(determinant(to_matrix(m))));
         for (size_t v = mesh.first_vertex; v < size_t(mesh.first_vertex) + mesh.vertex_count; ++v) {
             float* const n = &normals[3 * v];
             double turned[3];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 #include "base/angle.hpp"
 #include "scene/usable.hpp"
@@ -200,12 +201,18 @@ Vec vec_at(const rt_light& light, const Key& key) {
 }  // namespace
 
 const std::vector<LightKind>& light_kinds() {
-    static const std::vector<LightKind> kinds = make_kinds();
+    static const std::vector<LightKind> kinds = [] {
+        std::vector<LightKind> rows = make_kinds();
+        for (rt_u32 i = 0; i < RT_LIGHT_KINDS; ++i)
+            if (rows.size() != RT_LIGHT_KINDS || rows[i].kind != i)
+                throw std::logic_error("the kinds of lights are not in the order of their numbers");
+        return rows;
+    }();
     return kinds;
 }
 
 const LightKind& light_kind_of(const rt_light& light) {
-    return light_kinds()[std::min<size_t>(light.kind, light_kinds().size() - 1)];
+    return light_kinds().at(light.kind);  // validate() has looked at it
 }
 
 const LightKind* find_light_kind(const std::string& name) {

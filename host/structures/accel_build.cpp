@@ -16,7 +16,6 @@
 #include "base/scoped_fp_mode.hpp"
 #include "base/timeline.hpp"
 #include "plugin/host_services.hpp"
-#include "structures/builder_output.hpp"
 #include "structures/topology_check.hpp"
 
 namespace clarity {
@@ -110,8 +109,7 @@ double AccelFacts::stat(const std::string& label, double otherwise) const {
 }
 
 rt_device device_for_builders(const DeviceInfo& info, unsigned lanes) {
-    rt_device device{};
-    device.struct_bytes = sizeof device;
+    rt_device device = unknown_device();
     device.kind = info.cpu ? RT_DEVICE_CPU : info.gpu ? RT_DEVICE_GPU : RT_DEVICE_UNKNOWN;
     device.lanes = lanes;
     device.compute_units = info.compute_units;
@@ -124,15 +122,6 @@ rt_device device_for_builders(const DeviceInfo& info, unsigned lanes) {
     if (info.cpu) device.unit_cache_bytes = static_cast<uint64_t>(std::max(0L, sysconf(_SC_LEVEL2_CACHE_SIZE)));
 #endif
     return device;
-}
-
-void finish_accel(AccelData& data) {
-    data.instances = data.scene.instances;
-    for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
-    data.bytes = data.leaf_count * sizeof(rt_packed_prim) + data.instances.size() * sizeof(rt_instance);
-    const rt_accel& table = built_slots(*data.layout);
-    for (rt_u32 s = 0; s < table.slot_count; ++s)
-        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY)) data.bytes += data.slots[s].count * table.slots[s].elem_bytes;
 }
 
 AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
@@ -166,13 +155,13 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
                                 [&](const rt_host* host, const rt_build_output* out) {
                                     return call_builder(plugin, target.place, host, &input, nullptr, out, progress);
                                 });
-    data.stats = std::move(built.result.stats);
     data.build_ms = built.ms;
     if (packs) {
         start = std::chrono::steady_clock::now();
         if (const Problem why = topology_fault(topology_of(built.result), data.scene))
             throw fault(name_of(plugin, plugin), why.text());
         data.pack_ms += ms_since(start);
+        data.stats = built.result.stats;
         const HostBuild tree = std::move(built);
         const rt_topology topology = topology_of(tree.result);
         input.params = own.data();
@@ -180,20 +169,15 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
                           [&](const rt_host* host, const rt_build_output* out) {
                               return call_builder(layout, target.place, host, &input, &topology, out, progress);
                           });
-        data.stats.insert(data.stats.end(), built.result.stats.begin(), built.result.stats.end());
         data.build_ms += built.ms;
     }
     data.scene.prims = {};  // frees what is no longer needed at once: large scenes fill the memory with it
 
     start = std::chrono::steady_clock::now();
-    for (auto& slot : built.result.slots) data.slots.push_back({std::move(slot.memory), slot.count});
-    data.leaf_count = built.result.leaf_count;
-    data.roots = std::move(built.result.roots);
-    data.defines = std::move(built.result.defines);
+    take_result(built.result, data, [](AlignedBytes& memory) { return std::move(memory); });
     if (const Problem why = pack_leaves(built.result.refs, data)) throw fault(name_of(plugin, layout), why.text());
     built.result = {};
     data.scene.triangles = {};
-    finish_accel(data);
     data.pack_ms += ms_since(start);
     return data;
 }

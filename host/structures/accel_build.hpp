@@ -16,6 +16,7 @@
 #include "scene/scene.hpp"
 #include "structures/build_in_worker.hpp"
 #include "structures/build_scene.hpp"
+#include "structures/builder_output.hpp"
 
 namespace clarity {
 
@@ -57,13 +58,34 @@ struct AccelData : AccelFacts {
     }
 };
 
-// Fills in what follows from the rest: the instances with their roots, and `bytes`.
-void finish_accel(AccelData& data);
+// Moves what a builder wrote into `data`, whose layout and scene are set already, and completes what follows from it: the
+// instances' roots and the bytes. take: makes memory of the data of a slot's. The leaves are the caller's to pack.
+template <class Bytes, class Take>
+void take_result(BuilderResultIn<Bytes>& result, AccelData& data, const Take& take) {
+    static_assert(has_member_count<AccelData, 6> && has_member_count<AccelFacts, 9>, "all but the leaves and the times are set here");
+    for (auto& slot : result.slots) data.slots.push_back({take(slot.memory), slot.count});
+    data.leaf_count = result.leaf_count;
+    data.roots = std::move(result.roots);
+    data.defines = std::move(result.defines);
+    data.stats.insert(data.stats.end(), result.stats.begin(), result.stats.end());
+    data.instances = data.scene.instances;
+    for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
+    data.bytes = data.leaf_count * sizeof(rt_packed_prim) + data.instances.size() * sizeof(rt_instance);
+    for (rt_u32 s = 0; s < data.layout->accel->slot_count; ++s)
+        if (!(data.layout->accel->slots[s].flags & RT_SLOT_HOST_ONLY))
+            data.bytes += data.slots[s].count * data.layout->accel->slots[s].elem_bytes;
+}
 
 // What decides about a build besides the plugin, the scene and the parameters.
+inline rt_device unknown_device() {
+    rt_device device{};
+    device.struct_bytes = sizeof device;
+    device.kind = RT_DEVICE_UNKNOWN;
+    return device;
+}
 struct BuildTarget {
     const rt_plugin* layout = nullptr;  // PluginRegistry::layout_of(); nullptr: the plugin itself
-    rt_device device = {sizeof(rt_device), RT_DEVICE_UNKNOWN, 0, 0, 0, 0, 0, 0, 0};
+    rt_device device = unknown_device();
     BuildPlace place = BuildPlace::automatic;
 };
 // Describes a device to builders. lanes: rays of a work-item.

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
 #include "clarity_bvh/base/rounding.hpp"
+#include "scene/motion/matrix.hpp"
 #include "structures/memory_plan.hpp"
 #include "structures/rows.hpp"
 
@@ -295,9 +296,7 @@ rt_u32 hidden_from(const Instance& instance, bool visible) {
 }
 
 bool mirrors(const Affine& m) {
-    const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
-                 z = double(m[4]) * m[9] - double(m[5]) * m[8];
-    return m[0] * x + m[1] * y + m[2] * z < 0;
+    return determinant(to_matrix(m)) < 0;
 }
 
 rt_prim box_of(const BuildScene& scene, const rt_packed_prim& packed) {

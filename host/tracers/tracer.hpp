@@ -67,10 +67,11 @@ struct Smoke {
 };
 
 struct Tracer : TracerChoice {
+    bool is_choice = false;  // users may choose it, by the setting `tracer`
     // Of tracers of frames: the kernel for these settings; settings.aov is one that the tracer makes. Others: null.
     const KernelRow& (*kernel)(const Settings& settings, const Layout& layout) = nullptr;
-    // Whether `auto` takes it. Null: never.
-    bool (*suits)(const DeviceInfo& device, const Scene& scene) = nullptr;
+    // How well it suits; `auto` takes the tracer of the greatest. 0: not at all. Null: never.
+    unsigned (*merit)(const DeviceInfo& device, const Scene& scene) = nullptr;
     // Opens a program of its kernel. Null: a launch is one kernel over all work-groups (tracers.cpp).
     std::unique_ptr<FrameTracer> (*open)(std::shared_ptr<Device> device, std::shared_ptr<const TraceProgram> program) = nullptr;
     // Runs its kernels in a worker. Throws Error if they fail. Null: as tracers of frames (smoke.hpp).

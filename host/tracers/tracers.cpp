@@ -80,7 +80,7 @@ const std::vector<TracerChoice>& tracer_choices() {
     static const std::vector<TracerChoice> choices = [] {
         std::vector<TracerChoice> chosen;
         for (const Tracer* tracer : tracers())
-            if (*tracer->help) chosen.push_back(*tracer);
+            if (tracer->is_choice) chosen.push_back(*tracer);
         return chosen;
     }();
     return choices;
@@ -99,8 +99,11 @@ const Tracer& tracer_of(const Settings& settings) {
 
 const Tracer& automatic_tracer(const DeviceInfo& device, const Scene& scene) {
     const Tracer* chosen = nullptr;
+    unsigned greatest = 0;
     for (const Tracer* tracer : tracers())
-        if (tracer->suits && tracer->suits(device, scene)) chosen = tracer;
+        if (const unsigned merit = tracer->merit ? tracer->merit(device, scene) : 0; merit > greatest)
+            chosen = tracer, greatest = merit;
+    if (!chosen) throw std::logic_error("no tracer suits the device");
     return *chosen;
 }
 

@@ -1,4 +1,4 @@
-// All tracers: ROW(id) for the function id_tracer(). Of those that suit a device and a scene `auto` takes the last.
+// All tracers: ROW(id) for the function id_tracer().
 ROW(iterative)
 ROW(wavefront)
 ROW(path)

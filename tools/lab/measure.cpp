@@ -202,7 +202,7 @@ void measure_job(ParcelReader& arguments) {
                     *student = job.closed.empty() ? open_library(job.library) : take_closed_builder(job.closed.front());
     worker::enter_sandbox(worker::WorkerKind::driver);
     const auto device = std::make_shared<Device>(choose_device(job.device));
-    const Variant variant{job.lanes, false, false};
+    const Variant variant = Variant::plain(job.lanes);
     const auto layout_for = [&](const rt_plugin& plugin) { return plugin.accel->topology ? layout : nullptr; };
     const auto node_bytes = [&](const rt_plugin& plugin) {
         return (plugin.accel->topology ? layout : &plugin)->accel->slots[0].elem_bytes;

@@ -23,6 +23,7 @@
 #include "picture/image_io.hpp"
 #include "ui/app/key_actions.hpp"
 #include "ui/automation/script.hpp"
+#include "ui/browser/file_browser.hpp"
 #include "ui/hud/hud.hpp"
 #include "ui/panel/panel.hpp"
 #include "ui/session/camera_control.hpp"
@@ -125,6 +126,7 @@ App::App(const ViewOptions& options) {
 }
 
 App::~App() {
+    stop_file_browser();
     Preferences preferences;
     window_->size(preferences.width, preferences.height);
     preferences.text_scale = state_.text_scale;

@@ -308,6 +308,10 @@ const char* title_of(BrowseFor what) {
 
 }  // namespace
 
+void stop_file_browser() {
+    browser().reader.stop();
+}
+
 void draw_file_browser(const Rect& area, Session& session, UiState& state) {
     Browser& b = browser();
     if (!state.browser_open) {

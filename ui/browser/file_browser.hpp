@@ -9,5 +9,7 @@ namespace clarity::ui {
 // Draws the browser while UiState::browser_open. Folders are read on a separate thread, so that a slow disk does not block the
 // window.
 void draw_file_browser(const Rect& area, Session& session, UiState& state);
+// To be called before the window goes.
+void stop_file_browser();
 
 }  // namespace clarity::ui

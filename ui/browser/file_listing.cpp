@@ -153,6 +153,12 @@ struct FolderReader::Shared {
     std::shared_ptr<const Listing> latest;
 };
 
+void FolderReader::stop() {
+    if (!shared_) return;
+    const std::lock_guard<std::mutex> lock(shared_->mutex);
+    ++shared_->asked;
+}
+
 std::shared_ptr<const Listing> FolderReader::get(const DesiredListing& desired) {
     if (!shared_) shared_ = std::make_shared<Shared>();
     std::string key = desired.folder + (desired.files ? "\n" : "/\n");
@@ -164,12 +170,10 @@ std::shared_ptr<const Listing> FolderReader::get(const DesiredListing& desired) 
         const uint64_t number = ++shared_->asked;
         std::thread([shared = shared_, desired, number] {
             auto listing = std::make_shared<const Listing>(list_folder(desired));
-            {
-                const std::lock_guard<std::mutex> hold(shared->mutex);
-                if (shared->asked != number) return;  // another folder was requested meanwhile
-                shared->latest = std::move(listing);
-                shared->done = number;
-            }
+            const std::lock_guard<std::mutex> hold(shared->mutex);
+            if (shared->asked != number) return;  // another folder was requested meanwhile, or the window is gone
+            shared->latest = std::move(listing);
+            shared->done = number;
             glfwPostEmptyEvent();  // wakes the window
         }).detach();
     }

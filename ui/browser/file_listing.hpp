@@ -54,6 +54,8 @@ class FolderReader {
     // Returns the newest listing, which may be of another folder while reading(). nullptr until the first.
     std::shared_ptr<const Listing> get(const DesiredListing& desired);
     bool reading() const;
+    // From now on no thread wakes the window, which may go then.
+    void stop();
     // The next get() reads the folder again.
     void refresh() { stale_ = true; }
 

@@ -105,7 +105,7 @@ void draw_progress_hud(const Rect& viewport, Session& session) {
 void open_log_at_failure(const Session& session, UiState& state) {
     static bool failing = false;
     const WindowMessage& message = session.messages().shown();
-    const bool source = !message.details.empty() || find_source_place(message.text) || message.text.rfind("accel ", 0) == 0;
+    const bool source = !message.details.empty() || find_source_place(message.text) || message.failure == Failure::builder;
     if (!message.text.empty() && source && !failing) {
         state.show_tab(Tab::log);
         state.log_jump = true;

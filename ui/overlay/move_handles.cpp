@@ -92,7 +92,7 @@ std::optional<MoveHandles> move_handles(const Projection& projection, const glm:
         std::vector<glm::vec2>& ring = handles.lines[static_cast<size_t>(MoveHandle::turn_x) + size_t(k)];
         const float facing = std::atan2(to_eye[(k + 2) % 3], to_eye[(k + 1) % 3]);
         const bool whole = cosine > 0.9f;
-        const float half = whole ? 3.14159265f : 1.72f;
+        const float half = whole ? float(kPi) : 1.72f;
         for (int i = 0; i <= kRingSteps; ++i) {
             const float angle = facing + half * (2 * float(i) / kRingSteps - 1);
             glm::vec3 p{};

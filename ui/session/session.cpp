@@ -282,7 +282,7 @@ void Session::take_outcomes() {
                 adopt(outcome.ready);
                 break;
             case Outcome::Kind::failed:
-                messages_.report(outcome.message, outcome.details);
+                messages_.report(outcome.message, outcome.details, outcome.failure);
                 playback_.pause(desired);
                 if (outcome.lost) note_lost_again();
                 if (outcome.files_failed && ready_) {

@@ -34,15 +34,16 @@ namespace clarity::ui {
 // It stays until it is dismissed or its cause is gone.
 struct WindowMessage {
     std::string text, details;
+    Failure failure = Failure::other;
 };
 
 // Used on the window's thread.
 class Messages {
  public:
     // Shows a failure, in place of the last one, and logs it.
-    void report(const std::string& text, const std::string& details = {}) {
+    void report(const std::string& text, const std::string& details = {}, Failure failure = Failure::other) {
         log(LogLevel::error, details.empty() ? text : text + "\n" + details);
-        shown_ = {text, details};
+        shown_ = {text, details, failure};
         ++count_;
     }
     const WindowMessage& shown() const { return shown_; }  // without text: none

@@ -148,11 +148,12 @@ void PrepareWorker::publish(Outcome outcome) {
     wake_();
 }
 
-void PrepareWorker::publish_failure(const std::string& message, const std::string& details, bool files_failed) {
+void PrepareWorker::publish_failure(const Error& error, bool files_failed) {
     Outcome outcome;
     outcome.kind = Outcome::Kind::failed;
-    outcome.message = message;
-    outcome.details = details;
+    outcome.message = error.what();
+    outcome.details = error.details();
+    outcome.failure = error.failure();
     outcome.files_failed = files_failed;
     publish(std::move(outcome));
 }
@@ -189,9 +190,9 @@ void PrepareWorker::run() {
             cancelled.kind = Outcome::Kind::cancelled;
             publish(std::move(cancelled));
         } catch (const Error& error) {
-            publish_failure(error.what(), error.details());
+            publish_failure(error);
         } catch (const std::exception& error) {  // bad_alloc, or an OpenCL call that failed in the driver
-            publish_failure(std::string("preparing the picture failed: ") + error.what());
+            publish_failure(Error(Exit::failed, std::string("preparing the picture failed: ") + error.what()));
         }
         {
             const std::lock_guard<std::mutex> lock(mutex_);
@@ -211,7 +212,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
             open_side(side.device, state, neighbour, progress);
         } catch (const Error& error) {
             whole = false;
-            publish_failure(error.what(), error.details());
+            publish_failure(error);
         }
     };
     open(request.main, main_, other_);
@@ -226,7 +227,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     } catch (const Error& error) {
         whole = false;
         tried(request.files_revision);
-        publish_failure(error.what(), error.details(), true);
+        publish_failure(error, true);
     }
     if (!main_.preparer || !loaded_) return;
     shown_.update(loaded_, request);
@@ -272,7 +273,7 @@ void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, b
         throw;
     } catch (const Error& error) {
         whole = false;
-        publish_failure("the other side: " + std::string(error.what()), error.details());
+        publish_failure(Error(Exit::failed, "the other side: " + std::string(error.what()), error.details()));
     }
 }
 

@@ -22,9 +22,10 @@ struct Outcome {
     Kind kind = Kind::ready;
     std::shared_ptr<const Ready> ready;
     std::string message, details;  // of a failure
-    bool files_failed = false;     // the import failed
-    bool whole = false;            // `ready`, and no part of the request failed
-    bool lost = false;             // failed because the devices were lost, which the next request opens anew
+    Failure failure = Failure::other;
+    bool files_failed = false;  // the import failed
+    bool whole = false;         // `ready`, and no part of the request failed
+    bool lost = false;          // failed because the devices were lost, which the next request opens anew
 };
 
 // What the worker does now.
@@ -83,7 +84,7 @@ class PrepareWorker {
     void list_all_devices();
     void tried(uint64_t files_revision);  // notes that these files need no further import, even if this one failed
     void publish(Outcome outcome);
-    void publish_failure(const std::string& message, const std::string& details = {}, bool files_failed = false);
+    void publish_failure(const Error& error, bool files_failed = false);
 
     const PluginRegistry& plugins_;
     const import::ImportOptions import_;

@@ -18,6 +18,7 @@
 #include "import/sink/mesh_copy.hpp"
 #include "import/sink/scene_sink.hpp"
 #include "import/sink/texture.hpp"
+#include "import/sink/world_origin.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 #include "scene/bright_texture.hpp"
@@ -42,7 +43,7 @@ std::string file_name(const std::string& path) {
 }
 
 [[noreturn]] void fail(const std::string& path, const std::string& why, Failure failure = Failure::other) {
-    throw Error(Exit::import_failed, path + ": " + why);
+    throw Error(Exit::import_failed, path + ": " + why).as(failure);
 }
 
 std::string known_extensions(const PluginRegistry& plugins) {
@@ -220,11 +221,7 @@ const FileContent& SceneBuilder::content_or_sequence(const std::string& path, co
     // All files of a sequence have one origin, 0, whatever their importer subtracted (SequenceReader).
     for (Instance& instance : content.instances) {
         if (!content.has_mesh_origins) break;
-        const Mesh& mesh = scene_.meshes[instance.mesh];
-        for (size_t i = 0; i < 3 * size_t(mesh.vertex_count); ++i) {
-            float& p = scene_.positions.own()[3 * size_t(mesh.first_vertex) + i];
-            p = static_cast<float>(p + double(instance.world_from_object[4 * (i % 3) + 3]) + instance.rounded_off[i % 3]);
-        }
+        add_origin(scene_, instance, instance.rounded_off);
         for (size_t k = 0; k < 3; ++k) instance.world_from_object[4 * k + 3] = 0, instance.rounded_off[k] = 0;
     }
     for (const int number : frame_numbers(pattern)) scene_.motion.sequence_numbers.push_back(static_cast<rt_u32>(number));

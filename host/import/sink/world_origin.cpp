@@ -35,6 +35,13 @@ std::string step_text(double coordinate) {
 
 }  // namespace
 
+void add_origin(Scene& scene, const Instance& instance, const std::array<double, 3>& more) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    float* const positions = &scene.positions.own()[3 * size_t(mesh.first_vertex)];
+    for (size_t i = 0; i < 3 * size_t(mesh.vertex_count); ++i)
+        positions[i] = static_cast<float>(positions[i] + double(instance.world_from_object[4 * (i % 3) + 3]) + more[i % 3]);
+}
+
 void WorldBox::add(const Bounds& b, const Matrix& m) {
     for (int i = 0; i < 8 && !b.empty; ++i)
         add(point(m, {(i & 1 ? b.max : b.min)[0], (i & 2 ? b.max : b.min)[1], (i & 4 ? b.max : b.min)[2]}));

@@ -1,9 +1,11 @@
 // world_origin.hpp -- when a world lies so far from 0 that floats lose its details, and the origin to subtract then.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scene/motion/matrix.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::import {
 
@@ -27,6 +29,9 @@ struct WorldBox {
     double farthest() const;
     bool is_far(double times) const { return size() > 0 && farthest() > times * size(); }
 };
+
+// Moves the vertices of an instance's mesh back to their file's coordinates. more: what was subtracted besides its translation.
+void add_origin(Scene& scene, const Instance& instance, const std::array<double, 3>& more);
 
 // Of a box that is far. Subtract it in double precision.
 Vec origin_of(const WorldBox& box);

@@ -60,7 +60,8 @@ const Tracer& iterative_tracer() {
         t.help = "a work-item traces all generations of its packet";
         t.picture = kWhittedPicture;
         t.kernel = kernel;
-        t.suits = [](const DeviceInfo&, const Scene&) { return true; };
+        t.is_choice = true;
+        t.merit = [](const DeviceInfo&, const Scene&) { return 1u; };
         return t;
     }();
     return tracer;

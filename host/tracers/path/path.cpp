@@ -46,6 +46,7 @@ const Tracer& path_tracer() {
         Tracer t;
         t.id = "path";
         t.help = "paths of light: lamps with a size, light from surface to surface; depth counts events of scattering";
+        t.is_choice = true;
         t.picture = kPathPicture;
         t.kernel = kernel;
         return t;

@@ -153,7 +153,10 @@ const Tracer& wavefront_tracer() {
         t.when = "on a GPU if nothing refracts";
         t.picture = kWhittedPicture;
         t.kernel = kernel;
-        t.suits = [](const DeviceInfo& info, const Scene& scene) { return !info.traces_packets() && !refracts(scene, {}); };
+        t.is_choice = true;
+        t.merit = [](const DeviceInfo& info, const Scene& scene) {
+            return !info.traces_packets() && !refracts(scene, {}) ? 2u : 0u;
+        };
         t.open = [](std::shared_ptr<Device> device, std::shared_ptr<const TraceProgram> program) {
             return std::unique_ptr<FrameTracer>(std::make_unique<Wavefront>(std::move(device), std::move(program)));
         };

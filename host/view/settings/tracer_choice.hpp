@@ -12,7 +12,7 @@ inline constexpr const char* kPathPicture = "path";
 
 struct TracerChoice {
     const char* id = "";    // of the setting `tracer`, and the name of its folders
-    const char* help = "";  // for the setting; empty: users do not choose it
+    const char* help = "";  // for the setting
     const char* when = "";  // where `auto` takes it: "on a GPU if nothing refracts"; empty: where no other is taken
     // What its pictures show, with the same settings. Tracers of which it is the same make the same picture, apart from last
     // bits: a finished frame of one serves as one of the other, and a checkpoint goes on with the other.

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "../common/mapped_file.hpp"
+#include "../common/numbers.hpp"
 #include "../common/views.hpp"
 #include "content_checks.hpp"
 #include "materials.hpp"
@@ -152,7 +153,7 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
                                  " has an attenuation other than by the square of the distance; "
                                  "here it lights all distances alike")
                                     .c_str());
-        const double factor = fades ? 3.141592653589793 / quadratic : constant > 0 && !is_far ? 1 / constant : 1;
+        const double factor = fades ? importers::kPi / quadratic : constant > 0 && !is_far ? 1 / constant : 1;
         const aiColor3D& c = light.mColorDiffuse;
         const importers::Cone cone = {light.mAngleOuterCone, light.mAngleInnerCone};  // whole angles
         if (all_finite(desc.position))

@@ -1,4 +1,5 @@
 // views.cpp -- lights and cameras.
+#include "../common/numbers.hpp"
 #include "../common/views.hpp"
 
 #include "scene.hpp"
@@ -25,7 +26,7 @@ struct Meaning {
     Unit unit = Unit::relative;
 };
 Meaning meaning_of(const Context& context, rt_u32 kind, int64_t decay) {
-    constexpr double pi = 3.141592653589793;
+    constexpr double pi = importers::kPi;
     if (kind == RT_LIGHT_RECT || kind == RT_LIGHT_SUN) return {1, Unit::physical};
     if (context.by_blender) return {1 / (4 * pi * context.metres_per_unit * context.metres_per_unit), Unit::physical};
     return kind == RT_LIGHT_DIRECTIONAL || decay == 0 ? Meaning{} : Meaning{pi, Unit::physical};

@@ -193,7 +193,7 @@ std::set<size_t> nodes_with_animated_weights(const Document& document) {
                 } catch (const Error&) {  // add_animations() says so
                 }
             }
-        } catch (const Error&) {
+        } catch (const Error&) {  // add_animations() says so
         }
     }
     return nodes;

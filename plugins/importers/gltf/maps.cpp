@@ -100,7 +100,7 @@ TextureSets Maps::sets(const Value& material) const {
         each_use(material, [&](const Use&, const Value& info) {
             try {
                 sets.push_back(set_of(info));
-            } catch (const Error&) {
+            } catch (const Error&) {  // read_maps() says so
             }
         });
     } catch (const Error&) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../common/materials.hpp"
+#include "../common/numbers.hpp"
 #include "nodes.hpp"
 #include "rt_plugin.hpp"
 #include "tolerant.hpp"
@@ -18,7 +19,7 @@ struct Property {
     unsigned count;
     double factor;
 };
-constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kDegrees = 180 / importers::kPi;
 constexpr Property kProperties[] = {
     {"", "metallicFactor", "metallic", 1, 1},
     {"", "roughnessFactor", "roughness", 1, 1},

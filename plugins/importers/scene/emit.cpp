@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "../common/materials.hpp"
+#include "../common/numbers.hpp"
 #include "emit_motion.hpp"
 #include "rt_plugin.hpp"
 #include "shapes.hpp"
@@ -141,7 +142,7 @@ bool Emitter::lights_and_cameras() {
         }
         if (sink_.light(sink_.ctx, &desc) == RT_NONE) return false;
     }
-    constexpr float rad_per_deg = 3.14159265358979323846f / 180.0f;
+    constexpr float rad_per_deg = float(importers::kPi) / 180.0f;
     for (const Camera& camera : document_.cameras) {
         position_ = camera.name.position;
         auto desc = sized<rt_camera>();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/numbers.hpp"
+
 namespace scene_format {
 namespace {
 
@@ -105,11 +107,10 @@ bool MotionEmitter::emit_fov(const Camera& camera, rt_u32 id) const {
     if (clip_ == RT_NONE) return true;
     for (const Animation& animation : document_.animations) {
         if (animation.motion != Animation::Motion::fov || animation.target.text != camera.name.text) continue;
-        constexpr double rad_per_deg = 3.14159265358979323846 / 180;
         Keys keys;
         for (size_t k = 0; k < animation.key_count(); ++k) {
             keys.times.push_back(double{animation.numbers[2 * k]});
-            keys.values.push_back(double{animation.numbers[2 * k + 1]} * rad_per_deg);
+            keys.values.push_back(double{animation.numbers[2 * k + 1]} * importers::kRadPerDegree);
         }
         rt_channel_desc channel{};
         channel.clip = clip_;

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "../common/numbers.hpp"
+
 namespace scene_format {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kDegree = importers::kRadPerDegree;
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "../common/numbers.hpp"
 #include "diagnostics.hpp"
 #include "looks.hpp"
 #include "rt_plugin.hpp"
@@ -86,7 +87,7 @@ rt_map_desc map_of(const Texture& texture, rt_u32 use, rt_u32 id) {
     rt_map_desc map = rt::map(use, id);
     map.set = texture.set;
     if (use == RT_MAP_NORMAL || use == RT_MAP_CLEARCOAT_NORMAL || use == RT_MAP_OCCLUSION) map.scale = texture.strength;
-    const double angle = texture.degrees * (3.14159265358979323846 / 180), c = std::cos(angle), s = std::sin(angle);
+    const double angle = texture.degrees * importers::kRadPerDegree, c = std::cos(angle), s = std::sin(angle);
     const double matrix[6] = {c * texture.scale[0], -s * texture.scale[1], texture.offset[0],
                               s * texture.scale[0], c * texture.scale[1],  texture.offset[1]};
     for (int k = 0; k < 6; ++k) map.matrix[k] = static_cast<float>(matrix[k]);

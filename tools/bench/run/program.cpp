@@ -11,7 +11,9 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <thread>
+#include <future>
+#include <iterator>
+#include <optional>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
@@ -37,15 +39,26 @@ constexpr uint64_t kMostBytes = uint64_t{1} << 30;
 class FewProcessors {
  public:
     explicit FewProcessors(unsigned count) {
-        sched_getaffinity(0, sizeof all_, &all_);
+        // It fails on machines of more than CPU_SETSIZE processors.
+        if (sched_getaffinity(0, sizeof all_, &all_) != 0)
+            throw Error(Exit::failed,
+                        std::string("--threads: the processors of this process are not known: ") + std::strerror(errno));
         cpu_set_t few;
         CPU_ZERO(&few);
         for (size_t i = 0; i < CPU_SETSIZE && CPU_COUNT(&few) < int(count); ++i)
             if (CPU_ISSET(i, &all_)) CPU_SET(i, &few);
-        sched_setaffinity(0, sizeof few, &few);
-        for (const char* variable : kPoclThreads) setenv(variable, std::to_string(count).c_str(), 1);
+        if (sched_setaffinity(0, sizeof few, &few) != 0)
+            throw Error(Exit::failed, std::string("--threads: the processors cannot be chosen: ") + std::strerror(errno));
+        for (size_t i = 0; i < std::size(kPoclThreads); ++i) {
+            if (const char* value = std::getenv(kPoclThreads[i])) before_[i] = value;
+            setenv(kPoclThreads[i], std::to_string(count).c_str(), 1);
+        }
     }
-    ~FewProcessors() { sched_setaffinity(0, sizeof all_, &all_); }
+    ~FewProcessors() {
+        sched_setaffinity(0, sizeof all_, &all_);
+        for (size_t i = 0; i < std::size(kPoclThreads); ++i)
+            before_[i] ? setenv(kPoclThreads[i], before_[i]->c_str(), 1) : unsetenv(kPoclThreads[i]);
+    }
     FewProcessors(const FewProcessors&) = delete;
     FewProcessors& operator=(const FewProcessors&) = delete;
 
@@ -53,6 +66,7 @@ class FewProcessors {
     // of PoCL 3 and 5
     static constexpr const char* kPoclThreads[] = {"POCL_MAX_PTHREAD_COUNT", "POCL_CPU_MAX_CU_COUNT"};
     cpu_set_t all_;
+    std::optional<std::string> before_[std::size(kPoclThreads)];
 };
 
 }  // namespace
@@ -60,6 +74,7 @@ class FewProcessors {
 Ended run_program(std::vector<std::string> words, const std::string& messages, const char* install, const Progress& progress) {
     const worker::FileDescriptor output(
         open(messages.empty() ? "/dev/null" : messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (output.get() < 0) throw Error(Exit::failed, messages + ": cannot be written: " + std::strerror(errno));
     worker::Spawn spawn;
     spawn.give(output.get(), 1);
     spawn.give(messages.empty() ? 2 : output.get(), 2);
@@ -67,15 +82,16 @@ Ended run_program(std::vector<std::string> words, const std::string& messages, c
     pid_t pid = -1;
     if (const int error = spawn.start(words, environ, pid))
         throw Error(Exit::failed, words[0] + " cannot be started: " + std::strerror(error) + "; " + install);
+    // A thread waits for the end, so that its time is not that of a turn of this loop.
+    auto ended = std::async(std::launch::async, [&] {
+        siginfo_t info;
+        while (waitid(P_PID, id_t(pid), &info, WEXITED | WNOWAIT) != 0)
+            if (errno != EINTR) throw Error(Exit::failed, words[0] + ": " + std::strerror(errno));
+        return ms_since(begin);
+    });
     Clock::time_point cancelled;
-    for (bool asked = false;;) {
-        int status = 0;
-        const pid_t ended = waitpid(pid, &status, WNOHANG);
-        if (ended < 0 && errno != EINTR) throw Error(Exit::failed, words[0] + ": " + std::strerror(errno));
-        if (ended == pid) {
-            if (asked) throw Cancelled();
-            return {status, ms_since(begin)};
-        }
+    bool asked = false;
+    while (ended.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) {
         if (progress.cancelled() && !asked) {
             asked = true;
             cancelled = Clock::now();
@@ -83,8 +99,11 @@ Ended run_program(std::vector<std::string> words, const std::string& messages, c
         } else if (asked && ms_since(cancelled) > kPatienceMs) {
             kill(-pid, SIGKILL);
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    Ended end{0, ended.get()};
+    waitpid(pid, &end.status, 0);
+    if (asked) throw Cancelled();
+    return end;
 }
 
 void check_thread_counts(const std::vector<unsigned>& counts) {

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "base/angle.hpp"
 #include "base/text.hpp"
 
 namespace clarity::check {
@@ -76,7 +77,7 @@ struct Volume {
         return std::sqrt(d2) <= double(box[3]) * (1 + 1e-6);
     }
     double surface() const {
-        if (sphere) return 4 * 3.14159265 * double(box[3]) * box[3];
+        if (sphere) return 4 * kPi * double(box[3]) * box[3];
         const double x = double(box[3]) - box[0], y = double(box[4]) - box[1], z = double(box[5]) - box[2];
         return 2 * (x * y + y * z + z * x);
     }

@@ -250,7 +250,7 @@ Outcome trace_moved(const rt_plugin& plugin, const rt_plugin* layout, const std:
     const auto rest = std::make_shared<const Scene>(mixed_apart());
     const PosedRays still(*rest), moved(rippled(*rest));
     CheckedScene scene(plugin, layout, *rest, device);
-    const Variant variant{1, true, false};
+    const Variant variant = Variant::with_debug(1);
     size_t traced = 0;
     for (const BuildForm form : {BuildForm::groups, BuildForm::serial}) {
         step(std::string("preparing the scene, ") + form_text(form), kDeviceLimit_s);

@@ -89,17 +89,12 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     accel->params = params;
     accel->scene = case_.scene();
     BuilderResult& result = run_.result;
-    for (size_t s = 0; s < result.slots.size(); ++s) {
-        BuilderResult::Slot& slot = result.slots[s];
-        const size_t element = built_slots(*accel->layout).slots[s].elem_bytes;
-        slot.memory = closer_copy(slot.memory, element);
-        slot.memory.make_read_only();
-        AccelData::Slot out;
-        out.memory = AlignedBytes::borrow(slot.memory.data(), slot.memory.bytes());
-        out.count = slot.count;
-        accel->slots.push_back(std::move(out));
-    }
-    accel->leaf_count = result.leaf_count;
+    const rt_slot* slot = built_slots(*accel->layout).slots;
+    take_result(result, *accel, [&](GuardedBytes& memory) {
+        memory = closer_copy(memory, slot++->elem_bytes);
+        memory.make_read_only();
+        return AlignedBytes::borrow(memory.data(), memory.bytes());
+    });
     leaves_ =
         GuardedBytes((result.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), "the leaves", 128, sizeof(rt_packed_prim));
     auto* leaves = static_cast<rt_packed_prim*>(leaves_.data());
@@ -109,12 +104,7 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     for (uint64_t i = 0; i < kLeafPadding; ++i) leaves[result.leaf_count + i] = trap(static_cast<int>(i % 3));
     leaves_.make_read_only();
     accel->leaves = AlignedBytes::borrow(leaves_.data(), leaves_.bytes());
-    accel->roots = result.roots;
-    accel->defines = result.defines;
     for (const auto& [name, value] : as.defines) accel->defines[name] = value;
-    accel->stats = result.stats;
-    finish_accel(*accel);
-    static_assert(has_member_count<AccelData, 6> && has_member_count<AccelFacts, 9>, "all but the times are set here");
     accel_ = std::move(accel);
     queries_ = std::make_unique<RayQueries>(device_);
 }

@@ -15,6 +15,8 @@ namespace clarity::check {
 struct Variant {
     int lanes = 1;
     bool debug = false, portable = false;
+    static Variant plain(int lanes) { return {lanes, false, false}; }
+    static Variant with_debug(int lanes) { return {lanes, true, false}; }
     std::string text() const;     // "8 lanes, debug"
     std::string options() const;  // "--lanes 8 --debug true"
 };

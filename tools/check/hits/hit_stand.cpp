@@ -155,10 +155,11 @@ std::vector<Variant> HitStand::variants(const Step& step) {
     scene(step);
     const HitsOptions& options = input_.options;
     std::vector<Variant> list;
-    for (const int lanes : options.lanes) list.push_back({lanes, true, false});
+    for (const int lanes : options.lanes) list.push_back(Variant::with_debug(lanes));
     if (options.quick) return list;
-    for (const int lanes : options.lanes) list.push_back({lanes, false, false});
-    list.push_back({1, false, true});
+    for (const int lanes : options.lanes) list.push_back(Variant::plain(lanes));
+    list.push_back(Variant::plain(1));
+    list.back().portable = true;
     return list;
 }
 

@@ -91,7 +91,7 @@ Outcome all_hits_of(HitStand& stand, const Step& step) {
     size_t longest = 0;
     for (const int count : lanes)
         for (const char* name : {"hits.random", "hits.nested", "hits.instances", "hits.primitives"}) {
-            Outcome outcome = trace_all(stand, {count, false, false}, name, step, listed, longest);
+            Outcome outcome = trace_all(stand, Variant::plain(count), name, step, listed, longest);
             if (outcome.kind == Outcome::Kind::failed) return outcome;
         }
     return Outcome::passed(std::to_string(listed) + " hits are listed and counted, up to " + std::to_string(longest) +
@@ -183,7 +183,7 @@ Outcome strange_set(HitStand& stand, const std::string& name, const Step& step) 
 }
 
 Outcome accesses(HitStand& stand, const Step& step) {
-    const Variant variant{stand.options().lanes.front(), false, false};
+    const Variant variant = Variant::plain(stand.options().lanes.front());
     size_t rays = 0;
     for (const RaySet& set : stand.sets(step))
         for (const bool any_hit : {false, true}) {

@@ -48,7 +48,7 @@ std::vector<rt_ray> for_each_room(const std::vector<rt_ray>& rays) {
 }
 
 void add_efforts(HitStand& stand, const char* name, const Step& step, Efforts& efforts) {
-    const Variant variant{1, true, false};
+    const Variant variant = Variant::with_debug(1);
     const RaySet& set = stand.set(name, step);
     const std::vector<Truth>& truths = stand.truths(set, step);
     CheckedScene& scene = stand.scene(step);
@@ -215,7 +215,7 @@ Outcome counts_check(const StandInput& input, const Step& step) {
     // The program of hits.pushes is there already.
     const BuiltAs as{{}, 0, {{"RT_STACK_GRANTED", kGranted}}, Moves::none};
     HitStand mixed(few_rays(input), kMixedScene, as), regular(few_rays(input), kRegularScene, as);
-    const Variant variant{1, true, false};
+    const Variant variant = Variant::with_debug(1);
     struct Row {
         HitStand& stand;
         const char* set;

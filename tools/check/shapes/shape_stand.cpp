@@ -24,7 +24,7 @@ std::string signs_of(const rt_ray& ray) {
 std::vector<Variant> ShapeStand::variants(const Step& step) {
     device(step);
     std::vector<Variant> list;
-    for (const int lanes : options_.lanes) list.push_back({lanes, false, false});
+    for (const int lanes : options_.lanes) list.push_back(Variant::plain(lanes));
     if (!options_.quick) list.push_back({options_.lanes.back(), false, true});
     return list;
 }
