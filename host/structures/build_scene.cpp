@@ -346,13 +346,40 @@ SceneCounts count_scene(const Scene& scene) {
     return counts;
 }
 
+namespace {
+
+// Throws Error if the scene has more than their numbers can name. placed: triangles of all instances.
+void check_numbers(uint64_t refs, uint64_t prims, uint64_t placed) {
+    if (refs > RT_REF_INDEX_MAX || prims > 0xFFFFFFF0u)
+        throw Error(Exit::failed, "the scene has " + std::to_string(refs) + " triangles; this build can hold " +
+                                      std::to_string(RT_REF_INDEX_MAX) +
+                                      ": take fewer, or place one mesh several times instead of copies of it");
+    if (placed > INT32_MAX)
+        throw Error(Exit::failed, "the scene's instances have " + std::to_string(placed) +
+                                      " triangles together; they are numbered up to " + std::to_string(INT32_MAX) +
+                                      ": place fewer");
+}
+
+void add_planes(const Scene& scene, rt_u32 first_prim, BuildScene& out) {
+    for (const Plane& plane : scene.planes) {
+        rt_plane p{};
+        std::memcpy(p.normal, plane.normal.data(), sizeof p.normal);
+        p.offset = plane.offset;
+        p.material = plane.material;
+        p.prim = first_prim++;
+        out.planes.push_back(p);
+    }
+}
+
+}  // namespace
+
 BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     BuildScene out;
     const Grouping grouping = group_meshes(scene);
     const std::vector<Affine>& inverse = grouping.inverse;
     const std::vector<bool>& flat = grouping.flat;
     const std::vector<rt_u32>& group_of_mesh = grouping.group_of_mesh;
-    const uint64_t refs = grouping.refs, placed = scene.placed_triangle_count();
+    const uint64_t refs = grouping.refs;
     uint64_t prim_total = grouping.world_prims;
     out.groups.assign(grouping.group_count, rt_group{0, 0});
     out.groups[0] = {0, static_cast<rt_u32>(grouping.world_prims)};
@@ -361,14 +388,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             out.groups[group_of_mesh[m]] = {static_cast<rt_u32>(prim_total), scene.meshes[m].triangle_count};
             prim_total += scene.meshes[m].triangle_count;
         }
-    if (refs > RT_REF_INDEX_MAX || prim_total > 0xFFFFFFF0u)
-        throw Error(Exit::failed, "the scene has " + std::to_string(refs) + " triangles; this build can hold " +
-                                      std::to_string(RT_REF_INDEX_MAX) +
-                                      ": take fewer, or place one mesh several times instead of copies of it");
-    if (placed > INT32_MAX)
-        throw Error(Exit::failed, "the scene's instances have " + std::to_string(placed) +
-                                      " triangles together; they are numbered up to " + std::to_string(INT32_MAX) +
-                                      ": place fewer");
+    check_numbers(refs, prim_total, scene.placed_triangle_count());
     out.prims.resize(prim_total);
     out.triangles.resize(refs);
     out.attribute_triangle.resize(refs);
@@ -437,15 +457,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     const auto first = [&](PrimPlace::Kind kind) { return static_cast<rt_u32>(numbers.first(kind)); };
     add_spheres(scene, runs, first(PrimPlace::Kind::sphere), at, out);
     add_polygons(scene, runs + 1, first(PrimPlace::Kind::polygon), at, out);
-    for (size_t i = 0; i < scene.planes.size(); ++i) {
-        const Plane& plane = scene.planes[i];
-        rt_plane p{};
-        std::memcpy(p.normal, plane.normal.data(), sizeof p.normal);
-        p.offset = plane.offset;
-        p.material = plane.material;
-        p.prim = first(PrimPlace::Kind::plane) + static_cast<rt_u32>(i);
-        out.planes.push_back(p);
-    }
+    add_planes(scene, first(PrimPlace::Kind::plane), out);
     add_shapes(scene, runs + 2, first(PrimPlace::Kind::shape), at, out);
     return out;
 }

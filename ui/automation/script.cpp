@@ -6,12 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -118,6 +121,101 @@ void choose_map(UiState& state, const std::string& id) {
     state.key_map = map;
 }
 
+using Window = ScriptedWindow;
+
+void set(Window& window, const std::string& text) {
+    const size_t space = text.find(' ');
+    const std::string key = text.substr(0, space);
+    set_setting(window.session.settings_for(key), key, space == std::string::npos ? "" : text.substr(space + 1));
+}
+
+// "X Y"
+std::array<unsigned, 2> pixel_of(const std::string& text) {
+    std::array<unsigned, 2> pixel{};
+    std::istringstream(text) >> pixel[0] >> pixel[1];
+    return pixel;
+}
+
+void show_level(Window& window, const std::string& text) {
+    if (text == "off")
+        window.overlay.show(std::nullopt);
+    else
+        window.overlay.show(text == "bottom" ? RT_LEVEL_BOTTOM : static_cast<rt_u32>(std::strtoul(text.c_str(), nullptr, 10)));
+}
+
+void compare(Window& window, const std::string& text) {
+    window.session.compare(text != "off");
+    window.session.editing_other = text == "b";
+}
+
+void write_picture(Window& window, const std::string& path) {
+    if (!window.session.picture()) throw Error(Exit::failed, "no picture yet");
+    write_image(path, {}, window.session.picture()->main.image);
+}
+
+void write_preview(Window& window, const std::string& path) {
+    const auto preview = window.session.preview();
+    if (!preview || preview->image.width == 0) throw Error(Exit::failed, "no preview yet");
+    write_image(path, {}, preview->image);
+}
+
+struct Command {
+    const char* name;
+    void (*run)(Window& window, const std::string& text);
+};
+const Command kCommands[] = {
+    {"set", set},
+    {"accel", [](Window& w, const std::string& text) { choose_accel(w.session, text); }},
+    {"device", [](Window& w, const std::string& text) { w.session.edited().device = text; }},
+    {"open", [](Window& w, const std::string& text) { w.session.open({text}); }},
+    {"drop", [](Window& w, const std::string& text) { w.drop(dropped_files(text)); }},
+    {"moving_fps",
+     [](Window& w, const std::string& text) { w.session.desired.moving_fps = std::strtof(text.c_str(), nullptr); }},
+    {"double_click", [](Window& w, const std::string& text) { w.set_double_click(std::strtof(text.c_str(), nullptr)); }},
+    {"cancel", [](Window& w, const std::string&) { w.session.cancel(); }},
+    {"edit", [](Window& w, const std::string& text) { edit(w.session, text); }},
+    {"compare", compare},
+    {"swap", [](Window& w, const std::string&) { w.session.swap_sides(); }},
+    {"undo", [](Window& w, const std::string&) { w.session.undo(); }},
+    {"redo", [](Window& w, const std::string&) { w.session.redo(); }},
+    {"save_preset", [](Window& w, const std::string& text) { w.session.save_preset(text); }},
+    {"load_preset", [](Window& w, const std::string& text) { w.session.load_preset(text); }},
+    {"command_line",
+     [](Window& w, const std::string& text) {
+         std::printf("%s\n", nlohmann::json{{"command", w.session.render_command(text)}}.dump().c_str());
+     }},
+    {"save", [](Window& w, const std::string& text) { w.session.save_picture(text); }},
+    {"turntable",
+     [](Window& w, const std::string& text) {
+         w.session.sequence().start_turntable(w.session, text.substr(text.find(' ') + 1), std::atoi(text.c_str()));
+     }},
+    {"inspect", [](Window& w, const std::string& text) { w.session.inspect(pixel_of(text)[0], pixel_of(text)[1]); }},
+    {"pick", [](Window& w, const std::string& text) { w.session.pick(pixel_of(text)[0], pixel_of(text)[1]); }},
+    {"why", [](Window& w, const std::string& text) { w.session.explain(pixel_of(text)[0], pixel_of(text)[1]); }},
+    {"noise", [](Window& w, const std::string&) { std::printf("%s\n", noise_text(w.session).c_str()); }},
+    {"inspection", [](Window& w, const std::string&) { std::printf("%s\n", inspection_text(w.session).c_str()); }},
+    {"continuous", [](Window& w, const std::string& text) { w.session.desired.continuous = text == "1"; }},
+    {"save_scene", [](Window& w, const std::string& text) { save_scene(w.session, text); }},
+    {"select",
+     [](Window& w, const std::string& text) {
+         w.session.selection = {static_cast<rt_i32>(std::strtol(text.c_str(), nullptr, 10)), -1, -1};
+     }},
+    {"handles", [](Window& w, const std::string& text) { w.state.move_handles = text == "1"; }},
+    {"tab", [](Window& w, const std::string& text) { choose_tab(w.state, text); }},
+    {"map", [](Window& w, const std::string& text) { choose_map(w.state, text); }},
+    {"level", show_level},
+    {"focus",
+     [](Window& w, const std::string&) {
+         w.state.show_tab(Tab::scene);
+         w.state.focus_path_asked = true;
+     }},
+    {"scale", [](Window& w, const std::string& text) { w.state.text_scale = std::strtof(text.c_str(), nullptr); }},
+    {"screenshot", [](Window& w, const std::string& text) { w.capture(text); }},
+    {"picture", write_picture},
+    {"preview", write_preview},
+    {"quit", [](Window& w, const std::string&) { w.close(); }},
+};
+
 }  // namespace
 
 std::unique_ptr<Script> Script::from_environment() {
@@ -196,113 +294,35 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
     std::istringstream in(line);
     std::string command;
     in >> command;
-    Session& session = window.session;
     const std::string text = rest_of(in);
     if (command.empty() || command[0] == '#') return true;
     if (command == "wait") return wait(window, text);
-    if (command == "set") {
-        const size_t space = text.find(' ');
-        const std::string key = text.substr(0, space);
-        set_setting(session.settings_for(key), key, space == std::string::npos ? "" : text.substr(space + 1));
-    } else if (command == "accel") {
-        choose_accel(session, text);
-    } else if (command == "device") {
-        session.edited().device = text;
-    } else if (command == "open") {
-        session.open({text});
-    } else if (command == "drop") {
-        window.drop(dropped_files(text));
-    } else if (command == "moving_fps") {
-        session.desired.moving_fps = std::strtof(text.c_str(), nullptr);
-    } else if (command == "double_click") {
-        window.set_double_click(std::strtof(text.c_str(), nullptr));
-    } else if (command == "cancel") {
-        session.cancel();
-    } else if (command == "edit") {
-        edit(session, text);
-    } else if (command == "compare") {
-        session.compare(text != "off");
-        session.editing_other = text == "b";
-    } else if (command == "swap") {
-        session.swap_sides();
-    } else if (command == "undo") {
-        session.undo();
-    } else if (command == "redo") {
-        session.redo();
-    } else if (command == "save_preset") {
-        session.save_preset(text);
-    } else if (command == "load_preset") {
-        session.load_preset(text);
-    } else if (command == "command_line") {
-        std::printf("%s\n", nlohmann::json{{"command", session.render_command(text)}}.dump().c_str());
-    } else if (command == "save") {
-        session.save_picture(text);
-    } else if (command == "turntable") {
-        const size_t space = text.find(' ');
-        session.sequence().start_turntable(session, text.substr(space + 1), std::atoi(text.c_str()));
-    } else if (command == "inspect" || command == "pick") {
-        unsigned x = 0, y = 0;
-        std::istringstream(text) >> x >> y;
-        command == "pick" ? session.pick(x, y) : session.inspect(x, y);
-    } else if (command == "why") {
-        unsigned x = 0, y = 0;
-        std::istringstream(text) >> x >> y;
-        session.explain(x, y);
-    } else if (command == "noise") {
-        std::printf("%s\n", noise_text(session).c_str());
-    } else if (command == "inspection") {
-        std::printf("%s\n", inspection_text(session).c_str());
-    } else if (command == "continuous") {
-        session.desired.continuous = text == "1";
-    } else if (command == "save_scene") {
-        save_scene(session, text);
-    } else if (command == "select") {
-        session.selection = {static_cast<rt_i32>(std::strtol(text.c_str(), nullptr, 10)), -1, -1};
-    } else if (command == "handles") {
-        window.state.move_handles = text == "1";
-    } else if (command == "tab") {
-        choose_tab(window.state, text);
-    } else if (command == "map") {
-        choose_map(window.state, text);
-    } else if (command == "level") {
-        if (text == "off")
-            window.overlay.show(std::nullopt);
-        else
-            window.overlay.show(text == "bottom" ? RT_LEVEL_BOTTOM
-                                                 : static_cast<rt_u32>(std::strtoul(text.c_str(), nullptr, 10)));
-    } else if (command == "focus") {
-        window.state.show_tab(Tab::scene);
-        window.state.focus_path_asked = true;
-    } else if (command == "scale") {
-        window.state.text_scale = std::strtof(text.c_str(), nullptr);
-    } else if (command == "screenshot") {
-        window.capture(text);
-    } else if (command == "picture") {
-        if (!session.picture()) throw Error(Exit::failed, "no picture yet");
-        write_image(text, {}, session.picture()->main.image);
-    } else if (command == "preview") {
-        const auto preview = session.preview();
-        if (!preview || preview->image.width == 0) throw Error(Exit::failed, "no preview yet");
-        write_image(text, {}, preview->image);
-    } else if (command == "state") {
+    if (command == "find") return find(text);
+    if (command == "state") {
         if (text == "reset") window.times = {};
         std::printf("%s\n", state_text(window).c_str());
-    } else if (command == "find") {
-        const Rect* place = drawn_rect(text);
-        // A rectangle that is scrolled out of sight is scrolled into view within the next frames.
-        if (!place && waiting_since_ == 0) {
-            waiting_since_ = ImGui::GetTime();
-            frames_left_ = 4;
-        }
-        if (!place && frames_left_-- > 0) return false;
-        if (!place) throw Error(Exit::failed, "not drawn");
-        std::printf("%s\n",
-                    nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
-    } else if (command == "quit") {
-        window.close();
-    } else if (!run_picture_command(window, command, text) && !run_time_command(window, command, text)) {
-        throw Error(Exit::usage, "no such command");
+        return true;
     }
+    const auto* const row =
+        std::find_if(std::begin(kCommands), std::end(kCommands), [&](const Command& known) { return command == known.name; });
+    if (row != std::end(kCommands))
+        row->run(window, text);
+    else if (!run_picture_command(window, command, text) && !run_time_command(window, command, text))
+        throw Error(Exit::usage, "no such command");
+    return true;
+}
+
+bool Script::find(const std::string& label) {
+    const Rect* place = drawn_rect(label);
+    // A rectangle that is scrolled out of sight is scrolled into view within the next frames.
+    if (!place && waiting_since_ == 0) {
+        waiting_since_ = ImGui::GetTime();
+        frames_left_ = 4;
+    }
+    if (!place && frames_left_-- > 0) return false;
+    if (!place) throw Error(Exit::failed, "not drawn");
+    std::printf("%s\n",
+                nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
     return true;
 }
 

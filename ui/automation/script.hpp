@@ -66,7 +66,9 @@ class Script {
     void read_lines();
     // Runs one line. Returns false if it has to wait; it is then tried again in the next frame.
     bool run(ScriptedWindow& window, const std::string& line);
+    // These two return false likewise.
     bool wait(ScriptedWindow& window, const std::string& what);
+    bool find(const std::string& label);
     std::string state_text(ScriptedWindow& window) const;
 
     int file_;
