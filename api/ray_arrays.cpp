@@ -79,7 +79,9 @@ void give_hits(std::unique_ptr<HitArrays> hits, clarity_all_hits& to) {
 
 void take_back_hits(clarity_all_hits& hits) {
     delete static_cast<HitArrays*>(hits.owner);
-    hits = {hits.struct_bytes, hits.unused, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+    clarity_all_hits none{};
+    none.struct_bytes = hits.struct_bytes, none.unused = hits.unused;
+    hits = none;
 }
 
 }  // namespace clarity::api

@@ -16,18 +16,29 @@ using PlanElements = decltype(rt_device_build::elements);
 using PlanPack = decltype(rt_device_build::pack);
 using FindRanges = decltype(rt_device_build::ranges);
 using PlanRefit = decltype(rt_device_build::refit);
+constexpr rt_device_build with_kernels(rt_cl_file kernels) {
+    rt_device_build build{};
+    build.struct_bytes = sizeof build, build.kernels = kernels;
+    return build;
+}
 // A builder whose trees other structures pack.
 constexpr rt_device_build device_topology(rt_cl_file kernels, PlanTopology topology) {
-    return {sizeof(rt_device_build), 0, kernels, topology, nullptr, nullptr, nullptr, nullptr};
+    rt_device_build build = with_kernels(kernels);
+    build.topology = topology;
+    return build;
 }
 // A layout whose finished trees the device refits.
 constexpr rt_device_build device_refit(rt_cl_file kernels, FindRanges ranges, PlanRefit refit) {
-    return {sizeof(rt_device_build), 0, kernels, nullptr, nullptr, nullptr, ranges, refit};
+    rt_device_build build = with_kernels(kernels);
+    build.ranges = ranges, build.refit = refit;
+    return build;
 }
 // A layout that the device packs, too.
 constexpr rt_device_build device_layout(rt_cl_file kernels, PlanElements elements, PlanPack pack, FindRanges ranges,
                                         PlanRefit refit) {
-    return {sizeof(rt_device_build), 0, kernels, nullptr, elements, pack, ranges, refit};
+    rt_device_build build = device_refit(kernels, ranges, refit);
+    build.elements = elements, build.pack = pack;
+    return build;
 }
 constexpr rt_extension extension(const rt_device_build& data) {
     return {RT_DEVICE_BUILD, RT_DEVICE_BUILD_VERSION, sizeof data, &data};

@@ -131,8 +131,9 @@ std::string write_context(SourceWriter& out, const rt_accel& accel, const SceneF
         init += " ctx." + name + " = ctx_" + name + ";";
     };
     for (const SceneBuffer& buffer : kSceneBuffers) {
-        if ((buffer.of && !(features.*buffer.of)) || (buffer.of_emitters && !picks_lights)) continue;
-        if (buffer.of_layers && !(picks_lights && (features.optics.lobes & (RT_LOBE_LAYERS | kSurfaceLobes)))) continue;
+        if ((buffer.of && !(features.*buffer.of)) || (buffer.kernels == SceneBuffer::picking_lights && !picks_lights)) continue;
+        const bool has_layers = picks_lights && (features.optics.lobes & (RT_LOBE_LAYERS | kSurfaceLobes));
+        if (buffer.kernels == SceneBuffer::layered && !has_layers) continue;
         add(buffer.type, buffer.name);
         if (buffer.checked_bytes) check(buffer.type, buffer.type, buffer.checked_bytes);
     }
@@ -250,12 +251,14 @@ void write_shapes(SourceWriter& out, const Scene& scene) {
                      "    const global float *numbers = shape->numbers, *more = ctx->shape_numbers + shape->first_more;\n",
                      "shape->kind", at_end);
     };
-    choice("vfloat rt_shape_hit(const rt_ctx *ctx, const global rt_shape *shape, const rt_shape_rays *ray, uint bits, "
-           "vfloat *u, vfloat *v)",
-           "RT_SHAPE_HIT_EACH($_hit)", "return $_hit(numbers, more, ray, u, v);", "    return RT_INFINITY;\n");
-    choice("void rt_shape_surface_at(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, vfloat u, vfloat v, "
-           "uint bits, rt_shape_surface *s)",
-           "RT_SHAPE_SURFACE_EACH($_surface)", "$_surface(numbers, more, at, u, v, s);\n        return;", "");
+    choice(
+        "vfloat rt_shape_hit(const rt_ctx *ctx, const global rt_shape *shape, const rt_shape_rays *ray, uint bits, "
+        "vfloat *u, vfloat *v)",
+        "RT_SHAPE_HIT_EACH($_hit)", "return $_hit(numbers, more, ray, u, v);", "    return RT_INFINITY;\n");
+    choice(
+        "void rt_shape_surface_at(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, vfloat u, vfloat v, "
+        "uint bits, rt_shape_surface *s)",
+        "RT_SHAPE_SURFACE_EACH($_surface)", "$_surface(numbers, more, at, u, v, s);\n        return;", "");
 }
 
 void write_layout(SourceWriter& out, const Layout& layout) {

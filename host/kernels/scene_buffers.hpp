@@ -14,8 +14,11 @@ struct SceneBuffer {
     const char* what;                    // for messages
     size_t checked_bytes;                // if not 0: the size of the type, which is compared with the device's
     bool SceneFeatures::* of = nullptr;  // only kernels of scenes with this feature have it
-    bool of_emitters = false;            // only kernels with kPicksLights have it; it comes from the frame (launch/emitters)
-    bool of_layers = false;              // only kernels with RT_LOBE_LAYERS or models of plugins have it
+    enum For {
+        all_kernels,
+        picking_lights,  // only kernels with kPicksLights have it; it comes from the frame (launch/emitters)
+        layered          // only kernels with RT_LOBE_LAYERS or models of plugins have it
+    } kernels = all_kernels;
 };
 
 constexpr SceneBuffer kSceneBuffers[] = {
@@ -25,7 +28,7 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"float", "polygon_corners", "polygon corners", 0},
     {"rt_plane", "planes", "planes", 0},
     {"rt_material", "materials", "materials", sizeof(rt_material)},
-    {"rt_layers", "layers", "layers of materials", sizeof(rt_layers), nullptr, false, true},
+    {"rt_layers", "layers", "layers of materials", sizeof(rt_layers), nullptr, SceneBuffer::layered},
     {"rt_triangle", "triangles", "triangles", 0},
     {"float", "normals", "normals", 0},
     {"float", "uvs", "texture coordinates", 0},
@@ -39,12 +42,13 @@ constexpr SceneBuffer kSceneBuffers[] = {
     {"rt_light", "lights", "lights", 0},
     {"rt_shape", "shapes", "shapes", sizeof(rt_shape), &SceneFeatures::shapes},
     {"float", "shape_numbers", "numbers of shapes", 0, &SceneFeatures::shapes},
-    {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), nullptr, true},
-    {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, nullptr, true},
-    {"rt_light_node", "light_nodes", "light tree", sizeof(rt_light_node), &SceneFeatures::light_tree, true},
-    {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), nullptr, true},
-    {"ushort", "sky_texels", "picture of the sky", 0, nullptr, true},
-    {"uint", "sky_picks", "tables of the sky", 0, nullptr, true},
+    {"rt_emitter", "emitters", "table of emitters", sizeof(rt_emitter), nullptr, SceneBuffer::picking_lights},
+    {"rt_emitter_run", "emitter_runs", "runs of emitters", 0, nullptr, SceneBuffer::picking_lights},
+    {"rt_light_node", "light_nodes", "light tree", sizeof(rt_light_node), &SceneFeatures::light_tree,
+     SceneBuffer::picking_lights},
+    {"rt_lighting", "lighting", "summary of emitters", sizeof(rt_lighting), nullptr, SceneBuffer::picking_lights},
+    {"ushort", "sky_texels", "picture of the sky", 0, nullptr, SceneBuffer::picking_lights},
+    {"uint", "sky_picks", "tables of the sky", 0, nullptr, SceneBuffer::picking_lights},
 };
 
 }  // namespace clarity

@@ -1,5 +1,7 @@
 #include "ui/widgets/scene_rows.hpp"
 
+#include <iterator>
+
 #include "ui/widgets/formats.hpp"
 
 namespace clarity::ui {
@@ -24,28 +26,47 @@ const std::string& own_name(const Scene& scene, RowKind kind, size_t index) {
     }
 }
 
+struct Kind {
+    RowKind kind;
+    const char *title, *noun;
+    size_t (*count)(const Scene& scene);
+};
+constexpr Kind kKinds[] = {
+    {RowKind::instance, "Instances", "instance", [](const Scene& scene) { return scene.instances.size(); }},
+    {RowKind::sphere, "Spheres", "sphere", [](const Scene& scene) { return scene.spheres.size(); }},
+    {RowKind::polygon, "Polygons", "polygon", [](const Scene& scene) { return scene.polygons.size(); }},
+    {RowKind::plane, "Planes", "plane", [](const Scene& scene) { return scene.planes.size(); }},
+    {RowKind::shape, "Shapes", "shape", [](const Scene& scene) { return scene.shapes.size(); }},
+    {RowKind::mesh, "Meshes", "mesh", [](const Scene& scene) { return scene.meshes.size(); }},
+    {RowKind::material, "Materials", "material", [](const Scene& scene) { return scene.materials.size(); }},
+    {RowKind::light, "Lights", "light", [](const Scene& scene) { return scene.lights.size(); }},
+    {RowKind::camera, "Cameras", "camera", [](const Scene& scene) { return scene.cameras.size(); }},
+};
+constexpr bool in_order() {
+    for (int i = 0; i < kRowKinds; ++i)
+        if (kKinds[i].kind != static_cast<RowKind>(i)) return false;
+    return true;
+}
+static_assert(std::size(kKinds) == kRowKinds && in_order());
+const Kind& row_of(RowKind kind) {
+    return kKinds[static_cast<int>(kind)];
+}
+
 }  // namespace
 
 const char* kind_title(RowKind kind) {
-    static const char* const titles[kRowKinds] = {"Instances", "Spheres",   "Polygons", "Planes", "Shapes",
-                                                  "Meshes",    "Materials", "Lights",   "Cameras"};
-    return titles[static_cast<int>(kind)];
+    return row_of(kind).title;
 }
 
 size_t row_count(const Scene& scene, RowKind kind) {
-    const size_t counts[kRowKinds] = {scene.instances.size(), scene.spheres.size(), scene.polygons.size(),
-                                      scene.planes.size(),    scene.shapes.size(),  scene.meshes.size(),
-                                      scene.materials.size(), scene.lights.size(),  scene.cameras.size()};
-    return counts[static_cast<int>(kind)];
+    return row_of(kind).count(scene);
 }
 
 std::string row_name(const Scene& scene, RowKind kind, size_t index) {
-    static const char* const nouns[kRowKinds] = {"instance", "sphere",   "polygon", "plane", "shape",
-                                                 "mesh",     "material", "light",   "camera"};
     if (kind == RowKind::shape)  // "torus 3"; shapes of all kinds are counted together
         return scene.shape_kinds[scene.shapes[index].kind].id + " " + std::to_string(index);
     const std::string& name = own_name(scene, kind, index);
-    return name.empty() ? std::string(nouns[static_cast<int>(kind)]) + " " + std::to_string(index) : name;
+    return name.empty() ? std::string(row_of(kind).noun) + " " + std::to_string(index) : name;
 }
 
 rt_u32 row_material(const Scene& scene, RowKind kind, size_t index) {
