@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/files/file_watch.hpp"
 #include "base/log.hpp"
 #include "device/kernel_watch.hpp"

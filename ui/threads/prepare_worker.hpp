@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/progress.hpp"
 #include "import/import.hpp"
 #include "ui/threads/prepared_scene.hpp"

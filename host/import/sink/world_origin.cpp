@@ -37,7 +37,7 @@ std::string step_text(double coordinate) {
 
 void add_origin(Scene& scene, const Instance& instance, const std::array<double, 3>& more) {
     const Mesh& mesh = scene.meshes[instance.mesh];
-    float* const positions = &scene.positions.own()[3 * size_t(mesh.first_vertex)];
+    float* const positions = scene.positions.own().data() + 3 * size_t(mesh.first_vertex);
     for (size_t i = 0; i < 3 * size_t(mesh.vertex_count); ++i)
         positions[i] = static_cast<float>(positions[i] + double(instance.world_from_object[4 * (i % 3) + 3]) + more[i % 3]);
 }

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -40,6 +41,20 @@ TEST(Lab, SharedFilesComeWithTheHandoutAndWithACopy) {
     lab["shared"] = {"../lab.json"};
     scratch.write("copy/lab.json", lab.dump());
     EXPECT_THROW(clarity::lab::read_lab(scratch.path("copy"), true), clarity::Error);
+}
+
+TEST(Lab, OfSurfacesHasNoPointsOfSpeed) {
+    const Scratch scratch;
+    json lab = json::parse(std::ifstream(kLabs + "/microfacet/lab.json"));
+    const auto read = [&] {
+        scratch.write("lab/lab.json", lab.dump());
+        return clarity::lab::read_lab(scratch.path("lab"), false);
+    };
+    lab.erase("points");
+    EXPECT_EQ(read().points_speed, 0);
+    EXPECT_EQ(read().points_counts, 50);
+    lab["points"] = {{"speed", 15}};
+    EXPECT_THROW(read(), clarity::Error) << "all would get them, because no times are taken";
 }
 
 TEST(Lab, LinksAndLargeFilesAreRefused) {
