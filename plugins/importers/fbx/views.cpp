@@ -1,6 +1,6 @@
 // views.cpp -- lights and cameras.
-#include "../common/numbers.hpp"
 #include "../common/views.hpp"
+#include "../common/numbers.hpp"
 
 #include "scene.hpp"
 
