@@ -63,9 +63,9 @@ class Planner {
         const char* name;
         TimeLimit limit;
         std::vector<SceneChoice> scenes;
-        std::vector<uint64_t> sizes;  // triangles that scenes are split to
         void (Planner::*cases)(size_t scene);
-        bool unpacked = false;  // its own scenes must not be packed: ranks read the files themselves
+        std::vector<uint64_t> sizes = {};  // triangles that scenes are split to
+        bool unpacked = false;             // its own scenes must not be packed: ranks read the files themselves
     };
     static const std::vector<Row>& rows();
 
@@ -415,27 +415,25 @@ const std::vector<Planner::Row>& Planner::rows() {
         {"thesis",
          TimeLimit::whole(480),
          {{From::thesis}, {From::project, "spheres21"}, {From::project, "thesis/aim_100k"}},
-         {},
          &Planner::thesis},
-        {"packets", TimeLimit::whole(900), {{From::thesis}}, {}, &Planner::packets},
+        {"packets", TimeLimit::whole(900), {{From::thesis}}, &Planner::packets},
         {"accel",
          TimeLimit::whole_or_each(1500, 120),
          {{From::thesis}, {From::project, "thesis/aim_100k"}, {From::shared}},
-         {},
          &Planner::accel},
         {"scale",
          TimeLimit::whole(900),
          {{From::project, "models/spot", nullptr, true}},
-         {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000},
-         &Planner::scale},
+         &Planner::scale,
+         {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000}},
         {"large",
          TimeLimit::whole(1200),
          {{From::shared, "dragon_871k"}, {From::views, "skull near", nullptr, true}},
-         {1'000'000, 10'000'000, 100'000'000},
-         &Planner::large},
-        {"cpu", TimeLimit::whole_or_each(1800, 150), {{From::shared}, {From::views}}, {}, &Planner::cpu},
-        {"devices", TimeLimit::each_scene(90), {{From::project, "thesis/aim_100k"}, {From::shared}}, {}, &Planner::devices},
-        {"mpi", TimeLimit::each_scene(120), {{From::project, "thesis/aim_100k"}, {From::shared}}, {}, &Planner::mpi, true},
+         &Planner::large,
+         {1'000'000, 10'000'000, 100'000'000}},
+        {"cpu", TimeLimit::whole_or_each(1800, 150), {{From::shared}, {From::views}}, &Planner::cpu},
+        {"devices", TimeLimit::each_scene(90), {{From::project, "thesis/aim_100k"}, {From::shared}}, &Planner::devices},
+        {"mpi", TimeLimit::each_scene(120), {{From::project, "thesis/aim_100k"}, {From::shared}}, &Planner::mpi, {}, true},
         {"light",
          TimeLimit::each_scene(300),
          {{From::project, "cornell"},
@@ -443,18 +441,16 @@ const std::vector<Planner::Row>& Planner::rows() {
           {From::project, "veach"},
           {From::project, "showpiece_sky"},
           {From::shared, "salle_de_bain", "plaster_sky"}},
-         {},
          &Planner::light},
-        {"moving", TimeLimit::each_scene(240), {{From::project, "thesis/aim_100k"}, {From::shared}}, {}, &Planner::moving},
-        {"policy", TimeLimit::each_scene(600), {{From::project, "thesis/models/skull"}}, {}, &Planner::policy},
-        {"zoo", TimeLimit::whole_or_each(3600, 450), {{From::zoo}}, {}, &Planner::zoo},
-        {"shapes", TimeLimit::whole_or_each(900, 60), {{From::shapes}}, {}, &Planner::shapes},
+        {"moving", TimeLimit::each_scene(240), {{From::project, "thesis/aim_100k"}, {From::shared}}, &Planner::moving},
+        {"policy", TimeLimit::each_scene(600), {{From::project, "thesis/models/skull"}}, &Planner::policy},
+        {"zoo", TimeLimit::whole_or_each(3600, 450), {{From::zoo}}, &Planner::zoo},
+        {"shapes", TimeLimit::whole_or_each(900, 60), {{From::shapes}}, &Planner::shapes},
         {"quick",
          TimeLimit::whole(55),
          {{From::project, "thesis/2_two_spheres"},
           {From::project, "thesis/6_2406_triangles"},
           {From::project, "thesis/models/skull"}},
-         {},
          &Planner::quick}};
     return rows;
 }
