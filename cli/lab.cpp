@@ -14,6 +14,7 @@
 #include "base/files/process_folder.hpp"
 #include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/render/frame_claim.hpp"
