@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-namespace importers {
+#include "numbers.hpp"
 
-inline constexpr double kRadPerDegree = 0.017453292519943295;
+namespace importers {
 
 using Vec3 = std::array<double, 3>;
 // A 3x4 matrix, row-major, in double precision, so that chains of many small rotations stay exact to float precision.

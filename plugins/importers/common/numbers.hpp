@@ -10,8 +10,8 @@
 
 namespace importers {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadPerDegree = kPi / 180;
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kRadPerDegree = kPi / 180;
 
 // A channel of a colour as screens have it, as linear light. Outside of 0..1 it is limited. IEC 61966-2-1.
 inline float linear_of_srgb(double x) {
