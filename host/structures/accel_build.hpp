@@ -62,7 +62,8 @@ struct AccelData : AccelFacts {
 // instances' roots and the bytes. take: makes memory of the data of a slot's. The leaves are the caller's to pack.
 template <class Bytes, class Take>
 void take_result(BuilderResultIn<Bytes>& result, AccelData& data, const Take& take) {
-    static_assert(has_member_count<AccelData, 6> && has_member_count<AccelFacts, 9>, "all but the leaves and the times are set here");
+    static_assert(has_member_count<AccelData, 6> && has_member_count<AccelFacts, 9>,
+                  "all but the leaves and the times are set here");
     for (auto& slot : result.slots) data.slots.push_back({take(slot.memory), slot.count});
     data.leaf_count = result.leaf_count;
     data.roots = std::move(result.roots);
