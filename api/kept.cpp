@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "device/cl_errors.hpp"
 #include "device/device_loss.hpp"
-#include "picture/growing_buffer.hpp"
+#include "device/growing_buffer.hpp"
 #include "tracers/rays/ray_blocks.hpp"
 
 namespace clarity::api {

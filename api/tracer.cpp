@@ -6,7 +6,7 @@
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
 #include "device/cl_errors.hpp"
-#include "tracers/rays/query_scene.hpp"
+#include "stand/query_scene.hpp"
 #include "view/settings/accel_choice.hpp"
 #include "view/settings/aov.hpp"
 #include "view/view.hpp"

@@ -5,7 +5,7 @@
 #include "api/positions.hpp"
 #include "base/log.hpp"
 #include "moving/on_host/host_mover.hpp"
-#include "tracers/rays/query_scene.hpp"
+#include "stand/query_scene.hpp"
 
 namespace clarity::api {
 namespace {

@@ -16,9 +16,9 @@
 #include "cli/interrupt.hpp"
 #include "device/device.hpp"
 #include "import/import.hpp"
+#include "stand/ray_text.hpp"
 #include "tools/check/causes.hpp"
 #include "tools/check/check.hpp"
-#include "tracers/rays/ray_text.hpp"
 #include "view/edit/edit.hpp"
 
 namespace clarity {

@@ -9,10 +9,10 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
+#include "stand/query_scene.hpp"
+#include "stand/ray_text.hpp"
 #include "structures/accel_build.hpp"
-#include "tracers/rays/query_scene.hpp"
 #include "tracers/rays/ray_queries.hpp"
-#include "tracers/rays/ray_text.hpp"
 #include "view/edit/edit.hpp"
 #include "view/settings/accel_choice.hpp"
 

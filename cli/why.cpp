@@ -13,8 +13,8 @@
 #include "cli/progress_bar.hpp"
 #include "cli/render/frame_scene.hpp"
 #include "cli/render/render_progress.hpp"
-#include "frames/multi/multi_preparer.hpp"
 #include "picture/film_noise.hpp"
+#include "stand/multi_preparer.hpp"
 #include "tools/why/noise.hpp"
 #include "view/view.hpp"
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/pictures/image_io.hpp"
 #include "cli/commands.hpp"
-#include "frames/multi/multi_frame_renderer.hpp"
 #include "picture/film_noise.hpp"
-#include "picture/image_io.hpp"
+#include "stand/multi_frame_renderer.hpp"
 
 namespace clarity {
 

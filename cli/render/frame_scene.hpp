@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/commands.hpp"
-#include "frames/multi/motion_blur.hpp"
 #include "import/import.hpp"
+#include "stand/motion_blur.hpp"
 
 namespace clarity {
 

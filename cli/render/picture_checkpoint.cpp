@@ -11,7 +11,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "kernels/program_cache.hpp"
-#include "picture/checkpoint.hpp"
+#include "stand/checkpoint.hpp"
 #include "view/settings/aov.hpp"
 
 namespace clarity {

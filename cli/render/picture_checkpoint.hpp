@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/commands.hpp"
-#include "frames/multi/multi_frame_renderer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 
 namespace clarity {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "base/pictures/image_io.hpp"
 #include "cli/render/frame_scene.hpp"
-#include "frames/multi/multi_preparer.hpp"
-#include "picture/image_io.hpp"
+#include "stand/multi_preparer.hpp"
 
 namespace clarity {
 

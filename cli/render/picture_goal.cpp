@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/elapsed.hpp"
-#include "frames/multi/multi_frame_renderer.hpp"
 #include "picture/film_noise.hpp"
+#include "stand/multi_frame_renderer.hpp"
 
 namespace clarity {
 namespace {

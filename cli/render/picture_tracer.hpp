@@ -6,7 +6,7 @@
 #include "base/progress.hpp"
 #include "cli/render/frame_scene.hpp"
 #include "cli/render/render_stats.hpp"
-#include "frames/multi/multi_frame_renderer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 
 namespace clarity {
 

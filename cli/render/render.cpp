@@ -32,11 +32,11 @@
 #include "cli/render/render_progress.hpp"
 #include "cli/render/render_stats.hpp"
 #include "device/kernel_watch.hpp"
-#include "frames/multi/multi_device_film.hpp"
-#include "frames/multi/multi_frame_renderer.hpp"
 #include "mpi/mpi_ranks.hpp"
 #include "picture/film_noise.hpp"
 #include "plugin/library_watch.hpp"
+#include "stand/multi_device_film.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "view/settings/aov.hpp"
 #include "view/view.hpp"
 

@@ -6,11 +6,11 @@
 #include "base/error.hpp"
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
+#include "base/pictures/image_io.hpp"
 #include "cli/render/frame_record.hpp"
 #include "cli/render/picture_checkpoint.hpp"
 #include "cli/render/picture_goal.hpp"
 #include "picture/film_noise.hpp"
-#include "picture/image_io.hpp"
 #include "view/settings/aov.hpp"
 #include "view/settings/tracer_choice.hpp"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "frames/frame_stats.hpp"
-#include "frames/multi/multi_preparer.hpp"
-#include "frames/multi/ranks.hpp"
 #include "picture/film_noise.hpp"
+#include "stand/multi_preparer.hpp"
+#include "stand/ranks.hpp"
 #include "tools/compare/picture_errors.hpp"
 #include "view/settings/settings.hpp"
 

@@ -1,9 +1,9 @@
 // view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
 #pragma once
+#include "device/growing_buffer.hpp"
 #include "device/queue.hpp"
 #include "launch/device_scene.hpp"
 #include "launch/emitters/sky_table.hpp"
-#include "picture/growing_buffer.hpp"
 #include "scene/scene.hpp"
 #include "structures/accel_build.hpp"
 #include "view/view.hpp"

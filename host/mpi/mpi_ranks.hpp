@@ -8,10 +8,10 @@
 #include "base/files/memory_file.hpp"
 #include "base/progress.hpp"
 #include "device/device.hpp"
-#include "frames/multi/ranks.hpp"
 #include "mpi/mpi_module.h"
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
+#include "stand/ranks.hpp"
 #include "structures/accel_build.hpp"
 
 namespace clarity {

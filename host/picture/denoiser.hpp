@@ -4,7 +4,7 @@
 
 #include "compile/compile.hpp"
 #include "device/device.hpp"
-#include "picture/growing_buffer.hpp"
+#include "device/growing_buffer.hpp"
 
 namespace clarity {
 

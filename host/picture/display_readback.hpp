@@ -9,11 +9,11 @@
 #include <memory>
 #include <vector>
 
+#include "base/pictures/byte_image.hpp"
 #include "device/device.hpp"
+#include "device/growing_buffer.hpp"
 #include "device/kernel_time.hpp"
-#include "picture/byte_image.hpp"
 #include "picture/film.hpp"
-#include "picture/growing_buffer.hpp"
 #include "picture/pinned_memory_pool.hpp"
 
 namespace clarity {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "view/settings/false_color_scale.hpp"
 
 namespace clarity {

@@ -4,13 +4,13 @@
 #include <functional>
 #include <memory>
 
+#include "base/pictures/byte_image.hpp"
+#include "base/pictures/image_io.hpp"
 #include "compile/compile.hpp"
 #include "device/device.hpp"
+#include "device/growing_buffer.hpp"
 #include "device/kernel_time.hpp"
 #include "picture/bands.hpp"
-#include "picture/byte_image.hpp"
-#include "picture/growing_buffer.hpp"
-#include "picture/image_io.hpp"
 #include "picture/pinned_memory_pool.hpp"
 #include "view/settings/false_color_scale.hpp"
 #include "view/settings/settings.hpp"

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
+#include "device/growing_buffer.hpp"
 #include "device/queue.hpp"
 #include "kernels/kernel_arguments.hpp"
-#include "picture/growing_buffer.hpp"
 
 namespace clarity {
 

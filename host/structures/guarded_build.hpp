@@ -6,7 +6,7 @@
 
 #include "rt_plugin.h"
 #include "structures/builder_output.hpp"
-#include "structures/guarded_memory.hpp"
+#include "worker/guarded_memory.hpp"
 
 namespace clarity {
 

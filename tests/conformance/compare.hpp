@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "base/pictures/image_io.hpp"
 #include "conformance/oracle.hpp"
-#include "picture/image_io.hpp"
 #include "support/workbench.hpp"
 
 namespace clarity::test {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/files/read_file.hpp"
+#include "base/pictures/image_io.hpp"
 #include "base/pictures/shared_exponent.hpp"
 #include "import/sink/texture.hpp"
-#include "picture/image_io.hpp"
 #include "scene/bright_texture.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"

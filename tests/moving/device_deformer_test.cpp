@@ -9,8 +9,8 @@
 #include "moving/on_host/host_mover.hpp"
 #include "moving_scenes.hpp"
 #include "scene/motion/deform.hpp"
+#include "stand/query_scene.hpp"
 #include "support/scenes.hpp"
-#include "tracers/rays/query_scene.hpp"
 
 namespace clarity::test {
 namespace {

@@ -12,8 +12,8 @@
 #include "base/error.hpp"
 #include "moving_scenes.hpp"
 #include "plugin/capabilities.hpp"
+#include "stand/query_scene.hpp"
 #include "support/workbench.hpp"
-#include "tracers/rays/query_scene.hpp"
 #include "tracers/rays/ray_queries.hpp"
 #include "view/settings/accel_choice.hpp"
 

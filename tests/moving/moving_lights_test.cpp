@@ -5,12 +5,12 @@
 #include <array>
 #include <cmath>
 
-#include "frames/multi/motion_blur.hpp"
-#include "frames/multi/team.hpp"
 #include "moving/on_device/device_mover.hpp"
 #include "moving/on_host/host_mover.hpp"
 #include "moving_scenes.hpp"
 #include "scene/motion/pose.hpp"
+#include "stand/motion_blur.hpp"
+#include "stand/team.hpp"
 #include "support/scratch.hpp"
 #include "view/view.hpp"
 

@@ -1,5 +1,5 @@
 // checkpoint_test.cpp -- a checkpoint comes back bit for bit, and a file that is not one is refused.
-#include "picture/checkpoint.hpp"
+#include "stand/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 

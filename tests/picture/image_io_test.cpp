@@ -1,5 +1,5 @@
 // Pictures are read back exactly, by readers that are not the program's. A write that fails leaves nothing behind.
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "base/files/frame_path.hpp"
 
 #include <gtest/gtest.h>

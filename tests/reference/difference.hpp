@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 
 namespace clarity::reference {
 

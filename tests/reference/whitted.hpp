@@ -4,8 +4,8 @@
 // Whitted 1980, An Improved Illumination Model for Shaded Display; Glassner (ed.) 1989, An Introduction to Ray Tracing.
 // It has no textures and refuses scenes with textures.
 #pragma once
-#include "picture/byte_image.hpp"
-#include "picture/image_io.hpp"
+#include "base/pictures/byte_image.hpp"
+#include "base/pictures/image_io.hpp"
 #include "scene/scene.hpp"
 #include "view/settings/settings.hpp"
 #include "view/view.hpp"

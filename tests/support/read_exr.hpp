@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 
 namespace clarity {
 

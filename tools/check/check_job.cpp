@@ -24,6 +24,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "device/device.hpp"
+#include "stand/ray_text.hpp"
 #include "tools/check/builds/build_checks.hpp"
 #include "tools/check/builds/device_checks.hpp"
 #include "tools/check/check.hpp"
@@ -34,7 +35,6 @@
 #include "tools/check/shapes/key_checks.hpp"
 #include "tools/check/shapes/shape_checks.hpp"
 #include "tools/check/surfaces/model_checks.hpp"
-#include "tracers/rays/ray_text.hpp"
 #include "worker/child.hpp"
 
 namespace clarity::check {

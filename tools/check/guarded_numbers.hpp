@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "device/device.hpp"
-#include "structures/guarded_memory.hpp"
+#include "worker/guarded_memory.hpp"
 
 namespace clarity::check {
 

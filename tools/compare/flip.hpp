@@ -6,7 +6,7 @@
 #pragma once
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 
 namespace clarity {
 

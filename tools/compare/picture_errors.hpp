@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "view/settings/settings.hpp"
 
 namespace clarity {

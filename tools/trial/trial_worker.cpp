@@ -25,14 +25,14 @@
 #include "scene/scene.hpp"
 #include "scene/surface_models.hpp"
 #include "scene/tangents.hpp"
+#include "stand/query_scene.hpp"
 #include "stand/triangle_mesh.hpp"
 #include "structures/accel_copy.hpp"
-#include "structures/guarded_memory.hpp"
-#include "tracers/rays/query_scene.hpp"
 #include "tracers/smoke.hpp"
 #include "trial/trial.hpp"
 #include "trial/trial_job.hpp"
 #include "worker/child.hpp"
+#include "worker/guarded_memory.hpp"
 
 namespace clarity {
 namespace {

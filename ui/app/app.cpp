@@ -20,7 +20,7 @@
 #include "base/files/process_folder.hpp"
 #include "base/log.hpp"
 #include "base/machine.hpp"
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "ui/app/key_actions.hpp"
 #include "ui/automation/script.hpp"
 #include "ui/browser/file_browser.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 
 struct GLFWwindow;
 

@@ -18,7 +18,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "plugin/parameters.hpp"
 #include "ui/automation/script_commands.hpp"
 #include "ui/automation/scripted_window.hpp"

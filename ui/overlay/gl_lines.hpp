@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "ui/overlay/line_quads.hpp"
 
 namespace clarity::ui {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/overlay/projection.hpp"
 

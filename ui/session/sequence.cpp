@@ -7,7 +7,7 @@
 #include "base/angle.hpp"
 #include "base/error.hpp"
 #include "base/files/frame_path.hpp"
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session.hpp"
 

@@ -9,7 +9,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "frames/multi/multi_device_film.hpp"
+#include "stand/multi_device_film.hpp"
 #include "tools/compare/picture_errors.hpp"
 #include "ui/threads/picture.hpp"
 #include "ui/threads/thread_priority.hpp"

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "frames/multi/multi_frame_renderer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "ui/threads/picture.hpp"
 
 namespace clarity::ui {

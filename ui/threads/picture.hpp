@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "frames/multi/multi_frame_renderer.hpp"
 #include "picture/false_colors.hpp"
 #include "picture/film_noise.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "ui/threads/picture_part.hpp"
 #include "ui/threads/prepared_scene.hpp"
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "base/pictures/byte_image.hpp"
 #include "base/pictures/float_image.hpp"
-#include "picture/byte_image.hpp"
 #include "view/settings/settings.hpp"
 
 namespace clarity::ui {

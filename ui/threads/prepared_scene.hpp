@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "frames/multi/motion_blur.hpp"
 #include "moving/follow/pose_follower.hpp"
+#include "stand/motion_blur.hpp"
 #include "ui/threads/desired_state.hpp"
 
 namespace clarity::ui {

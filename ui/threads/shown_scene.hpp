@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "frames/multi/pose_preparer.hpp"
 #include "import/import.hpp"
 #include "scene/instance_edit.hpp"
+#include "stand/pose_preparer.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
+#include "base/pictures/image_io.hpp"
 #include "base/problem.hpp"
-#include "picture/image_io.hpp"
 
 namespace clarity::ui {
 

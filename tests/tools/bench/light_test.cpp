@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"
 #include "support/workbench.hpp"

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/pictures/image_io.hpp"
 #include "base/pictures/picture_read.hpp"
 #include "cli/run_program.hpp"
-#include "picture/image_io.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;

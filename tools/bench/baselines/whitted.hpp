@@ -1,7 +1,7 @@
 // whitted.hpp -- the frame which we and the baselines both render: every surface is a half mirror of one grey, with one light
 // and shadows.
 #pragma once
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "scene/scene.hpp"
 #include "view/settings/settings.hpp"
 #include "view/view.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "stand/ray_sets.hpp"
 #include "tools/bench/baselines/whitted.hpp"
 #include "tools/bench/cases/entry.hpp"

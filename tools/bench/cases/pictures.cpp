@@ -5,7 +5,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "frames/multi/multi_frame_renderer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "tools/bench/baselines/whitted.hpp"
 #include "tools/bench/cases/case_run.hpp"
 #include "tools/bench/cases/entry.hpp"

@@ -20,7 +20,7 @@
 #include "base/files/temporary_folder.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "frames/multi/multi_preparer.hpp"
+#include "stand/multi_preparer.hpp"
 #include "tools/bench/cases/entry.hpp"
 #include "tools/bench/output/row.hpp"
 #include "tools/bench/output/speedup.hpp"

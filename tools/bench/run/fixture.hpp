@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "frames/multi/multi_frame_renderer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "tools/bench/baselines/baseline.hpp"
 #include "tools/bench/suites/suite.hpp"
 #include "tracers/rays/ray_queries.hpp"

@@ -5,11 +5,11 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "stand/query_scene.hpp"
 #include "structures/topology_check.hpp"
 #include "tools/check/builds/pack_checks.hpp"
 #include "tools/check/builds/refit_run.hpp"
 #include "tools/check/builds/result_checks.hpp"
-#include "tracers/rays/query_scene.hpp"
 
 namespace clarity::check {
 namespace {

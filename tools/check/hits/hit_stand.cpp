@@ -6,14 +6,14 @@
 
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 #include "rt_types.h"
 #include "scene/vec.hpp"
+#include "stand/ray_text.hpp"
 #include "tools/check/hits/brute_force.hpp"
 #include "tools/check/hits/checked_scene.hpp"
 #include "tools/check/hits/judge.hpp"
 #include "tools/check/regular_scenes.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 

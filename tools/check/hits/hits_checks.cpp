@@ -12,10 +12,10 @@
 #include "device/kernel_files.hpp"
 #include "plugin/capabilities.hpp"
 #include "rt_plugin.h"
+#include "stand/ray_text.hpp"
 #include "tools/check/hits/built_checks.hpp"
 #include "tools/check/hits/hit_stand.hpp"
 #include "tools/check/oclgrind.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

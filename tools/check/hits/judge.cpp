@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/numbers.hpp"
+#include "stand/ray_text.hpp"
 #include "tools/check/hits/checked_scene.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "base/numbers.hpp"
+#include "stand/ray_text.hpp"
 #include "tools/check/scenes.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

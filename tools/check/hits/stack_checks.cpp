@@ -5,8 +5,8 @@
 #include <regex>
 
 #include "device/kernel_files.hpp"
+#include "stand/ray_text.hpp"
 #include "tools/check/regular_scenes.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

@@ -8,10 +8,10 @@
 #include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "scene/motion/matrix.hpp"
+#include "stand/query_scene.hpp"
+#include "stand/ray_text.hpp"
 #include "structures/accel_build.hpp"
-#include "tracers/rays/query_scene.hpp"
 #include "tracers/rays/ray_queries.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "stand/ray_text.hpp"
 #include "stand/seed.hpp"
 #include "tools/check/oclgrind.hpp"
 #include "tools/check/shapes/shape_stand.hpp"
 #include "tools/check/shapes/surface_checks.hpp"
-#include "tracers/rays/ray_text.hpp"
 
 namespace clarity::check {
 namespace {

@@ -10,9 +10,9 @@
 #include "device/device.hpp"
 #include "rt_types.h"
 #include "scene/vec.hpp"
-#include "structures/guarded_memory.hpp"
 #include "tools/check/hits/checked_scene.hpp"
 #include "tools/check/shapes/shape_values.hpp"
+#include "worker/guarded_memory.hpp"
 
 namespace clarity::check {
 

@@ -7,7 +7,7 @@
 
 #include "device/device.hpp"
 #include "rt_surface.h"
-#include "structures/guarded_memory.hpp"
+#include "worker/guarded_memory.hpp"
 
 namespace clarity::check {
 

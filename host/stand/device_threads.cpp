@@ -1,4 +1,4 @@
-#include "frames/multi/device_threads.hpp"
+#include "stand/device_threads.hpp"
 
 namespace clarity {
 

@@ -1,4 +1,4 @@
-#include "frames/multi/multi_device_film.hpp"
+#include "stand/multi_device_film.hpp"
 
 #include <algorithm>
 #include <chrono>

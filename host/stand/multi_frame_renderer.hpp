@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "frames/frame_renderer.hpp"
-#include "frames/multi/multi_preparer.hpp"
-#include "frames/multi/ranks.hpp"
 #include "picture/film_noise.hpp"
+#include "stand/multi_preparer.hpp"
+#include "stand/ranks.hpp"
 
 namespace clarity {
 

@@ -1,5 +1,5 @@
 // tile_scheduler_test.cpp -- simulates devices of given speeds, and checks which tiles they get, and whether they share at all.
-#include "frames/multi/tile_scheduler.hpp"
+#include "stand/tile_scheduler.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,10 @@
 
 #include "base/error.hpp"
 #include "frames/frame_renderer.hpp"
-#include "frames/multi/device_threads.hpp"
-#include "frames/multi/multi_preparer.hpp"
-#include "frames/multi/ranks.hpp"
-#include "frames/multi/tile_scheduler.hpp"
+#include "stand/device_threads.hpp"
+#include "stand/multi_preparer.hpp"
+#include "stand/ranks.hpp"
+#include "stand/tile_scheduler.hpp"
 
 namespace clarity {
 

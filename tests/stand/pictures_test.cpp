@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "frames/frame_stats.hpp"
-#include "frames/multi/team.hpp"
+#include "stand/team.hpp"
 
 using namespace clarity;
 using namespace clarity::test;

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 
 namespace clarity {
 

@@ -1,4 +1,4 @@
-#include "frames/multi/multi_frame_renderer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -6,10 +6,10 @@
 #include "base/progress.hpp"
 #include "device/cl_errors.hpp"
 #include "frames/frame_stats.hpp"
-#include "frames/multi/multi_device_film.hpp"
 #include "kernels/program_cache.hpp"
 #include "picture/film.hpp"
 #include "picture/pinned_memory_pool.hpp"
+#include "stand/multi_device_film.hpp"
 #include "view/settings/aov.hpp"
 
 namespace clarity {

@@ -1,13 +1,13 @@
 // motion_blur_test.cpp -- pictures whose samples are spread in time, beside still pictures of the samples' times.
-#include "frames/multi/motion_blur.hpp"
+#include "stand/motion_blur.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "frames/multi/multi_device_film.hpp"
-#include "frames/multi/team.hpp"
 #include "import/import.hpp"
+#include "stand/multi_device_film.hpp"
+#include "stand/team.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;

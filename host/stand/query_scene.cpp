@@ -1,4 +1,4 @@
-#include "tracers/rays/query_scene.hpp"
+#include "stand/query_scene.hpp"
 
 #include "device/cl_errors.hpp"
 #include "launch/device_scene.hpp"

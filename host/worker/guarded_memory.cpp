@@ -1,4 +1,4 @@
-#include "structures/guarded_memory.hpp"
+#include "worker/guarded_memory.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // Libraries encode PNG (stb) and EXR (OpenEXR). PFM is a header followed by the floats.
-#include "picture/image_io.hpp"
+#include "base/pictures/image_io.hpp"
 
 // Static, because the window links the stb library too.
 #define STB_IMAGE_WRITE_STATIC

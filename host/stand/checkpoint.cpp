@@ -1,4 +1,4 @@
-#include "picture/checkpoint.hpp"
+#include "stand/checkpoint.hpp"
 
 #include <algorithm>
 #include <cerrno>

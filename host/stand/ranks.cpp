@@ -1,4 +1,4 @@
-#include "frames/multi/ranks.hpp"
+#include "stand/ranks.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/pictures/byte_image.hpp"
 #include "base/pictures/float_image.hpp"
-#include "picture/byte_image.hpp"
 
 namespace clarity {
 

@@ -1,4 +1,4 @@
-#include "frames/multi/tile_scheduler.hpp"
+#include "stand/tile_scheduler.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "frames/multi/ranks.hpp"
+#include "stand/ranks.hpp"
 
 namespace clarity::test {
 

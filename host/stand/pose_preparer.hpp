@@ -3,8 +3,8 @@
 #pragma once
 #include <memory>
 
-#include "frames/multi/multi_preparer.hpp"
 #include "moving/follow/pose_follower.hpp"
+#include "stand/multi_preparer.hpp"
 
 namespace clarity {
 

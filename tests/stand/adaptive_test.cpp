@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "frames/multi/team.hpp"
 #include "picture/film_noise.hpp"
+#include "stand/team.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;

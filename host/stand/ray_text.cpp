@@ -1,4 +1,4 @@
-#include "tracers/rays/ray_text.hpp"
+#include "stand/ray_text.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "frames/multi/team.hpp"
 #include "picture/denoiser.hpp"
 #include "picture/film.hpp"
+#include "stand/team.hpp"
 #include "support/workbench.hpp"
 #include "tools/compare/picture_errors.hpp"
 

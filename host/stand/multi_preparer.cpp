@@ -1,4 +1,4 @@
-#include "frames/multi/multi_preparer.hpp"
+#include "stand/multi_preparer.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -1,11 +1,11 @@
 // ranks_test.cpp -- a picture that several processes share equals that of one, bit for bit. Here the processes are threads,
 // each with a device of its own.
-#include "frames/multi/ranks.hpp"
+#include "stand/ranks.hpp"
 
 #include <algorithm>
 
-#include "frames/multi/team.hpp"
-#include "frames/multi/thread_ranks.hpp"
+#include "stand/team.hpp"
+#include "stand/thread_ranks.hpp"
 
 using namespace clarity;
 using namespace clarity::test;

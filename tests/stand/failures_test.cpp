@@ -3,7 +3,7 @@
 #include <mutex>
 
 #include "base/log.hpp"
-#include "frames/multi/team.hpp"
+#include "stand/team.hpp"
 #include "support/errors.hpp"
 
 using namespace clarity;

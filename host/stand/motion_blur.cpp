@@ -1,4 +1,4 @@
-#include "frames/multi/motion_blur.hpp"
+#include "stand/motion_blur.hpp"
 
 #include <algorithm>
 #include <cstring>

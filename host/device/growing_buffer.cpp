@@ -1,4 +1,4 @@
-#include "picture/growing_buffer.hpp"
+#include "device/growing_buffer.hpp"
 
 #include <algorithm>
 #include <memory>

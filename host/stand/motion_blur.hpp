@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "frames/multi/multi_preparer.hpp"
 #include "moving/on_host/host_mover.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/motion/pose_time.hpp"
+#include "stand/multi_preparer.hpp"
 #include "view/view.hpp"
 
 namespace clarity {

@@ -1,4 +1,4 @@
-#include "frames/multi/pose_preparer.hpp"
+#include "stand/pose_preparer.hpp"
 
 #include <utility>
 
