@@ -13,9 +13,8 @@
 #include "api/library.hpp"
 #include "api/ray_arrays.hpp"
 #include "device/device.hpp"
-#include "frames/frame_renderer.hpp"
-#include "frames/preparer.hpp"
 #include "moving/follow/pose_follower.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "tracers/rays/ray_queries.hpp"
 #include "view/edit/edit.hpp"
 
@@ -86,13 +85,13 @@ struct clarity_tracer {
     template <class Take>
     void trace_all(const clarity_rays& rays, bool count_only, clarity::Progress& progress, const Take& take);
     clarity::View view_of(const clarity_picture& asked, const clarity::api::Words& words) const;
-    void trace_samples(const clarity::Prepared& prepared, const clarity::Settings& settings, const clarity::View& view,
-                       clarity::Progress& progress);
+    void trace_samples(const std::shared_ptr<const clarity::MultiPrepared>& prepared, const clarity::Settings& settings,
+                       const clarity::View& view, clarity::Progress& progress);
 
     std::shared_ptr<const clarity::Scene> imported_, placed_;
     clarity::Settings settings_;
     std::shared_ptr<clarity::Device> device_;
-    clarity::Preparer preparer_;
+    clarity::MultiPreparer preparer_;
     std::shared_ptr<const clarity::Prepared> prepared_;  // for ray queries
     uint64_t prepared_id_ = 0;                           // another one for each
     clarity::RayQueries queries_;
@@ -106,5 +105,5 @@ struct clarity_tracer {
     double traced_ms_ = 0;                          // since the last move
     uint64_t id_ = clarity::new_packing();          // of this tracer, and of rays that it packs for one call
     size_t batch_;                                  // rays that are traced in one go
-    std::optional<clarity::FrameRenderer> frames_;
+    std::optional<clarity::MultiFrameRenderer> frames_;
 };

@@ -7,7 +7,6 @@
 #include "device/cl_errors.hpp"
 #include "device/device_loss.hpp"
 #include "device/growing_buffer.hpp"
-#include "tracers/rays/ray_blocks.hpp"
 
 namespace clarity::api {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "api/clarity.h"
 #include "base/aligned_bytes.hpp"
-#include "tracers/rays/host_copies.hpp"
+#include "tracers/rays/ray_queries.hpp"
 
 namespace clarity::api {
 

@@ -7,7 +7,7 @@
 
 #include "api/clarity.h"
 #include "rt_types.h"
-#include "tracers/rays/ray_query.hpp"
+#include "tracers/rays/ray_queries.hpp"
 
 namespace clarity::api {
 

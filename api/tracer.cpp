@@ -6,7 +6,7 @@
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
 #include "device/cl_errors.hpp"
-#include "stand/query_scene.hpp"
+#include "launch/prepared.hpp"
 #include "view/settings/accel_choice.hpp"
 #include "view/settings/aov.hpp"
 #include "view/view.hpp"
@@ -102,7 +102,7 @@ clarity_tracer::clarity_tracer(const clarity_scene& scene, const clarity_options
       placed_(scene.placed),
       settings_(settings_of(options)),
       device_(open_device(text_of(options.device))),
-      preparer_(plugins(), device_),
+      preparer_(plugins(), {device_}),
       queries_(device_),
       keeping_(std::make_shared<KeepingDevice>(queries_.copies())),
       of_arrays_(scene.of_arrays),
@@ -300,14 +300,16 @@ View clarity_tracer::view_of(const clarity_picture& asked, const Words& words) c
     return visible_view(edited);
 }
 
-void clarity_tracer::trace_samples(const Prepared& prepared, const Settings& settings, const View& view, Progress& progress) {
+void clarity_tracer::trace_samples(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                                   const View& view, Progress& progress) {
     constexpr double kSamplesMs = 100;
     const auto all = static_cast<unsigned>(settings.spp);
     double wall_ms = 0;
     RayCounts counts;
     for (unsigned done = 0, next = std::min(all, 2u); done < all;) {
         if (!progress.report(float(done) / float(all))) throw Cancelled();
-        const FrameStats stats = frames_->trace(prepared, settings, view, Samples(done, next), true, progress);
+        PartOf part(progress, double(done) / all, double(next) / all);
+        const FrameStats stats = frames_->trace(prepared, settings, view, done, true, part, next);
         wall_ms += stats.wall_ms;
         counts += stats;
         done += next;
@@ -336,10 +338,13 @@ void clarity_tracer::render(const clarity_picture& asked, clarity_picture& pictu
             throw Error(Exit::usage, "the picture has " + std::to_string(floats) + " floats, and there is room for " +
                                          std::to_string(asked.room) + ": call with pixels = NULL to learn the size");
         settings.optics = optics_of(*placed_, view, settings);
-        const auto prepared = preparer_.prepare(placed_, settings, progress, prepared_->accel, {prepared_->on_device, false});
+        MovedStructure here;
+        here.accel = prepared_->accel;
+        here.on_devices = {{device_, prepared_->on_device}};
+        const auto prepared = preparer_.prepare(placed_, settings, progress, here);
         progress.stage("rendering");
-        if (!frames_) frames_.emplace(device_);
-        trace_samples(*prepared, settings, view, progress);
+        if (!frames_) frames_.emplace(Devices{device_});
+        trace_samples(prepared, settings, view, progress);
         const FloatImage image = frames_->read_picture(settings);
         std::copy(image.pixels.begin(), image.pixels.end(), asked.pixels);
     }

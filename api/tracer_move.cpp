@@ -4,8 +4,7 @@
 #include "api/handles.hpp"
 #include "api/positions.hpp"
 #include "base/log.hpp"
-#include "moving/on_host/host_mover.hpp"
-#include "stand/query_scene.hpp"
+#include "launch/prepared.hpp"
 
 namespace clarity::api {
 namespace {
@@ -85,7 +84,7 @@ void clarity_tracer::move(const clarity_places& places, Progress& progress) {
     if (!accel) {
         log(LogLevel::debug, "built anew: " + follower_.update().why);
         accel = preparer_.build(scene, settings_, progress);
-        follower_.built(from, scene, pose, accel, std::make_unique<HostMover>(scene, accel));
+        follower_.built(from, scene, pose, accel, MultiPreparer::host_mover(scene, accel));
     }
     prepared_ = prepare_queries(*device_, scene, accel, settings_, progress);
     prepared_id_ = new_packing();

@@ -19,7 +19,7 @@
 #include "device/device_loss.hpp"
 #include "import/import_in_worker.hpp"
 #include "plugin/trust.hpp"
-#include "structures/build_in_worker.hpp"
+#include "structures/accel_build.hpp"
 #include "tools/check/check.hpp"
 #include "tools/lab/build.hpp"
 #include "tools/lab/measure.hpp"

@@ -9,9 +9,9 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
-#include "stand/query_scene.hpp"
+#include "launch/prepared.hpp"
+#include "stand/multi_preparer.hpp"
 #include "stand/ray_text.hpp"
-#include "structures/accel_build.hpp"
 #include "tracers/rays/ray_queries.hpp"
 #include "view/edit/edit.hpp"
 #include "view/settings/accel_choice.hpp"
@@ -62,13 +62,7 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
         for (int k = 0; k < 3; ++k) rays[i].origin[k] = static_cast<float>(origins[i][k] - scene->origin[k]);
     origins = {};
 
-    const rt_plugin& plugin = *plugins.accel(settings.accel);
-    progress.stage(std::string("building ") + plugin.id);
-    const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
-    const BuildTarget target{&plugins.layout_of(plugin),
-                             device_for_builders(device->info(), static_cast<unsigned>(settings.lanes)),
-                             settings.debug ? BuildPlace::worker : BuildPlace::automatic};
-    const auto accel = std::make_shared<const AccelData>(build_accel(*scene, plugin, params, progress, target));
+    const auto accel = MultiPreparer(plugins, {device}).build(scene, settings, progress);
     const auto prepared = prepare_queries(*device, scene, accel, settings, progress);
     progress.stage("tracing rays");
     RayQueries queries(device);

@@ -106,7 +106,7 @@ void FrameScene::place(std::optional<int> frame) {
 }
 
 View FrameScene::view(const MotionBlur::Sample& sample) const {
-    View view = sample.view;
+    View view = *sample.view;
     if (!path_.empty()) view.camera = path_.at(sample.time_s);
     return view;
 }

@@ -10,7 +10,6 @@
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "kernels/program_cache.hpp"
 #include "stand/checkpoint.hpp"
 #include "view/settings/aov.hpp"
 
@@ -47,8 +46,7 @@ unsigned PictureCheckpoint::resume(MultiFrameRenderer& frames, const std::shared
                         "or the program have changed; leave --resume out to begin the picture anew");
     const FloatImage& sums = *checkpoint.sums;
     if (int(sums.width) != settings.width || int(sums.height / checkpoint.planes) != settings.height ||
-        checkpoint.planes != film_planes(prepared->first()->program->row) || checkpoint.samples == 0 ||
-        checkpoint.samples >= of_)
+        checkpoint.planes != prepared->planes() || checkpoint.samples == 0 || checkpoint.samples >= of_)
         throw Error(Exit::failed, resumed_ + ": holds " + plural(checkpoint.samples, "sample") + " of " +
                                       std::to_string(sums.width) + "x" + std::to_string(sums.height) +
                                       " pixels, which do not fit this picture; leave --resume out to begin it anew");

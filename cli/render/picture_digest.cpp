@@ -6,9 +6,9 @@
 #include "base/numbers.hpp"
 #include "cli/render/picture_goal.hpp"
 #include "device/kernel_files.hpp"
-#include "kernels/program_cache.hpp"
+#include "launch/prepared.hpp"
 #include "view/settings/aov.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity {
 namespace {
@@ -75,12 +75,7 @@ std::string pixel_digest(const ByteImage& image) {
     return digest.hex();
 }
 
-std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepared& prepared) {
-    Digest digest;
-    const KernelSource source = kernel_for(prepared, prepared.program->row);
-    digest.add(source.text);
-    digest.add(source.options);
-    for (const double parameter : prepared.settings.accel_params) digest.add_value(parameter);
+std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const MultiPrepared& prepared) {
     // Devices of one kind give the same bits, however many they are.
     std::vector<std::string> kinds;
     for (const DeviceInfo& device : devices) kinds.push_back(device.name_of_whole() + " (" + device.driver + ")");
@@ -88,7 +83,8 @@ std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepare
     kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
     std::string way;
     for (const std::string& kind : kinds) way += kind + ", ";
-    return way + prepared.settings.accel + ", " + prepared.settings.tracer + ", kernel " + digest.hex().substr(0, 8);
+    const Settings& settings = prepared.first()->settings;
+    return way + settings.accel + ", " + settings.tracer + ", kernel " + prepared.kernel_digest();
 }
 
 }  // namespace clarity

@@ -29,7 +29,7 @@ class PictureDigests {
 };
 
 // What decides the last bits of a picture besides: devices and drivers, structure, tracer and the text of the kernel.
-std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepared& prepared);
+std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const MultiPrepared& prepared);
 
 // Of the pixels themselves, whatever the file around them says.
 std::string pixel_digest(const FloatImage& image);

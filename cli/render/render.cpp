@@ -32,10 +32,10 @@
 #include "cli/render/render_progress.hpp"
 #include "cli/render/render_stats.hpp"
 #include "device/kernel_watch.hpp"
+#include "launch/prepared.hpp"
 #include "mpi/mpi_ranks.hpp"
 #include "picture/film_noise.hpp"
 #include "plugin/library_watch.hpp"
-#include "stand/multi_device_film.hpp"
 #include "stand/multi_frame_renderer.hpp"
 #include "view/settings/aov.hpp"
 #include "view/view.hpp"
@@ -281,8 +281,7 @@ class RenderJob {
         const auto begin = Clock::now();
         if (!preparer_) preparer_ = std::make_unique<MultiPreparer>(plugins_, devices_);
         blur_.reset();
-        MovedStructure shared;
-        if (mpi_) shared.accel = share_structure(progress);
+        const auto shared = mpi_ ? share_structure(progress) : nullptr;
         words_.settings.optics = optics_of(*scene_.scene(), scene_.view(), settings_);
         prepared_ = preparer_->prepare(scene_.scene(), settings_, progress, shared);
         stats_.prepared = prepared_->first();
@@ -314,8 +313,8 @@ class RenderJob {
         const std::string path = frame_path(options_.output, frame.number);
         bar_.stage("rendering " + std::filesystem::path(path).filename().string());
         const auto all = unsigned(settings_.spp);
-        PictureCheckpoint checkpoint(options_, frame.number, frame.digest, way_of_tracing(stats_.devices, *stats_.prepared),
-                                     all, mpi_);
+        PictureCheckpoint checkpoint(options_, frame.number, frame.digest, way_of_tracing(stats_.devices, *prepared_), all,
+                                     mpi_);
         resumed_ = 0;
         if (mpi_) gather_prepare_times(stats_, *mpi_);
         if (mpi_) say_at_deadline(words_of_rank(checkpoint));

@@ -12,7 +12,7 @@
 #include "cli/render/picture_goal.hpp"
 #include "picture/film_noise.hpp"
 #include "view/settings/aov.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity {
 namespace {

@@ -8,6 +8,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
+#include "launch/prepared.hpp"
 #include "stand/multi_frame_renderer.hpp"
 #include "tools/compare/picture_errors.hpp"
 #include "view/settings/aov.hpp"

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "device/source_writer.hpp"
 #include "kernels/scene_buffers.hpp"
 #include "kernels/scene_features.hpp"
-#include "kernels/source_writer.hpp"
 #include "plugin/capabilities.hpp"
 #include "rt_types.h"
 #include "scene/bright_texture.hpp"

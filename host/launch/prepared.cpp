@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "kernels/program_cache.hpp"
+#include "launch/device_scene.hpp"
 #include "view/view.hpp"
 
 namespace clarity {
@@ -9,6 +10,10 @@ namespace clarity {
 bool Prepared::knows(const View& view) const {
     const Optics known = optics_of(*scene) | settings.optics;
     return optics_known(program->row, known).covers(optics_known(program->row, optics_of(*scene, view, settings)));
+}
+
+uint64_t Prepared::device_bytes() const {
+    return on_device->bytes();
 }
 
 void Prepared::expect_known(const View& view) const {

@@ -28,6 +28,7 @@ struct Prepared {
     bool compile_cached = false;           // the program was compiled for an earlier Prepared
     // Whether the kernels know all lights and surfaces of a view. Else prepare() with optics_of() the view in the settings.
     bool knows(const View& view) const;
+    uint64_t device_bytes() const;  // of all buffers of the scene
     // Throws Error(failed) if they do not.
     void expect_known(const View& view) const;
 };

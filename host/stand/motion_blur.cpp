@@ -5,8 +5,12 @@
 #include <utility>
 
 #include "launch/device_scene.hpp"
+#include "launch/prepared.hpp"
+#include "moving/moved_instances.hpp"
+#include "moving/on_host/host_mover.hpp"
 #include "scene/camera.hpp"
 #include "view/edit/edit.hpp"
+#include "view/view.hpp"
 
 namespace clarity {
 namespace {
@@ -42,7 +46,7 @@ const MotionBlur::Sample& MotionBlur::at(unsigned sample, const View& view, Prog
         sample_.prepared.reset();  // its structure is written next
         sample_.prepared = prepare(pose, progress);
     }
-    sample_.view = view_at(view, pose);
+    sample_.view = std::make_shared<View>(view_at(view, pose));
     sample_.time_s = time_s;
     last_ = std::move(pose);
     return sample_;

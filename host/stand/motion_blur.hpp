@@ -3,7 +3,7 @@
 //   MotionBlur blur(source, shutter, prepared);      // prepared: the scene at the picture's time
 //   for (unsigned i = 0; i < shutter.samples; ++i) {
 //       const MotionBlur::Sample& sample = blur.at(i, view, progress);
-//       frames.trace(sample.prepared, settings, sample.view, i, ...);
+//       frames.trace(sample.prepared, settings, *sample.view, i, ...);
 //   }
 //
 // The structure of a sample is that of the picture's time, refitted; or, where that is not possible, built for the sample. So
@@ -17,13 +17,14 @@
 #include <string>
 #include <vector>
 
-#include "moving/on_host/host_mover.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/motion/pose_time.hpp"
 #include "stand/multi_preparer.hpp"
-#include "view/view.hpp"
 
 namespace clarity {
+
+class HostMover;
+struct View;
 
 // Used on one thread at a time.
 class MotionBlur {
@@ -42,7 +43,7 @@ class MotionBlur {
 
     struct Sample {
         std::shared_ptr<const MultiPrepared> prepared;
-        View view;
+        std::shared_ptr<View> view;  // another one for each sample
         double time_s = 0;
     };
     // view: the picture's. Its camera and lights follow those of the scene that they are. The result is valid until the next

@@ -10,21 +10,12 @@
 #include "base/error.hpp"
 #include "frames/frame_renderer.hpp"
 #include "stand/device_threads.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "stand/multi_preparer.hpp"
 #include "stand/ranks.hpp"
 #include "stand/tile_scheduler.hpp"
 
 namespace clarity {
-
-// A device failed while a picture with motion blur was traced. Its samples are of poses that are gone, so no other device can
-// trace them again: the picture must be begun anew, with sample 0. The other devices go on.
-class SamplesLost : public Error {
- public:
-    SamplesLost()
-        : Error(Exit::failed,
-                "a device failed in the middle of a picture with motion blur, so that its part of the picture is "
-                "lost: render the picture again") {}
-};
 
 // Used from one thread. A device that fails takes no further part. Functions throw its error when no device is left.
 class MultiDeviceFilm {

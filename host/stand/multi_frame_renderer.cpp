@@ -5,9 +5,12 @@
 
 #include "base/progress.hpp"
 #include "device/cl_errors.hpp"
+#include "frames/frame_renderer.hpp"
 #include "frames/frame_stats.hpp"
 #include "kernels/program_cache.hpp"
+#include "launch/frame_constants.hpp"
 #include "picture/film.hpp"
+#include "picture/film_noise.hpp"
 #include "picture/pinned_memory_pool.hpp"
 #include "stand/multi_device_film.hpp"
 #include "view/settings/aov.hpp"
@@ -93,7 +96,7 @@ struct MultiFrameRenderer::Impl {
 
     // The film of all devices and ranks on the first device that works; null: this rank is not the first.
     FrameRenderer* gather(const Settings& settings) {
-        const FloatImage sums = planes(film_planes(prepared->first()->program->row));
+        const FloatImage sums = planes(prepared->planes());
         if (ranks && ranks->rank() != 0) return nullptr;
         size_t first = 0;
         while (first + 1 < shared->size() && !(shared->works(first) && prepared->of(shared->device(first)))) ++first;
@@ -139,7 +142,7 @@ FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>&
     im.height = unsigned(settings.height);
     const unsigned end = sample + samples;
     // With `adaptive` the picture depends on the first samples of all of its pixels, and on nothing else that is traced.
-    const double bound = planes() > 1 ? adaptive_bound(settings) : 0;
+    const double bound = prepared->planes() > 1 ? adaptive_bound(settings) : 0;
     if (bound == 0) return im.trace(settings, view, sample, end, count_rays, progress, meanwhile);
     FrameStats all;
     for (unsigned first = sample; first < end;) {
@@ -155,7 +158,7 @@ FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>&
 }
 
 unsigned MultiFrameRenderer::planes() const {
-    return film_planes(impl_->prepared->first()->program->row);
+    return impl_->prepared->planes();
 }
 
 bool MultiFrameRenderer::has_guides() const {
@@ -259,6 +262,10 @@ AsyncReadback MultiFrameRenderer::begin_display(const Settings& settings) {
 
 bool MultiFrameRenderer::overlaps_copies() const {
     return impl_->alone && impl_->alone->overlaps_copies();
+}
+
+rt_frame frame_constants(const View& view, const Settings& settings) {
+    return make_frame(view, settings, Layout(), AccelData(), 0);
 }
 
 }  // namespace clarity

@@ -6,15 +6,33 @@
 // no time, the fastest traces alone (TeamChoice). If a device fails, a warning is logged and the other devices trace its
 // tiles again.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
-#include "frames/frame_renderer.hpp"
-#include "picture/film_noise.hpp"
+#include "base/error.hpp"
+#include "base/pictures/image_io.hpp"
+#include "frames/frame_stats.hpp"
+#include "rt_types.h"
 #include "stand/multi_preparer.hpp"
 #include "stand/ranks.hpp"
 
 namespace clarity {
+
+class AsyncReadback;
+struct FalseColorScale;
+struct FilmNoise;
+struct View;
+
+// A device failed while a picture with motion blur was traced. Its samples are of poses that are gone, so no other device can
+// trace them again: the picture must be begun anew, with sample 0. The other devices go on.
+class SamplesLost : public Error {
+ public:
+    SamplesLost()
+        : Error(Exit::failed,
+                "a device failed in the middle of a picture with motion blur, so that its part of the picture is "
+                "lost: render the picture again") {}
+};
 
 // Has the functions of FrameRenderer, for one device or several. Used from one thread.
 class MultiFrameRenderer {
@@ -65,5 +83,8 @@ class MultiFrameRenderer {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+// The constants of a frame, for others who trace it: they have no structure of ours, and thus no root and no planes.
+rt_frame frame_constants(const View& view, const Settings& settings);
 
 }  // namespace clarity

@@ -7,10 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/digest.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "device/cl_errors.hpp"
 #include "device/device.hpp"
+#include "device/program.hpp"
+#include "frames/preparer.hpp"
+#include "kernels/program_cache.hpp"
 #include "launch/device_scene.hpp"
 #include "moving/moved_instances.hpp"
 #include "moving/on_device/device_mover.hpp"
@@ -131,6 +135,28 @@ std::string devices_name(const std::vector<DeviceInfo>& infos) {
     return text;
 }
 
+unsigned MultiPrepared::planes() const {
+    return film_planes(first()->program->row);
+}
+
+std::string MultiPrepared::kernel_digest() const {
+    const KernelSource source = kernel_for(*first(), first()->program->row);
+    Digest digest;
+    digest.add(source.text);
+    digest.add(source.options);
+    for (const double parameter : first()->settings.accel_params) digest.add_value(parameter);
+    return digest.hex().substr(0, 8);
+}
+
+CompiledOnce compile_once_more(const MultiPrepared& prepared, const std::string& text, const std::string& options) {
+    Device& device = *prepared.parts.front().device;
+    const KernelRow& row = prepared.first()->program->row;
+    const KernelSource source = kernel_for(*prepared.first(), row);
+    const std::string whole = source.text + text;
+    const BuildResult built = build_program(device, whole, options_for(device.info(), source) + options, source.what);
+    return {built.program, whole, built.log, row.entry};
+}
+
 const std::shared_ptr<const Prepared>* MultiPrepared::of(const std::shared_ptr<Device>& device) const {
     for (const Part& part : parts)
         if (part.device == device) return &part.prepared;
@@ -150,6 +176,22 @@ std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene
 MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devices)
     : plugins_(plugins), infos_(infos_of(devices)), devices_(devices) {
     for (const auto& device : devices) preparers_.push_back(std::make_unique<Preparer>(plugins, device));
+}
+
+MultiPreparer::~MultiPreparer() = default;
+
+std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
+                                                            Progress& progress, std::shared_ptr<const AccelData> built) {
+    MovedStructure structure;
+    structure.accel = std::move(built);
+    return prepare(std::move(scene), settings, progress, structure);
+}
+
+std::shared_ptr<const AccelData> MultiPreparer::build(const std::shared_ptr<const Scene>& scene, const Settings& asked,
+                                                      Progress& progress) {
+    Settings settings = asked;
+    resolve_accel(plugins_, kind_of(infos_), settings);
+    return roomiest().build(scene, settings, progress);
 }
 
 std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& asked,
@@ -191,6 +233,11 @@ std::unique_ptr<PoseMover> MultiPreparer::mover(const std::shared_ptr<const Scen
         if (auto mover = make_device_mover(scene, built, rest, on_devices, &why)) return mover;
         log(LogLevel::info, "the scene moves on the host: " + why);
     }
+    return host_mover(scene, built);
+}
+
+std::unique_ptr<PoseMover> MultiPreparer::host_mover(const std::shared_ptr<const Scene>& scene,
+                                                     const std::shared_ptr<const AccelData>& built) {
     return std::make_unique<HostMover>(scene, built);
 }
 
@@ -229,6 +276,25 @@ void MultiPreparer::open_devices(const Devices& devices) {
                 devices_[i] = device;
                 preparers_[i]->open_device(device);
             }
+}
+
+std::shared_ptr<const Prepared> prepare_queries(Device& device, std::shared_ptr<const Scene> scene,
+                                                std::shared_ptr<const AccelData> accel, const Settings& settings,
+                                                Progress& progress) {
+    auto prepared = std::make_shared<Prepared>();
+    prepared->scene = scene;
+    prepared->accel = accel;
+    Settings& s = prepared->settings = settings;
+    s.accel = accel->plugin->id;
+    s.accel_params = accel->params;
+    resolve_packet(s, device.info());
+    prepared->layout = make_layout(s, device.info().traces_packets());
+    progress.stage("uploading the scene");
+    wrap_cl_errors(device, "uploading the scene", [&] {
+        prepared->on_device = std::make_shared<DeviceScene>(device, std::move(scene), std::move(accel), progress);
+        return 0;
+    });
+    return prepared;
 }
 
 }  // namespace clarity

@@ -3,10 +3,14 @@
 #pragma once
 #include <memory>
 
-#include "moving/follow/pose_follower.hpp"
 #include "stand/multi_preparer.hpp"
 
 namespace clarity {
+
+class PoseFollower;
+struct BuiltPose;
+struct PosedFrom;
+struct PoseUpdate;
 
 // A scene in a pose, as the caller holds it.
 class PosedScene {
@@ -25,11 +29,15 @@ class PosedScene {
 // Of one side of the window. Used from one thread, each time with the same preparer.
 class PosePreparer {
  public:
+    PosePreparer();
+    ~PosePreparer();
+    PosePreparer(PosePreparer&&) noexcept;
+    PosePreparer& operator=(PosePreparer&&) noexcept;
     // frame_ms: time of a frame, for the choice between refit and build; 0: not known. Throws as MultiPreparer::prepare() and
     // PoseFollower::refit().
     std::shared_ptr<const MultiPrepared> prepare(MultiPreparer& preparer, PosedScene& shown, const Settings& settings,
                                                  double frame_ms, Progress& progress);
-    const PoseUpdate& update() const { return follower_.update(); }
+    const PoseUpdate& update() const;
     // Forgets everything.
     void reset();
     // Lets go of all that is on devices. stuck: these cannot release anything any more.
@@ -40,7 +48,7 @@ class PosePreparer {
     void take_build(MultiPreparer& preparer, const PosedScene& shown, const Settings& settings, Progress& progress);
     void built(const MultiPreparer& preparer, const PosedScene& shown, const Settings& settings, const BuiltPose& pose);
 
-    PoseFollower follower_;
+    std::unique_ptr<PoseFollower> follower_;
     std::shared_ptr<const MultiPrepared> built_;  // of the last build that the follower follows
 };
 

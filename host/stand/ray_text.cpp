@@ -10,6 +10,7 @@
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
 #include "base/text.hpp"
+#include "tracers/rays/ray_query.hpp"
 
 namespace clarity {
 namespace {

@@ -5,9 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "tracers/rays/ray_query.hpp"
+#include "rt_types.h"
 
 namespace clarity {
+
+struct AllHits;
+struct RayWork;
 
 // Reads a ray a line: origin x y z, t_min, direction x y z, t_max, separated by white space or commas. `inf` and `nan` are
 // numbers, too. Text after # is a comment; lines without numbers are skipped. Throws Error(usage) "FILE:LINE:COLUMN: why".

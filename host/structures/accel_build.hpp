@@ -77,6 +77,21 @@ void take_result(BuilderResultIn<Bytes>& result, AccelData& data, const Take& ta
             data.bytes += data.slots[s].count * data.layout->accel->slots[s].elem_bytes;
 }
 
+// Copies the structure. For each slot and for the leaves, memory(bytes of `from`) returns the bytes of the copy: its own copy
+// of them, or the same bytes, borrowed.
+template <class Memory>
+AccelData copy_of(const AccelData& from, Memory&& memory) {
+    AccelData copy;
+    static_cast<AccelFacts&>(copy) = from;
+    for (const AccelData::Slot& slot : from.slots) copy.slots.push_back({memory(slot.memory), slot.count});
+    copy.leaves = memory(from.leaves);
+    copy.leaf_count = from.leaf_count;
+    copy.instances = from.instances;
+    copy.scene = from.scene;
+    static_assert(has_member_count<AccelData, 6>, "a new member has to be copied here");
+    return copy;
+}
+
 // What decides about a build besides the plugin, the scene and the parameters.
 inline rt_device unknown_device() {
     rt_device device{};

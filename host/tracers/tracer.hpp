@@ -15,7 +15,7 @@
 #include "picture/film.hpp"
 #include "picture/overflow_counter.hpp"
 #include "picture/ray_counts.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 #include "view/view.hpp"
 
 namespace clarity {

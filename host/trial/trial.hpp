@@ -10,7 +10,6 @@
 #include "base/progress.hpp"
 #include "kernels/program_cache.hpp"
 #include "launch/prepared.hpp"
-#include "worker/job.hpp"
 
 namespace clarity {
 
@@ -24,7 +23,5 @@ std::shared_ptr<TraceProgram> tried_program(ProgramCache& programs, const Prepar
 
 // The same for the film's program, which is not compiled here. For any thread.
 void try_film(const DeviceInfo& info, const Settings& settings, Progress& progress);
-
-extern const worker::JobKind kTrialJob;
 
 }  // namespace clarity

@@ -10,6 +10,7 @@
 #include "kernels/scene_features.hpp"
 #include "scene/scene.hpp"
 #include "view/settings/settings.hpp"
+#include "worker/job.hpp"
 
 namespace clarity {
 
@@ -32,6 +33,8 @@ std::vector<TrialShape> sample_shapes(const Scene& scene);
 // Adds one of them to a scene, so that it fits into a ball of this centre and radius. kind: index in Scene::shape_kinds.
 void add_shape(Scene& scene, const TrialShape& shape, rt_u32 kind, rt_u32 material, const std::array<float, 3>& center,
                float radius);
+
+extern const worker::JobKind kTrialJob;
 
 inline constexpr const char* kFilmKernels = "film";
 

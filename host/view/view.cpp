@@ -12,7 +12,7 @@
 #include "scene/light_kinds.hpp"
 #include "scene/surface_models.hpp"
 #include "scene/vec.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity {
 namespace {

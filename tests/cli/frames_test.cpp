@@ -12,7 +12,7 @@
 #include "base/machine.hpp"
 #include "cli/run_program.hpp"
 #include "support/scratch.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 
 namespace fs = std::filesystem;
 

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "import/import.hpp"
+#include "stand/levels.hpp"
 #include "stand/ray_sets.hpp"
-#include "structures/accel_volumes.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch.hpp"

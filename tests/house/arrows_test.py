@@ -22,6 +22,8 @@ PLANTED = [  # what is told, file, its text
     ("tools/bench does not include tools/check", "tools/bench/run/new.cpp", '#include "tools/check/check.hpp"\n'),
     ("api does not include cli", "api/new.cpp", '#include "cli/commands.hpp"\n'),
     ("base does not include tests", "host/base/new.cpp", '#include "tests/support/quick.hpp"\n'),
+    ("are seen from outside, and at most", "cli/new.cpp", '#include "kernels/kernel_source.hpp"\n'),
+    ("are seen from outside, and at most", "host/stand/levels.hpp", '#include "structures/memory_plan.hpp"\n'),
     ("its folder is in no room", "host/new_room/new.cpp", ""),
     ("its folder is in no room", "new_room/new.hpp", ""),
     ("its folders on_device and on_host include each other", "host/moving/on_host/new.cpp", '#include "moving/on_device/%s"\n'),

@@ -7,7 +7,7 @@
 #include "kernels/scene_features.hpp"
 #include "scene/light_kinds.hpp"
 #include "support/generated.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 #include "view/view.hpp"
 
 using namespace clarity;

@@ -9,7 +9,7 @@
 #include "moving/on_host/host_mover.hpp"
 #include "moving_scenes.hpp"
 #include "scene/motion/deform.hpp"
-#include "stand/query_scene.hpp"
+#include "stand/multi_preparer.hpp"
 #include "support/scenes.hpp"
 
 namespace clarity::test {

@@ -7,7 +7,7 @@
 #include "moving/on_host/host_mover.hpp"
 #include "moving_scenes.hpp"
 #include "plugin/capabilities.hpp"
-#include "stand/query_scene.hpp"
+#include "stand/multi_preparer.hpp"
 
 namespace clarity::test {
 namespace {

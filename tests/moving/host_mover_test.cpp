@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "moving_scenes.hpp"
 #include "plugin/capabilities.hpp"
-#include "stand/query_scene.hpp"
+#include "stand/multi_preparer.hpp"
 #include "support/workbench.hpp"
 #include "tracers/rays/ray_queries.hpp"
 #include "view/settings/accel_choice.hpp"

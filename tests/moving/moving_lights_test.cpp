@@ -164,7 +164,7 @@ TEST_P(MovingLights, BlurIsTheMeanOfStillPictures) {
     MotionBlur blur(source, {0.5, 1, 256}, team.preparer.prepare(middle, with_optics(blurred, *middle, view), team.progress));
     for (unsigned i = 0; i < 256; ++i) {
         const MotionBlur::Sample& sample = blur.at(i, view, team.progress);
-        team.frames.trace(sample.prepared, blurred, sample.view, i, false, team.progress);
+        team.frames.trace(sample.prepared, blurred, *sample.view, i, false, team.progress);
     }
     EXPECT_EQ(blur.refitted(), 256u);
     const std::array<double, 6> seen = parts(team.frames.read_values());

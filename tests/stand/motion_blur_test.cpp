@@ -87,7 +87,7 @@ class Blur : public ::testing::Test {
         MotionBlur blur(source, shutter, team.preparer.prepare(scene, settings, team.progress));
         for (unsigned i = 0; i < shutter.samples; ++i) {
             const MotionBlur::Sample& sample = blur.at(i, view_of(*scene), team.progress);
-            team.frames.trace(sample.prepared, settings, sample.view, i, false, team.progress);
+            team.frames.trace(sample.prepared, settings, *sample.view, i, false, team.progress);
         }
         return {team.frames.read_values(), blur.refitted(), blur.built()};
     }
@@ -194,9 +194,9 @@ TEST_F(Blur, WhatDoesNotMoveIsNeitherBuiltNorUploaded) {
     for (unsigned i = 0; i < 4; ++i) {
         const MotionBlur::Sample& sample = blur.at(i, view_of(*scene), team.progress);
         EXPECT_EQ(sample.prepared, prepared);
-        lamps.insert(sample.view.lights.at(0).position[0]);
-        targets.insert(sample.view.camera.target[0]);
-        EXPECT_EQ(sample.view.lights.at(0).position[0], evaluate(*rest_, {}, sample.time_s).lights.at(0).values.position[0]);
+        lamps.insert(sample.view->lights.at(0).position[0]);
+        targets.insert(sample.view->camera.target[0]);
+        EXPECT_EQ(sample.view->lights.at(0).position[0], evaluate(*rest_, {}, sample.time_s).lights.at(0).values.position[0]);
     }
     EXPECT_EQ(lamps.size(), 4u);
     EXPECT_EQ(targets.size(), 4u);
@@ -205,8 +205,8 @@ TEST_F(Blur, WhatDoesNotMoveIsNeitherBuiltNorUploaded) {
     own.camera.eye[0] += 1;
     own.lights[0].position[1] += 1;
     const MotionBlur::Sample& sample = blur.at(1, own, team.progress);
-    EXPECT_EQ(sample.view.camera.eye, own.camera.eye);
-    EXPECT_EQ(sample.view.lights[0].position[0], own.lights[0].position[0]);
+    EXPECT_EQ(sample.view->camera.eye, own.camera.eye);
+    EXPECT_EQ(sample.view->lights[0].position[0], own.lights[0].position[0]);
 }
 
 TEST_F(Blur, PicturesBeforeLeaveNoTrace) {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "view/settings/accel_choice.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 #include "view/view.hpp"
 
 namespace clarity::test {

@@ -8,7 +8,7 @@
 
 #include "base/files/parcel.hpp"
 #include "import/wire.hpp"
-#include "structures/build_in_worker.hpp"
+#include "structures/accel_build.hpp"
 #include "tools/check/steps.hpp"
 #include "worker/job.hpp"
 

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "import/wire.hpp"
-#include "structures/build_in_worker.hpp"
+#include "structures/accel_build.hpp"
 #include "tools/lab/lab.hpp"
 #include "worker/job.hpp"
 

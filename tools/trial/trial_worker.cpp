@@ -18,18 +18,14 @@
 #include "base/problem.hpp"
 #include "device/cl_errors.hpp"
 #include "device/device.hpp"
-#include "frames/preparer.hpp"
-#include "kernels/scene_features.hpp"
 #include "plugin/registry.hpp"
 #include "scene/material_keys.hpp"
 #include "scene/scene.hpp"
 #include "scene/surface_models.hpp"
 #include "scene/tangents.hpp"
-#include "stand/query_scene.hpp"
+#include "stand/multi_preparer.hpp"
 #include "stand/triangle_mesh.hpp"
-#include "structures/accel_copy.hpp"
 #include "tracers/smoke.hpp"
-#include "trial/trial.hpp"
 #include "trial/trial_job.hpp"
 #include "worker/child.hpp"
 #include "worker/guarded_memory.hpp"
@@ -232,7 +228,7 @@ Problem try_on_small_scene(const TrialJob& job, const PluginRegistry& plugins, c
     settings.spp = 1;
     settings.shutter = 0;
     TrialProgress progress(say_step);
-    Preparer preparer(plugins, device);
+    MultiPreparer preparer(plugins, {device});
     std::list<GuardedBytes> memory;  // outlives all that uses the structure
     const auto accel = guarded(*preparer.build(scene, settings, progress), job.defines, memory);
     const auto prepared = prepare_queries(*device, scene, accel, settings, progress);

@@ -1,4 +1,5 @@
-// trial_worker.hpp -- tries kernels on a small scene, in a worker: what the core starts as the job kTrialJob (trial/trial.hpp).
+// trial_worker.hpp -- tries kernels on a small scene, in a worker: what the core starts as the job kTrialJob
+// (trial/trial_job.hpp).
 #pragma once
 #include "worker/job.hpp"
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "base/log.hpp"
-#include "moving/on_device/read_back.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -74,7 +73,7 @@ void VolumeOverlay::update_side(Side& side, const ShownStructure& structure) {
         if (!structure.is_moved)
             static_cast<Volumes&>(*found) = accel_volumes(*structure.accel, level, kLimit + 1);
         else if (const auto moved = structure.moved.lock())  // else a newer pose follows
-            static_cast<Volumes&>(*found) = accel_volumes(read_back(*structure.accel, *moved), level, kLimit + 1);
+            static_cast<Volumes&>(*found) = accel_volumes(*structure.accel, level, kLimit + 1, moved.get());
         found->more = found->boxes.size() + found->spheres.size() > kLimit;
         if (found->more && found->spheres.empty())
             found->boxes.pop_back();

@@ -7,8 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "launch/device_scene.hpp"
-#include "structures/accel_volumes.hpp"
+#include "stand/levels.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/widgets/rect.hpp"
 

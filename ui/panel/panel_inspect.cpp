@@ -17,7 +17,7 @@
 #include "ui/widgets/scene_rows.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -5,7 +5,7 @@
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 namespace {

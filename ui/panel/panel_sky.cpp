@@ -6,8 +6,8 @@
 #include "ui/session/session_view.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
-#include "view/edit/sky_edit.hpp"
-#include "view/settings/tracer_choice.hpp"
+#include "view/edit/edit.hpp"
+#include "view/settings/settings.hpp"
 
 namespace clarity::ui {
 namespace {

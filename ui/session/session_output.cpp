@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "view/edit/scene_text.hpp"
+#include "view/edit/edit.hpp"
 #include "view/settings/aov.hpp"
 
 namespace clarity::ui {

@@ -9,7 +9,6 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "stand/multi_device_film.hpp"
 #include "tools/compare/picture_errors.hpp"
 #include "ui/threads/picture.hpp"
 #include "ui/threads/thread_priority.hpp"
@@ -360,7 +359,7 @@ MotionBlur::Sample FrameThread::sample_of(Tracer& tracer, const FrameJob& job, c
     if (!(job.open_s > 0) || !job.ready->blur_source || !job.ready->request.pose.time_s) {
         tracer.blur.reset();
         tracer.blur_of.reset();
-        return {on_devices.prepared, job.view, 0};
+        return {on_devices.prepared, std::make_shared<View>(job.view), 0};
     }
     const Shutter shutter = {*job.ready->request.pose.time_s, job.open_s, static_cast<unsigned>(job.settings.spp)};
     if (!tracer.blur || tracer.blur_of != job.ready || !(tracer.blur->shutter() == shutter)) {
@@ -370,7 +369,7 @@ MotionBlur::Sample FrameThread::sample_of(Tracer& tracer, const FrameJob& job, c
         tracer.blur_of = job.ready;
     }
     MotionBlur::Sample posed = tracer.blur->at(sample, job.view, progress);
-    if (!job.camera_path.empty()) posed.view.camera = job.camera_path.at(posed.time_s);
+    if (!job.camera_path.empty()) posed.view->camera = job.camera_path.at(posed.time_s);
     return posed;
 }
 
@@ -428,8 +427,8 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
     const auto side_of = [&](size_t i, const ReadySide& side, const OnDevices& on_devices, const Settings& settings) {
         const MotionBlur::Sample posed = retrace ? sample_of(tracers_[i], job, side, on_devices, sample, *progress)
-                                                 : MotionBlur::Sample{on_devices.prepared, job.view, 0};
-        return trace_side(tracers_[i], posed.prepared, sized(side, settings, before[i]), posed.view, order, before[i],
+                                                 : MotionBlur::Sample{on_devices.prepared, std::make_shared<View>(job.view), 0};
+        return trace_side(tracers_[i], posed.prepared, sized(side, settings, before[i]), *posed.view, order, before[i],
                           *progress, traced.image);
     };
     picture->main = side_of(0, job.ready->main, *on_main, job.settings);

@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "device/async_readback.hpp"
 #include "stand/multi_frame_renderer.hpp"
 #include "ui/threads/picture.hpp"
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "picture/false_colors.hpp"
 #include "scene/camera.hpp"
 #include "tools/compare/picture_errors.hpp"
 #include "view/settings/aov.hpp"

@@ -5,11 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "picture/false_colors.hpp"
 #include "picture/film_noise.hpp"
 #include "stand/multi_frame_renderer.hpp"
 #include "ui/threads/picture_part.hpp"
 #include "ui/threads/prepared_scene.hpp"
+#include "view/settings/aov.hpp"
 
 namespace clarity::ui {
 

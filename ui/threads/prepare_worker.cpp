@@ -6,6 +6,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "launch/prepared.hpp"
 #include "ui/threads/thread_priority.hpp"
 
 namespace clarity::ui {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "launch/device_scene.hpp"
+#include "launch/prepared.hpp"
 #include "scene/motion/deform.hpp"
 #include "view/view.hpp"
 
@@ -39,7 +39,7 @@ ReadySide::ReadySide(Devices chosen, std::shared_ptr<const MultiPrepared> prepar
     compile_ms = first.compile_ms;
     compile_cached = first.compile_cached;
     program = first.program;
-    device_bytes = first.on_device->bytes();
+    device_bytes = first.device_bytes();
     loan = std::make_shared<DeviceLoan>(OnDevices{std::move(chosen), std::move(prepared)});
 }
 

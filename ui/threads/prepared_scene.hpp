@@ -13,6 +13,10 @@
 #include "stand/motion_blur.hpp"
 #include "ui/threads/desired_state.hpp"
 
+namespace clarity {
+class TraceProgram;
+}
+
 namespace clarity::ui {
 
 // The files of a scene.

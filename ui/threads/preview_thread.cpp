@@ -8,6 +8,7 @@
 
 #include "base/angle.hpp"
 #include "base/error.hpp"
+#include "launch/prepared.hpp"
 #include "scene/light_kinds.hpp"
 #include "scene/scene.hpp"
 #include "scene/tangents.hpp"
@@ -263,7 +264,7 @@ void PreviewThread::run() {
 }
 
 void PreviewThread::prepare(const PreviewJob& job, const View& view, Progress& progress) {
-    Settings settings = tracer_.prepared ? tracer_.prepared->settings : Settings();
+    Settings settings = tracer_.prepared ? tracer_.prepared->first()->settings : Settings();
     settings.width = settings.height = static_cast<int>(job.size);
     settings.tracer = "path";
     settings.depth = 12;
@@ -284,8 +285,8 @@ void PreviewThread::trace(const PreviewJob& job, unsigned sample, Preview& previ
         tracer_ = {};
         tracer_.of = device;
         tracer_.device = device->with_own_queue();
-        tracer_.preparer = std::make_unique<Preparer>(plugins_, tracer_.device);
-        tracer_.frames = std::make_unique<FrameRenderer>(tracer_.device);
+        tracer_.preparer = std::make_unique<MultiPreparer>(plugins_, Devices{tracer_.device});
+        tracer_.frames = std::make_unique<MultiFrameRenderer>(Devices{tracer_.device});
     }
     if (!scene_ || !(scene_of_ == Ball(job))) {
         scene_ = std::make_shared<const Scene>(preview_scene(*job.ready->scene, job.material));
@@ -296,14 +297,14 @@ void PreviewThread::trace(const PreviewJob& job, unsigned sample, Preview& previ
     const rt_u32 texture = view.materials[kPreviewMaterial].texture;
     view.materials[kPreviewMaterial] = job.values;
     view.materials[kPreviewMaterial].texture = texture;
-    const std::shared_ptr<const Prepared>& prepared = tracer_.prepared;
-    if (!prepared || prepared->scene != scene_ || kernel_revision_ != job.ready->request.kernel_revision ||
-        !prepared->knows(view))
+    const std::shared_ptr<const MultiPrepared>& prepared = tracer_.prepared;
+    if (!prepared || prepared->first()->scene != scene_ || kernel_revision_ != job.ready->request.kernel_revision ||
+        !prepared->first()->knows(view))
         prepare(job, view, progress);
-    Settings settings = prepared->settings;
+    Settings settings = prepared->first()->settings;
     settings.width = settings.height = static_cast<int>(job.size);
     settings.spp = kSamples;
-    tracer_.frames->trace(*prepared, settings, view, {sample, 1}, false, progress);
+    tracer_.frames->trace(prepared, settings, view, sample, false, progress);
     preview.samples = sample + 1;
     if (is_power_of_two(preview.samples) || preview.samples == kSamples) preview.image = tracer_.frames->read_display(settings);
 }

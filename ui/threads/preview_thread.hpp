@@ -7,8 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "frames/frame_renderer.hpp"
-#include "frames/preparer.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
@@ -49,9 +48,9 @@ class PreviewThread {
     // What is on the device. Only the thread uses it, and release() while the thread rests.
     struct Tracer {
         std::shared_ptr<Device> of, device;  // that of the window's picture, and the same with a queue of its own
-        std::unique_ptr<Preparer> preparer;
-        std::unique_ptr<FrameRenderer> frames;
-        std::shared_ptr<const Prepared> prepared;
+        std::unique_ptr<MultiPreparer> preparer;
+        std::unique_ptr<MultiFrameRenderer> frames;
+        std::shared_ptr<const MultiPrepared> prepared;
     };
     // What the scene of a ball is made of.
     struct Ball {

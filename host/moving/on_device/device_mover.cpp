@@ -7,7 +7,6 @@
 
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
-#include "structures/accel_copy.hpp"
 
 namespace clarity {
 namespace {

@@ -11,7 +11,6 @@
 #include "base/scoped_fp_mode.hpp"
 #include "plugin/capabilities.hpp"
 #include "plugin/host_services.hpp"
-#include "structures/accel_copy.hpp"
 
 namespace clarity {
 namespace {

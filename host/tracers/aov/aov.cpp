@@ -1,7 +1,7 @@
 // aov.cpp -- the tracer of AOVs: one property of what the camera rays hit, without shading.
 #include "view/settings/aov.hpp"
 
-#include "kernels/source_writer.hpp"
+#include "device/source_writer.hpp"
 #include "tracers/tracer.hpp"
 
 namespace clarity {

@@ -1,7 +1,7 @@
 // iterative.cpp -- the tracer `iterative`: a work-item traces all generations of its packet, as in the thesis.
 #include "tracers/iterative/iterative.hpp"
 
-#include "kernels/source_writer.hpp"
+#include "device/source_writer.hpp"
 #include "tracers/tracer.hpp"
 #include "view/settings/aov.hpp"
 

@@ -65,4 +65,24 @@ inline bool changes_scene(const EditedView& edited) {
     return !edited.instances.empty() || !edited.maps.empty();
 }
 
+// Whether the scene can have a sky of that kind: pictures come from files.
+bool is_possible_sky(const Scene& scene, rt_u32 kind);
+// Another kind of sky, which looks like the one before as far as it can. Words do not use it: they say all that changes.
+void choose_sky_kind(const Scene& scene, const View& view, rt_u32 kind, SkyValues& sky);
+
+// A scene that is saved with its edits as a text scene (docs/scene_format.md).
+struct SceneToSave {
+    const Scene& imported;
+    const std::vector<std::string>& files;  // that it was imported from
+    const EditedView& edited;               // with the edits that the files make themselves
+};
+// Writes a .scene that shows the same: it loads the files, and makes the edits. If `path` is the only file and a .scene, it
+// keeps its own text, and its edits, its surroundings and the camera that this function wrote are replaced. The file appears
+// whole or not at all. Throws Error(usage) if the path does not end in .scene, and Error(failed).
+void save_scene(const SceneToSave& scene, const std::string& path);
+// The files of the pictures that edits give to materials.
+std::vector<std::string> given_pictures(const Scene& scene, const MapEdits& maps);
+// The folders besides that of `path` which a reader must allow (--search-path), because files lie there.
+std::vector<std::string> folders_outside(const std::vector<std::string>& files, const std::string& path);
+
 }  // namespace clarity

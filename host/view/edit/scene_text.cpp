@@ -1,4 +1,4 @@
-#include "view/edit/scene_text.hpp"
+#include "view/edit/edit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -12,10 +12,6 @@ struct Word;
 
 // key: "sky" or "sky.KEY". Throws Error(usage).
 void read_sky(const Scene& scene, View& view, const std::string& key, const std::string& value);
-// Whether the scene can have a sky of that kind: pictures come from files.
-bool is_possible_sky(const Scene& scene, rt_u32 kind);
-// Another kind of sky, which looks like the one before as far as it can. Words do not use it: they say all that changes.
-void choose_sky_kind(const Scene& scene, const View& view, rt_u32 kind, SkyValues& sky);
 // The words that turn one sky into another one.
 void add_sky_words(const SkyValues& was, const SkyValues& is, std::vector<Word>& words);
 // "gradient  zenith 1 1 1  strength 2": all that the sky is made of.

@@ -8,7 +8,6 @@
 #include "base/numbers.hpp"
 #include "rt_types.h"
 #include "view/settings/aov.hpp"
-#include "view/settings/tracer_choice.hpp"
 
 namespace clarity {
 namespace {

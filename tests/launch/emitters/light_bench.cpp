@@ -9,7 +9,7 @@
 #include "launch/emitters/emitter_table.hpp"
 #include "launch/frame_constants.hpp"
 #include "launch/view_buffers.hpp"
-#include "stand/query_scene.hpp"
+#include "stand/multi_preparer.hpp"
 
 namespace clarity::test {
 namespace {

@@ -1,5 +1,5 @@
 // Scenes that are saved with their edits: loading the saved file gives the same picture.
-#include "view/edit/scene_text.hpp"
+#include "view/edit/edit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "launch/frame_constants.hpp"
 #include "scene/light_kinds.hpp"
+#include "stand/multi_frame_renderer.hpp"
 
 namespace clarity::bench {
 
@@ -28,9 +28,7 @@ View whitted_view(const Scene& scene, View view) {
 
 WhittedScene whitted_scene(const View& view, const Settings& settings) {
     WhittedScene whitted;
-    // make_frame() reads the root and the number of planes from the structure; baselines have neither, so that an empty one
-    // will do.
-    whitted.frame = make_frame(view, settings, Layout(), AccelData(), 0);
+    whitted.frame = frame_constants(view, settings);
     whitted.light = view.lights.at(0);
     whitted.color = view.materials.at(0).color[0];
     whitted.reflect = view.materials.at(0).reflect;

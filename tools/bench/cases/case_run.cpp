@@ -185,7 +185,7 @@ class CaseRunner : CaseRun {
         }
         run_or_mark_failed(entry, [&](BenchRecord&) {
             const Fixture::Held held = fixture.prepare(device, settings, progress);
-            describe(row, *held.prepared);
+            describe(row, *held.prepared->first());
             if (definition.measure == "frame")
                 add_frame(state_, entry, settings, held);
             else if (definition.measure == "whitted")

@@ -13,7 +13,7 @@
 #include "tools/bench/output/record.hpp"
 #include "tools/bench/output/row.hpp"
 #include "tools/bench/run/fixture.hpp"
-#include "tracers/rays/ray_blocks.hpp"
+#include "tracers/rays/ray_queries.hpp"
 
 namespace clarity::bench {
 

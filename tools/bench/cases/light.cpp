@@ -4,7 +4,7 @@
 #include <regex>
 
 #include "device/program.hpp"
-#include "kernels/program_cache.hpp"
+#include "launch/prepared.hpp"
 #include "tools/compare/picture_errors.hpp"
 
 namespace clarity::bench {
@@ -19,8 +19,8 @@ FloatImage reference_of(CaseState& state, const Settings& settings, const Fixtur
     set_setting(other, "seed", find_setting("seed")->get(settings) == "1" ? "2" : "1");
     other.sampler = "sobol";
     other.strategy = "mis";
-    held.frames->trace(*held.prepared, other, state.fixture.view(), Samples{0, kReferenceSamples * unsigned(settings.spp)},
-                       false, state.progress);
+    held.frames->trace(held.prepared, other, state.fixture.view(), 0, false, state.progress,
+                       kReferenceSamples * unsigned(settings.spp));
     return held.frames->read_values();
 }
 
@@ -30,8 +30,7 @@ void trace_errors(CaseState& state, LightRun& light, const Settings& settings, c
     std::vector<std::pair<unsigned, double>> rmse;
     for (unsigned next = 1; done < unsigned(settings.spp); next *= 4) {
         const unsigned samples = std::min(next, unsigned(settings.spp));
-        ms += held.frames
-                  ->trace(*held.prepared, settings, state.fixture.view(), Samples{done, samples - done}, false, state.progress)
+        ms += held.frames->trace(held.prepared, settings, state.fixture.view(), done, false, state.progress, samples - done)
                   .wall_ms;
         done = samples;
         const PictureErrors errors = picture_errors(held.frames->read_values(), *state.light_reference);
@@ -44,22 +43,19 @@ void trace_errors(CaseState& state, LightRun& light, const Settings& settings, c
 // Compiles the program once more, with a kernel that tells the size of a path, and with the compiler's own words where it has
 // them.
 void describe_program(CaseState& state, LightRun& light, const Fixture::Held& held, size_t device) {
-    const Prepared& prepared = *held.prepared;
     const std::shared_ptr<Device>& opened = state.fixture.opened(device);
     const bool nvidia = opened->info().nvidia && !opened->info().pocl;
-    const KernelSource source = kernel_for(prepared, prepared.program->row);
-    const std::string text =
-        source.text + "\nkernel void rt_state_bytes(global uint *bytes) { *bytes = sizeof(rt_path) / RT_LANES; }\n";
-    const BuildResult built =
-        build_program(*opened, text, options_for(opened->info(), source) + (nvidia ? " -cl-nv-verbose" : ""), source.what);
+    const CompiledOnce built = compile_once_more(
+        *held.prepared, "\nkernel void rt_state_bytes(global uint *bytes) { *bytes = sizeof(rt_path) / RT_LANES; }\n",
+        nvidia ? " -cl-nv-verbose" : "");
     cl::Buffer bytes(opened->context(), CL_MEM_WRITE_ONLY, sizeof light.state_bytes);
     cl::Kernel kernel(built.program, "rt_state_bytes");
     kernel.setArg(0, bytes);
     opened->queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(1));
     opened->queue().enqueueReadBuffer(bytes, CL_TRUE, 0, sizeof light.state_bytes, &light.state_bytes);
     // A driver says nothing of a text that it has compiled before, as for an earlier row.
-    RegisterUse& use = state.register_uses[text];
-    if (const RegisterUse told = register_use(built.log, prepared.program->row.entry); told.registers >= 0) use = told;
+    RegisterUse& use = state.register_uses[built.text];
+    if (const RegisterUse told = register_use(built.log, built.entry); told.registers >= 0) use = told;
     light.registers = use.registers;
     light.spilled_bytes = use.spilled_bytes;
 }
@@ -75,15 +71,14 @@ void add_light(CaseState& state, Entry& entry, const Settings& settings, const F
         file.empty() ? std::to_string(kReferenceSamples * settings.spp) + " samples of another seed" : file;
     entry.once = [=, &state] {
         const FrameStats stats =
-            held.frames->trace(*held.prepared, settings, state.fixture.view(), Samples{0, timed}, false, state.progress);
+            held.frames->trace(held.prepared, settings, state.fixture.view(), 0, false, state.progress, timed);
         return Sample{stats.device_ms, stats.wall_ms};
     };
     entry.finish = [=, &state](BenchRecord& row) {
         const double pixels = double(settings.width) * settings.height;
         if (row.wall_ms.median > 0) row.light.msamples_per_s = pixels * timed / row.wall_ms.median / 1000;
         trace_errors(state, row.light, settings, held);
-        set_ray_counts(
-            row, held.frames->trace(*held.prepared, settings, state.fixture.view(), Samples{0, timed}, true, state.progress));
+        set_ray_counts(row, held.frames->trace(held.prepared, settings, state.fixture.view(), 0, true, state.progress, timed));
         for (size_t i = 0; i < state.fixture.device_count(); ++i)
             if (state.fixture.device(i).id() == row.device_id) describe_program(state, row.light, held, i);
     };

@@ -10,7 +10,8 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "frames/frame_renderer.hpp"
+#include "device/async_readback.hpp"
+#include "launch/prepared.hpp"
 #include "tools/bench/output/speedup.hpp"
 #include "tools/bench/run/measure.hpp"
 
@@ -41,9 +42,10 @@ void add_bytes(uint64_t& digest, const SharedBytes& bytes) {
 // Renders 100 pictures of a camera which circles its target. Each picture is copied to the host. Returns mean times per
 // picture. overlapped: copies each picture while the next one is traced, else before. digest: receives a digest of all
 // pictures' bytes. parts: receives the kernels' times of each picture.
-Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settings& settings, const View& view, bool overlapped,
-                   Progress& progress, std::vector<KernelTime>* parts = nullptr, uint64_t* digest = nullptr) {
+Sample show_moving(const Fixture::Held& held, const Settings& settings, const View& view, bool overlapped, Progress& progress,
+                   std::vector<KernelTime>* parts = nullptr, uint64_t* digest = nullptr) {
     Sample sample;
+    MultiFrameRenderer& frames = *held.frames;
     AsyncReadback pending;
     FrameStats pending_stats;
     const auto show = [&](const ByteImage& picture, const FrameStats& stats) {
@@ -56,7 +58,7 @@ Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settin
     const auto begin = std::chrono::steady_clock::now();
     for (unsigned i = 0; i < kPictures; ++i) {
         if (progress.cancelled()) throw Cancelled();
-        FrameStats stats = frames.trace(prepared, settings, turned(view, i), 0, false, progress, nullptr, show_pending);
+        FrameStats stats = frames.trace(held.prepared, settings, turned(view, i), 0, false, progress, 1, show_pending);
         sample.time_ms += stats.device_ms / kPictures;
         if (overlapped) {
             pending = frames.begin_display(settings);
@@ -82,7 +84,7 @@ void set_medians(BenchRecord& row, const PartTimes& parts) {
 double show_frame(CaseState& state, const Settings& settings, const Fixture::Held& held, const View& view, FrameStats& stats,
                   PartTimes& parts) {
     const auto begin = std::chrono::steady_clock::now();
-    stats = held.frames->trace(*held.prepared, settings, view, 0, false, state.progress);
+    stats = held.frames->trace(held.prepared, settings, view, 0, false, state.progress);
     held.frames->read_display(settings, &stats);
     const double ms = ms_since(begin);
     double busy = 0;
@@ -149,13 +151,13 @@ void add_build(Entry& entry, std::function<AccelData()> build) {
 }
 
 void time_rays(CaseState& state, Entry& entry, const Fixture::Held& held, const RaySet& set) {
-    const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+    const auto lanes = static_cast<unsigned>(held.prepared->first()->settings.lanes);
     std::shared_ptr<const RayBlocks>& packed = state.packed[lanes];
     if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
-    const bool cpu = held.prepared->layout.cpu;
+    const bool cpu = held.prepared->first()->layout.cpu;
     entry.once = [=, &set, blocks = packed] {
         Sample sample;
-        sample.time_ms = held.queries->trace(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
+        sample.time_ms = held.queries->trace(*held.prepared->first(), *blocks, RayQuery{set.any_hit, false, true});
         const RayTuning tuning = held.queries->tuning();
         if (cpu) sample.processor_ms = tuning.processor_ms;
         sample.trial = tuning.trial;
@@ -174,9 +176,9 @@ void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
         std::vector<RayWork> work;
         RayQuery query{set.any_hit, true};
         query.work = &work;
-        const auto hits = held.queries->trace(*held.prepared, set.rays, query);
-        const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
-        const rt_accel& accel = *held.prepared->accel->layout->accel;
+        const auto hits = held.queries->trace(*held.prepared->first(), set.rays, query);
+        const auto lanes = static_cast<unsigned>(held.prepared->first()->settings.lanes);
+        const rt_accel& accel = *held.prepared->first()->accel->layout->accel;
         row.analysis = analyze(set.rays, hits, work, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
         std::vector<float> distances;
         for (const rt_hit& hit : hits) distances.push_back(hit.t);
@@ -221,21 +223,20 @@ void add_moving(CaseState& state, Entry& entry, const Settings& settings, const 
     const auto parts = std::make_shared<PartTimes>();
     entry.once = [=, &state] {
         std::vector<KernelTime> times;
-        const Sample sample =
-            show_moving(*held.frames, *held.prepared, settings, state.fixture.view(), overlapped, state.progress, &times);
+        const Sample sample = show_moving(held, settings, state.fixture.view(), overlapped, state.progress, &times);
         for (const KernelTime& time : times) (*parts)[time.name].push_back(time.ms);
         return sample;
     };
     entry.finish = [=, &state](BenchRecord& row) {
         set_medians(row, *parts);
         uint64_t digest = 0;
-        show_moving(*held.frames, *held.prepared, settings, state.fixture.view(), overlapped, state.progress, nullptr, &digest);
+        show_moving(held, settings, state.fixture.view(), overlapped, state.progress, nullptr, &digest);
         state.agreement.check_sequence(row, digest, overlapped);
     };
 }
 
 void count_rays(CaseState& state, BenchRecord& row, const Settings& settings, const Fixture::Held& held, const View& view) {
-    set_ray_counts(row, held.frames->trace(*held.prepared, settings, view, 0, true, state.progress));
+    set_ray_counts(row, held.frames->trace(held.prepared, settings, view, 0, true, state.progress));
 }
 
 void compare_with_one_by_one(std::vector<BenchRecord>& rows) {

@@ -6,7 +6,7 @@
 #include "stand/ray_sets.hpp"
 #include "tools/bench/cases/case_state.hpp"
 #include "tools/bench/output/record.hpp"
-#include "tracers/rays/ray_query.hpp"
+#include "tracers/rays/ray_queries.hpp"
 
 namespace clarity::bench {
 

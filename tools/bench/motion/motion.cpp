@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
 #include "device/cl_errors.hpp"
-#include "frames/preparer.hpp"
+#include "launch/prepared.hpp"
 #include "moving/on_device/device_mover.hpp"
 #include "moving/on_host/host_mover.hpp"
 #include "plugin/capabilities.hpp"
@@ -152,7 +152,7 @@ class MotionCase : CaseRun {
     // wall_ms: from the call to the end, with the copy of the vertices within the device.
     void add_device_refit(const Settings& settings, Entry& entry) {
         struct State {
-            std::shared_ptr<const Prepared> prepared;
+            std::shared_ptr<const MultiPrepared> prepared;
             std::unique_ptr<DeviceMover> motion;
             std::vector<cl::Buffer> poses;
             size_t next = 0;
@@ -161,8 +161,9 @@ class MotionCase : CaseRun {
         const std::shared_ptr<Device> device = fixture.opened(0);
         auto apart = std::make_shared<Scene>(*fixture.scene());
         for (Instance& instance : apart->instances) instance.apart = true;
-        state->prepared = Preparer(plugins, device).prepare(apart, settings, progress);
-        state->motion = std::make_unique<DeviceMover>(device, apart, state->prepared->accel, state->prepared->on_device);
+        state->prepared = MultiPreparer(plugins, {device}).prepare(apart, settings, progress);
+        const Prepared& built = *state->prepared->first();
+        state->motion = std::make_unique<DeviceMover>(device, apart, built.accel, built.on_device);
         if (state->motion->cannot()) throw Error(Exit::usage, state->motion->cannot().text());
         for (const Pose& pose : poses_) {
             const MovedOnDevice moved = state->motion->move(pose);
@@ -183,7 +184,7 @@ class MotionCase : CaseRun {
             const double wall_ms = ms_since(begin);
             return Sample{span_ms(moved.begin, moved.end, wall_ms), wall_ms};
         };
-        entry.finish = [=](BenchRecord& row) { describe(row, *state->prepared->accel); };
+        entry.finish = [=](BenchRecord& row) { describe(row, *state->prepared->first()->accel); };
     }
 
     // time_ms: of all kernels of a frame. wall_ms: from one frame to the next.
@@ -213,14 +214,14 @@ class MotionCase : CaseRun {
             accel = std::make_shared<const AccelData>(
                 build_accel(*scene, plugin, settings.accel_params, progress, fixture.target_of(plugin)));
         Fixture::Held held;
-        held.prepared = Preparer(plugins, fixture.opened(0)).prepare(scene, settings, progress, accel);
+        held.prepared = MultiPreparer(plugins, {fixture.opened(0)}).prepare(scene, settings, progress, accel);
         held.queries = std::make_shared<RayQueries>(fixture.opened(0));
-        describe(entry.row, *held.prepared);
+        describe(entry.row, *held.prepared->first());
         if (rays_.rays.empty()) make_rays(held);
         time_rays(state_, entry, held, rays_);
         entry.finish = [=](BenchRecord& row) {
             std::vector<float> distances;
-            for (const rt_hit& hit : held.queries->trace(*held.prepared, rays_.rays)) distances.push_back(hit.t);
+            for (const rt_hit& hit : held.queries->trace(*held.prepared->first(), rays_.rays)) distances.push_back(hit.t);
             state_.agreement.check_hits(row, rays_, distances);
         };
     }
@@ -229,7 +230,7 @@ class MotionCase : CaseRun {
         const View& view = fixture.view();
         rays_ = camera_rays(view.camera, settings.width, settings.height);
         if (definition.measure == rays_.kind) return;
-        const auto trace = [&](const std::vector<rt_ray>& rays) { return held.queries->trace(*held.prepared, rays); };
+        const auto trace = [&](const std::vector<rt_ray>& rays) { return held.queries->trace(*held.prepared->first(), rays); };
         const RaySet primary = std::move(rays_);
         rays_ = {};
         if (view.lights.empty()) throw Error(Exit::usage, "no " + definition.measure + " rays: the scene has no light");

@@ -74,14 +74,14 @@ MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device
       view_(view),
       kind_(motion),
       kernels_(device_),
-      frames_(device_) {
+      frames_({device_}) {
     if (plays_clip()) rest_scene_ = std::make_shared<const Scene>(scene);
     scene_ = staged(scene);
     const bool waves = kind_ == Motion::wave_refitted || kind_ == Motion::wave_built;
     size_ = static_cast<float>(scene.bounds().diagonal());
-    Preparer preparer(plugins, device_);
+    MultiPreparer preparer(plugins, {device_});
     prepared_ = preparer.prepare(scene_, settings_, progress);
-    motion_ = std::make_unique<DeviceMover>(device_, scene_, prepared_->accel, prepared_->on_device, rest_scene_);
+    motion_ = std::make_unique<DeviceMover>(device_, scene_, prepared().accel, prepared().on_device, rest_scene_);
     if (motion_->cannot()) throw Error(Exit::usage, motion_->cannot().text());
     if (builds() && !motion_->can_build()) throw Error(Exit::usage, "accel " + settings_.accel + " is not built by devices");
     const MovedOnDevice first = motion_->move(plays_clip() ? clip_pose(0)
@@ -89,7 +89,11 @@ MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device
                                                            : pose_of(0),
                                               builds() ? DeviceMover::Update::build : DeviceMover::Update::refit);
     if (!first.on_device) throw Error(Exit::usage, "the structure cannot follow: " + first.why);
-    prepared_ = preparer.prepare(scene_, settings_, progress, motion_->accel(), {first.on_device, true});
+    MovedStructure moved;
+    moved.accel = motion_->accel();
+    moved.on_devices = {{device_, first.on_device}};
+    moved.by_devices = true;
+    prepared_ = preparer.prepare(scene_, settings_, progress, moved);
     if (!waves) return;
     wave_ = cl::Kernel(kernels_.compile(kWave, "the wave"), "wave_vertices");
     const size_t bytes = scene.positions.size() * sizeof(float);
@@ -151,7 +155,7 @@ Sample MovingFrames::play(Progress& progress) {
         const auto begin = std::chrono::steady_clock::now();
         for (unsigned i = 0; i < kFrames; ++i, ++next_) {
             const float phase = float(next_ % kFramesOfAWave) / kFramesOfAWave;
-            Prepared now = *prepared_;
+            auto now = std::make_shared<Prepared>(prepared());
             cl::Event deformed;
             MovedOnDevice moved;
             if (wave_()) deformed = deform(phase);
@@ -165,8 +169,10 @@ Sample MovingFrames::play(Progress& progress) {
             }
             if (kind_ != Motion::nothing && !moved.on_device)
                 throw Error(Exit::failed, "the structure cannot follow: " + moved.why);
-            if (moved.on_device) now.on_device = moved.on_device;
-            trace_ms += frames_.trace(now, settings_, view_, 0, false, progress).device_ms;
+            if (moved.on_device) now->on_device = moved.on_device;
+            const auto shown = std::make_shared<MultiPrepared>();
+            shown->parts = {{device_, now}};
+            trace_ms += frames_.trace(shown, settings_, view_, 0, false, progress).device_ms;
             if (moved.on_device) update_ms += span_ms(moved.begin, moved.end, moved.ms);
             if (deformed()) deform_ms += event_ms(deformed);
         }

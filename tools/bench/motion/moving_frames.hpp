@@ -4,9 +4,9 @@
 #pragma once
 #include <memory>
 
-#include "frames/frame_renderer.hpp"
-#include "frames/preparer.hpp"
+#include "launch/prepared.hpp"
 #include "moving/on_device/device_mover.hpp"
+#include "stand/multi_frame_renderer.hpp"
 #include "tools/bench/run/measure.hpp"
 
 namespace clarity::bench {
@@ -28,7 +28,7 @@ class MovingFrames {
     // Milliseconds of a frame, medians over the calls of play(): "deform", "update", "trace"; of a clip "pose" by the host's
     // clock, and "update" with the vertices.
     Parts parts() const;
-    const Prepared& prepared() const { return *prepared_; }
+    const Prepared& prepared() const { return *prepared_->first(); }
 
  private:
     cl::Event deform(float phase);
@@ -45,12 +45,12 @@ class MovingFrames {
     const Motion kind_;
     std::shared_ptr<const Scene> rest_scene_;  // of a clip: with its motion
     std::shared_ptr<const Scene> scene_;
-    std::shared_ptr<const Prepared> prepared_;
+    std::shared_ptr<const MultiPrepared> prepared_;
     std::unique_ptr<DeviceMover> motion_;
     BuildKernels kernels_;
     cl::Kernel wave_;
     cl::Buffer rest_;
-    FrameRenderer frames_;
+    MultiFrameRenderer frames_;
     float size_ = 0;  // of the scene
     unsigned next_ = 0;
     std::vector<double> pose_ms_, deform_ms_, update_ms_, trace_ms_;

@@ -4,7 +4,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "frames/preparer.hpp"
+#include "launch/prepared.hpp"
 #include "moving/follow/pose_follower.hpp"
 #include "moving/on_host/host_mover.hpp"
 #include "tools/bench/cases/case_run.hpp"
@@ -36,8 +36,8 @@ class StrategiesCase : CaseRun {
         : CaseRun(run),
           settings_(variant_settings(plugins, request, definition.variants.front())),
           plugin_(*plugins.accel(settings_.accel)),
-          preparer_(plugins, fixture.opened(0)),
-          frames_(fixture.opened(0)) {}
+          preparer_(plugins, {fixture.opened(0)}),
+          frames_({fixture.opened(0)}) {}
 
     std::vector<BenchRecord> run() {
         rest_ = std::make_shared<const Scene>(staged(*fixture.scene(), definition.motion));
@@ -86,7 +86,7 @@ class StrategiesCase : CaseRun {
         }
         const double update_ms = ms_since(begin);
         const auto prepared = preparer_.prepare(scene, with_optics(settings_, *scene, fixture.view()), progress, s.accel);
-        s.last_trace_ms = trace_ms(*prepared);
+        s.last_trace_ms = trace_ms(prepared);
         if (frame == 0) return;
         s.update_ms += update_ms;
         s.trace_ms += s.last_trace_ms;
@@ -97,11 +97,11 @@ class StrategiesCase : CaseRun {
     }
 
     // Of short frames the least of three times, because a disturbance of the machine is as long as they are.
-    double trace_ms(const Prepared& prepared) {
+    double trace_ms(const std::shared_ptr<const MultiPrepared>& prepared) {
         constexpr double kShortMs = 20;
         double least = std::numeric_limits<double>::infinity();
         for (unsigned i = 0; i < 3 && (i == 0 || least < kShortMs); ++i)
-            least = std::min(least, frames_.trace(prepared, settings_, fixture.view(), Samples{0}, false, progress).device_ms);
+            least = std::min(least, frames_.trace(prepared, settings_, fixture.view(), 0, false, progress).device_ms);
         return least;
     }
 
@@ -129,8 +129,8 @@ class StrategiesCase : CaseRun {
 
     const Settings settings_;
     const rt_plugin& plugin_;
-    Preparer preparer_;
-    FrameRenderer frames_;
+    MultiPreparer preparer_;
+    MultiFrameRenderer frames_;
     std::shared_ptr<const Scene> rest_;
     std::vector<Strategy> strategies_;
 };

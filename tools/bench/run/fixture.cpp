@@ -41,30 +41,26 @@ void check_memory(uint64_t triangles) {
 
 }  // namespace
 
-struct Fixture::Place {
-    std::shared_ptr<Device> device;
-    Preparer preparer;
-    Place(const PluginRegistry& plugins, const DeviceInfo& info)
-        : device(std::make_shared<Device>(info)), preparer(plugins, device) {}
-};
-
 Fixture::Fixture(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const import::ImportOptions& import)
     : plugins_(plugins), import_(import) {
-    for (const DeviceInfo& info : devices) places_.push_back(std::make_unique<Place>(plugins, info));
+    for (const DeviceInfo& info : devices) {
+        devices_.push_back(std::make_shared<Device>(info));
+        preparers_.push_back(std::make_unique<MultiPreparer>(plugins, Devices{devices_.back()}));
+    }
 }
 Fixture::~Fixture() = default;
 
 const DeviceInfo& Fixture::device(size_t i) const {
-    return places_[i]->device->info();
+    return devices_[i]->info();
 }
 
 const std::shared_ptr<Device>& Fixture::opened(size_t i) const {
-    return places_[i]->device;
+    return devices_[i];
 }
 
 unsigned Fixture::baseline_threads() const {
-    for (const auto& place : places_)
-        if (place->device->info().cpu) return place->device->info().compute_units;
+    for (const auto& device : devices_)
+        if (device->info().cpu) return device->info().compute_units;
     return 0;
 }
 
@@ -104,10 +100,9 @@ void Fixture::load(const SuiteScene& scene, int width, int height, Progress& pro
 const Fixture::Held& Fixture::prepare(size_t device, const Settings& settings, Progress& progress) {
     Held& held = held_[key_of(device, settings)];
     if (!held.frames) {
-        held.prepared =
-            places_[device]->preparer.prepare(loaded_.scene, with_optics(settings, *loaded_.scene, view()), progress);
-        held.frames = std::make_shared<FrameRenderer>(places_[device]->device);
-        held.queries = std::make_shared<RayQueries>(places_[device]->device);
+        held.prepared = preparers_[device]->prepare(loaded_.scene, with_optics(settings, *loaded_.scene, view()), progress);
+        held.frames = std::make_shared<MultiFrameRenderer>(Devices{devices_[device]});
+        held.queries = std::make_shared<RayQueries>(devices_[device]);
     }
     return held;
 }
@@ -117,18 +112,14 @@ BuildTarget Fixture::target_of(const rt_plugin& accel) const {
 }
 
 std::shared_ptr<const MultiPrepared> Fixture::prepare_all(const Settings& settings, Progress& progress) {
-    if (!together_) {
-        Devices devices;
-        for (const auto& place : places_) devices.push_back(place->device);
-        together_ = std::make_unique<MultiPreparer>(plugins_, devices);
-    }
+    if (!together_) together_ = std::make_unique<MultiPreparer>(plugins_, devices_);
     return together_->prepare(loaded_.scene, with_optics(settings, *loaded_.scene, view()), progress);
 }
 
 const RaySet& Fixture::rays(const std::string& kind, const Held& held) {
     if (rays_.empty()) {
         rays_.push_back(camera_rays(loaded_.view.camera, width_, height_));
-        const auto trace = [&](const std::vector<rt_ray>& rays) { return held.queries->trace(*held.prepared, rays); };
+        const auto trace = [&](const std::vector<rt_ray>& rays) { return held.queries->trace(*held.prepared->first(), rays); };
         if (!loaded_.view.lights.empty())
             for (RaySet& set : secondary_rays(*loaded_.scene, loaded_.view.lights[0], rays_[0], width_, height_, trace))
                 rays_.push_back(std::move(set));

@@ -18,7 +18,7 @@ class Fixture {
     Fixture(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const import::ImportOptions& import);
     ~Fixture();
 
-    size_t device_count() const { return places_.size(); }
+    size_t device_count() const { return devices_.size(); }
     const DeviceInfo& device(size_t i) const;
     const std::shared_ptr<Device>& opened(size_t i) const;
     // Threads of baselines: the compute units of the first CPU among the devices. 0: there is no CPU, and thus no baselines.
@@ -35,11 +35,11 @@ class Fixture {
     // A structure with its program, and a film and ray buffers of its own, so that interleaved measuring does not disturb its
     // pace.
     struct Held {
-        std::shared_ptr<const Prepared> prepared;
-        std::shared_ptr<FrameRenderer> frames;
+        std::shared_ptr<const MultiPrepared> prepared;
+        std::shared_ptr<MultiFrameRenderer> frames;
         std::shared_ptr<RayQueries> queries;
     };
-    // Builds it on first use and keeps it until the next scene. Throws what Preparer::prepare throws.
+    // Builds it on first use and keeps it until the next scene. Throws what MultiPreparer::prepare() throws.
     const Held& prepare(size_t device, const Settings& settings, Progress& progress);
 
     // What a builder is told if it builds for the first device.
@@ -57,10 +57,10 @@ class Fixture {
     const BaselineMesh& baseline_mesh();
 
  private:
-    struct Place;
     const PluginRegistry& plugins_;
     const import::ImportOptions import_;
-    std::vector<std::unique_ptr<Place>> places_;
+    Devices devices_;
+    std::vector<std::unique_ptr<MultiPreparer>> preparers_;  // of each by itself
     std::unique_ptr<MultiPreparer> together_;
     LoadedScene loaded_;
     std::string scene_name_;

@@ -13,7 +13,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/scoped_fp_mode.hpp"
-#include "structures/topology_check.hpp"
+#include "structures/judging.hpp"
 
 namespace clarity::check {
 namespace {

@@ -9,8 +9,7 @@
 #include "base/progress.hpp"
 #include "plugin/parameters.hpp"
 #include "rt_plugin.h"
-#include "structures/build_scene.hpp"
-#include "structures/guarded_build.hpp"
+#include "structures/judging.hpp"
 
 namespace clarity::check {
 

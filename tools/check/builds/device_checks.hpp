@@ -5,7 +5,7 @@
 
 #include "device/device.hpp"
 #include "rt_plugin.h"
-#include "structures/on_device/build_kernels.hpp"
+#include "structures/judging.hpp"
 #include "tools/check/steps.hpp"
 
 namespace clarity::check {

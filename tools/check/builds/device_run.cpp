@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "plugin/capabilities.hpp"
 #include "plugin/host_services.hpp"
-#include "structures/on_device/device_blocks.hpp"
+#include "structures/judging.hpp"
 
 namespace clarity::check {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "structures/on_device/device_plan.hpp"
+#include "structures/judging.hpp"
 #include "tools/check/builds/build_run.hpp"
 #include "tools/check/builds/device_trees.hpp"
 

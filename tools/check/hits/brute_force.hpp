@@ -7,7 +7,7 @@
 
 #include "rt_types.h"
 #include "scene/vec.hpp"
-#include "structures/build_scene.hpp"
+#include "structures/accel_build.hpp"
 
 namespace clarity::check {
 

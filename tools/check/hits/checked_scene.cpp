@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "stand/query_scene.hpp"
-#include "structures/topology_check.hpp"
+#include "launch/prepared.hpp"
+#include "stand/multi_preparer.hpp"
 #include "tools/check/builds/pack_checks.hpp"
 #include "tools/check/builds/refit_run.hpp"
 #include "tools/check/builds/result_checks.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rt_types.h"
-#include "structures/build_scene.hpp"
+#include "structures/accel_build.hpp"
 #include "tools/check/scenes.hpp"
 
 namespace clarity::check {

@@ -8,7 +8,7 @@
 #include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "scene/motion/matrix.hpp"
-#include "stand/query_scene.hpp"
+#include "stand/multi_preparer.hpp"
 #include "stand/ray_text.hpp"
 #include "structures/accel_build.hpp"
 #include "tracers/rays/ray_queries.hpp"

@@ -5,7 +5,7 @@
 
 #include "device/cl_errors.hpp"
 #include "device/program.hpp"
-#include "kernels/source_writer.hpp"
+#include "device/source_writer.hpp"
 #include "tools/check/guarded_numbers.hpp"
 
 namespace clarity::check {

@@ -7,7 +7,7 @@
 #include "device/cl_errors.hpp"
 #include "device/program.hpp"
 #include "device/set_arguments.hpp"
-#include "kernels/source_writer.hpp"
+#include "device/source_writer.hpp"
 #include "tools/check/guarded_numbers.hpp"
 
 namespace clarity::check {
