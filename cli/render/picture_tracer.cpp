@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "cli/render/render_progress.hpp"
-#include "frames/frame_stats.hpp"
+#include "picture/frame_stats.hpp"
 
 namespace clarity {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "frames/frame_stats.hpp"
 #include "picture/film_noise.hpp"
+#include "picture/frame_stats.hpp"
 #include "stand/multi_preparer.hpp"
 #include "stand/ranks.hpp"
 #include "tools/compare/picture_errors.hpp"

@@ -8,9 +8,9 @@
 #include "base/pictures/image_io.hpp"
 #include "base/progress.hpp"
 #include "device/device.hpp"
-#include "frames/frame_stats.hpp"
 #include "launch/prepared.hpp"
 #include "picture/display_readback.hpp"
+#include "picture/frame_stats.hpp"
 #include "view/settings/false_color_scale.hpp"
 #include "view/view.hpp"
 

@@ -55,8 +55,6 @@ Affine placed(const Point& at, float angle, const Point& scale) {
 
 namespace {
 
-constexpr double kTurn = 2 * kPi;
-
 // Numbers from 0 to 1 by a counter.
 class Chance {
  public:

@@ -8,7 +8,7 @@
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
 #include "device/cl_errors.hpp"
-#include "frames/frame_stats.hpp"
+#include "picture/frame_stats.hpp"
 
 namespace clarity {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/pictures/image_io.hpp"
-#include "frames/frame_stats.hpp"
+#include "picture/frame_stats.hpp"
 #include "rt_types.h"
 #include "stand/multi_preparer.hpp"
 #include "stand/ranks.hpp"

@@ -13,8 +13,8 @@
 #include "launch/prepared.hpp"
 #include "launch/view_buffers.hpp"
 #include "picture/film.hpp"
+#include "picture/frame_stats.hpp"
 #include "picture/overflow_counter.hpp"
-#include "picture/ray_counts.hpp"
 #include "view/settings/settings.hpp"
 #include "view/view.hpp"
 

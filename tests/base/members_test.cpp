@@ -34,17 +34,17 @@ struct Many {
 static_assert(has_member_count<Base, 1> && has_member_count<Derived, 3> && has_member_count<Many, 8>);
 static_assert(!has_member_count<Many, 7> && !has_member_count<Many, 9>);
 
-struct Part {
+struct Row {
     std::string name;
     int number = 0;
     std::vector<double> more;
     CLARITY_MEMBERS(name, number, more);
 };
-static_assert(has_members<Part> && has_members<const Part> && !has_members<Many>);
+static_assert(has_members<Row> && has_members<const Row> && !has_members<Many>);
 
 TEST(Members, CompareAndCopy) {
-    const Part a{"a", 1, {2, 3}};
-    Part b{"b", 1, {2, 3}};
+    const Row a{"a", 1, {2, 3}};
+    Row b{"b", 1, {2, 3}};
     EXPECT_NE(members_of(a), members_of(b));
     members_of(b) = members_of(a);
     EXPECT_EQ(members_of(a), members_of(b));

@@ -123,7 +123,7 @@ TEST(KernelTable, LayoutsWantSettingsThatAreResolved) {
 // A finished frame of one tracer that `auto` takes serves as one of another.
 TEST(Tracers, WhatAutoTakesShowsTheSamePicture) {
     for (const Tracer* tracer : tracers())
-        if (tracer->suits) {
+        if (tracer->merit) {
             EXPECT_EQ(tracer->picture, picture_of_tracer("auto")) << tracer->id;
         }
     for (const TracerChoice& choice : tracer_choices()) EXPECT_NE(std::string(choice.picture), "") << choice.id;

@@ -1,7 +1,7 @@
 // pictures_test.cpp -- a picture that several devices share equals, bit for bit, the picture of a single device.
 #include <cstring>
 
-#include "frames/frame_stats.hpp"
+#include "picture/frame_stats.hpp"
 #include "stand/team.hpp"
 
 using namespace clarity;

@@ -7,7 +7,7 @@ namespace clarity::check {
 namespace {
 
 constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{-40, 0, 0}, kTiny{0, 0, 40},
-    kFar{9000, 2000, -7000}, kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40},
+    kFarAway{9000, 2000, -7000}, kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40},
     kInstancesFar{-3000, 500, 4000}, kSpheres{-40, 40, 0}, kPolygons{-40, 0, 40}, kShellsInstanced{-40, -40, 0};
 
 // Flat faces in front of slanted ones, nearer by a share of 4e-4 of the distance: a traversal that culls a little too much
@@ -57,7 +57,7 @@ const std::vector<Region>& mixed_regions() {
         {"faces", kFaces, 3},
         {"degenerate", kDegenerate, 4},
         {"tiny", kTiny, 0.02f},
-        {"far away", kFar, 12},
+        {"far away", kFarAway, 12},
         {"nested", kShells, 8},
         {"nested, instanced", kShellsInstanced, 8},
         {"copies", kCopies, 2},
@@ -83,7 +83,7 @@ Scene mixed_scene(uint64_t seed) {
     make.place_mesh();
     add_degenerate(make);
     make.add_soup(kTiny, 0.015f, 0.004f, 150);
-    make.add_soup(kFar, 9, 4, 150);
+    make.add_soup(kFarAway, 9, 4, 150);
     for (int i = 0; i < 20; ++i)
         make.add_triangle({kCopies[0] - 1, kCopies[1] - 1, kCopies[2]}, {kCopies[0] + 1, kCopies[1] - 1, kCopies[2]},
                           {kCopies[0], kCopies[1] + 1, kCopies[2]});

@@ -63,23 +63,23 @@ void add_png_texts(std::string& png, const std::vector<std::pair<std::string, st
     if (png.size() > kBehindHeader) png.insert(kBehindHeader, chunks);
 }
 
-enum class Format { png, exr, pfm, unknown };
+enum class Ending { png, exr, pfm, other };
 
-Format format_of(const std::string& path) {
+Ending ending_of(const std::string& path) {
     const size_t dot = path.rfind('.'), slash = path.rfind('/');
-    if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return Format::unknown;
+    if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return Ending::other;
     std::string ending = path.substr(dot + 1);
     for (char& c : ending)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return ending == "png" ? Format::png : ending == "exr" ? Format::exr : ending == "pfm" ? Format::pfm : Format::unknown;
+    return ending == "png" ? Ending::png : ending == "exr" ? Ending::exr : ending == "pfm" ? Ending::pfm : Ending::other;
 }
 
 void check_ending(const std::string& path) {
-    const Format format = format_of(path);
-    if (format == Format::unknown)
+    const Ending ending = ending_of(path);
+    if (ending == Ending::other)
         throw Error(Exit::usage, "`" + path + "`: its ending is not a picture format; use .png, .exr or .pfm");
 #ifndef CLARITY_HAVE_OPENEXR
-    if (format == Format::exr)
+    if (ending == Ending::exr)
         throw Error(Exit::usage, "`" + path +
                                      "`: this build cannot write EXR: OpenEXR was missing when it was configured; "
                                      "install libopenexr-dev and build again, or write .pfm");
@@ -241,10 +241,10 @@ void write_image(const std::string& path, const FloatImage& values, const ByteIm
     const timeline::Scope span("write", [&] { return "write " + path; });
     const PendingWrite pending;
     check_ending(path);
-    const Format format = format_of(path);
-    if (format == Format::png) return write_png(path, display, notes);
+    const Ending ending = ending_of(path);
+    if (ending == Ending::png) return write_png(path, display, notes);
     check_size(path, values.width, values.height, values.channels, values.pixels.size());
-    return format == Format::exr ? write_exr(path, {{"", values}}, notes) : write_pfm(path, values, notes);
+    return ending == Ending::exr ? write_exr(path, {{"", values}}, notes) : write_pfm(path, values, notes);
 }
 
 void write_layers(const std::string& path, const std::vector<PictureLayer>& layers, const PictureNotes& notes) {
@@ -257,11 +257,11 @@ void write_layers(const std::string& path, const std::vector<PictureLayer>& laye
 }
 
 bool holds_layers(const std::string& path) {
-    return format_of(path) == Format::exr;
+    return ending_of(path) == Ending::exr;
 }
 
 bool writes_display(const std::string& path) {
-    return format_of(path) == Format::png;
+    return ending_of(path) == Ending::png;
 }
 
 void check_output_path(const std::string& path) {

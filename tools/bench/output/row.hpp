@@ -1,8 +1,8 @@
 // row.hpp -- fills in a record's description of scene, device, settings and structure.
 #pragma once
 #include "device/device.hpp"
-#include "frames/frame_stats.hpp"
 #include "launch/prepared.hpp"
+#include "picture/frame_stats.hpp"
 #include "scene/scene.hpp"
 #include "structures/accel_build.hpp"
 #include "tools/bench/output/record.hpp"

@@ -15,9 +15,9 @@ namespace clarity::check {
 namespace {
 
 // Serves rt_refit_input::prims, and notes what is asked for.
-class Asked {
+class AskedPrims {
  public:
-    Asked(const BuildScene& moved, const BuilderResult& built, const std::vector<uint8_t>& changed, HostServices& services)
+    AskedPrims(const BuildScene& moved, const BuilderResult& built, const std::vector<uint8_t>& changed, HostServices& services)
         : services_(services), groups_(group_of_positions(moved, built)), times_(new std::atomic<uint8_t>[groups_.size()]()) {
         std::unordered_map<rt_u32, const rt_prim*> by_ref;
         for (const rt_prim& prim : moved.prims) by_ref[prim.ref] = &prim;
@@ -40,7 +40,7 @@ class Asked {
     const rt_packed_prim* leaves() const { return static_cast<const rt_packed_prim*>(leaves_.data()); }
 
     static int32_t prims(void* ctx, uint64_t first, uint64_t count, rt_prim* out) {
-        auto& self = *static_cast<Asked*>(ctx);
+        auto& self = *static_cast<AskedPrims*>(ctx);
         const uint64_t size = self.prims_.size();
         if (!out || count > size || first > size - count) {
             self.services_.fail("the refit asked for the primitives at " + std::to_string(count) + " positions from " +
@@ -130,7 +130,7 @@ RefitRun run_refit(const rt_plugin& plugin, const ParameterValues& params, const
     run.result = copy_of(built, plugin);
     CancelAt progress(cancel_after);
     HostServices services({}, progress);
-    Asked asked(moved, built, changed, services);
+    AskedPrims asked(moved, built, changed, services);
     const rt_host host = scheduled(*services.host(), schedule);
     std::vector<void*> slots;
     std::vector<uint64_t> counts;
@@ -151,7 +151,7 @@ RefitRun run_refit(const rt_plugin& plugin, const ParameterValues& params, const
     input.leaf_count = built.leaf_count;
     input.params = params.data();
     input.ctx = &asked;
-    input.prims = Asked::prims;
+    input.prims = AskedPrims::prims;
     input.leaves = asked.leaves();
     rt_refit_output output{};
     output.struct_bytes = sizeof output;

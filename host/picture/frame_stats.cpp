@@ -1,4 +1,4 @@
-#include "frames/frame_stats.hpp"
+#include "picture/frame_stats.hpp"
 
 #include <algorithm>
 
