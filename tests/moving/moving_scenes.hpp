@@ -1,6 +1,7 @@
 // moving_scenes.hpp -- a scene that moves, its poses and its structures, for tests of refits.
 #pragma once
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "scene/motion/pose.hpp"
@@ -23,6 +24,7 @@ inline ScenePtr rings() {
         const rt_u32 cube = add_mesh(s, box(0.5));
         for (int i = 0; i < 12; ++i) place(s, cube, moved_to(-5 + float(i), 3, 1));
         s.spheres.push_back({{0, -3, 0}, 0.5f, 0});
+        for (size_t i = 1; i < s.instances.size(); ++i) s.instances[i].name = "placed " + std::to_string(i);
         return shared_scene(std::move(s));
     }();
     return scene;
