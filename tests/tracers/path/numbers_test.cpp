@@ -118,7 +118,8 @@ namespace {
 // The two planes of a film of one pixel after `count` samples, of the color `even` and of `odd` in turns.
 std::vector<float> summed(const cl_float4& even, const cl_float4& odd, unsigned count) {
     Device& device = LaneKernel::device();
-    const std::string text = "#define RT_LANES 1\n#define RT_CPU 1\n" + kernel_text("lanes/lanes.h") + "\n" +
+    const std::string text = "#define RT_LANES 1\n#define RT_CPU 1\n" + kernel_text("rt_shared.h") + "\n" +
+                             kernel_text("rt_types.h") + "\n" + kernel_text("lanes/lanes.h") + "\n" +
                              kernel_text("tracers/path/sum.h") +
                              "\nkernel void add(global float4 *film, const float4 even, const float4 odd, const uint count)\n"
                              "{ for (uint i = 0; i < count; ++i) rt_add_sample(film, 1, 0, i % 2u ? odd : even, i == 0u); }\n";
